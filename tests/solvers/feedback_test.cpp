@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -78,50 +79,27 @@ struct Coupled {
   }
 };
 
-/// Solves A x = b by Gaussian elimination with pivots.
-std::vector<double> solve(std::vector<std::vector<double>> a, std::vector<double> b) {
-  const std::size_t n = b.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t pivot = i;
-    for (std::size_t j = i; j < n; ++j)
-      if (std::abs(a[j][i]) > std::abs(a[pivot][i])) pivot = j;
-    std::swap(a[i], a[pivot]);
-    std::swap(b[i], b[pivot]);
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const double factor = a[j][i] / a[i][i];
-      for (std::size_t c = i; c < n; ++c) a[j][c] -= factor * a[i][c];
-      b[j] -= factor * b[i];
-    }
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t c = i + 1; c < n; ++c) b[i] -= a[i][c] * b[c];
-    b[i] /= a[i][i];
-  }
-  return b;
-}
-
 /// The inputs that minimise a quadratic cost over `steps` steps, from its values at unit vectors.
-std::vector<double> best_inputs(const Coupled& problem, Coupled::State<double> x, int steps) {
-  const auto n = static_cast<std::size_t>(2 * steps);
-  const auto cost = [&](std::size_t i, std::size_t j, double size) {
+Eigen::VectorXd best_inputs(const Coupled& problem, Coupled::State<double> x, int steps) {
+  const int n = 2 * steps;
+  const auto cost = [&](int i, int j, double size) {
     std::vector<Input<double, 2>> u(static_cast<std::size_t>(steps), Input<double, 2>{});
-    u[i / 2].value[i % 2] += size;
-    u[j / 2].value[j % 2] += size;
+    for (const int input : {i, j}) u[static_cast<std::size_t>(input / 2)].value[input % 2] += size;
     return predict(problem, x, u.data(), steps, nullptr).value;
   };
   const double rest = cost(0, 0, 0);
-  std::vector<std::vector<double>> hessian(n, std::vector<double>(n));
-  std::vector<double> gradient(n);
-  for (std::size_t i = 0; i < n; ++i) {
+  Eigen::MatrixXd hessian(n, n);
+  Eigen::VectorXd gradient(n);
+  for (int i = 0; i < n; ++i) {
     const double up = cost(i, i, 0.5), down = cost(i, i, -0.5);  // moves input i by 1
     gradient[i] = -0.5 * (up - down);
-    hessian[i][i] = up + down - 2 * rest;
+    hessian(i, i) = up + down - 2 * rest;
   }
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      hessian[i][j] = hessian[j][i] =
-          0.5 * (cost(i, j, 1) + cost(i, j, -1) - 2 * rest - hessian[i][i] - hessian[j][j]);
-  return solve(hessian, gradient);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < i; ++j)
+      hessian(i, j) = hessian(j, i) =
+          0.5 * (cost(i, j, 1) + cost(i, j, -1) - 2 * rest - hessian(i, i) - hessian(j, j));
+  return hessian.partialPivLu().solve(gradient);
 }
 
 TEST(Feedback, IsTheDerivativeOfTheBestInputsOfALinearQuadraticProblem) {
@@ -132,9 +110,10 @@ TEST(Feedback, IsTheDerivativeOfTheBestInputsOfALinearQuadraticProblem) {
   ASSERT_TRUE(feedback.update(controller, controller.solve({1, -0.5})));
   const auto at_rest = best_inputs(problem, {0, 0}, steps);
   const auto moved = best_inputs(problem, {1, 0}, steps), fast = best_inputs(problem, {0, 1}, steps);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_NEAR(feedback.gain(0)[2 * i], moved[i] - at_rest[i], 1e-8);
-    EXPECT_NEAR(feedback.gain(0)[2 * i + 1], fast[i] - at_rest[i], 1e-8);
+  for (int i = 0; i < 2; ++i) {
+    const auto row = static_cast<std::size_t>(2 * i);
+    EXPECT_NEAR(feedback.gain(0)[row], moved[i] - at_rest[i], 1e-8);
+    EXPECT_NEAR(feedback.gain(0)[row + 1], fast[i] - at_rest[i], 1e-8);
   }
 }
 

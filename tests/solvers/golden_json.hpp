@@ -156,4 +156,17 @@ inline std::string case_name(const Json& json) {
   return "case " + std::to_string(json.at("case_id").get<int>());
 }
 
+/// Calls `each(json, comparison)` for every case of a folder of the golden data.
+template <class Each>
+void compare_cases(const std::string& name, Each each, const char* precision = " (float32)") {
+  const auto folder = golden_folder(("controller/" + name).c_str());
+  if (folder.empty()) GTEST_SKIP() << "no golden data: set SLALOM_GOLDEN_DIR to a folder that has " << name;
+  Comparison comparison(name + precision, 1e-4);
+  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
+    comparison.next_case();
+    each(json, comparison);
+  });
+  EXPECT_GT(comparison.cases(), 0);
+}
+
 }  // namespace slalom::testing

@@ -10,10 +10,8 @@ namespace {
 /// Gradients so small that the published program's floor has swallowed them count as zero.
 constexpr double swallowed = 1e-12;
 
-void compare_svg_gradient(const std::filesystem::path& folder) {
-  Comparison comparison("svg_grad (float32)", 1e-4);
-  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
-    comparison.next_case();
+TEST(SolverGolden, SvgGradient) {
+  compare_cases("svg_grad", [&](const Json& json, Comparison& comparison) {
     Batch samples(json["grad_samples"]);
     auto totals = padded_numbers(json["grad_sample_costs"], 0);
     const auto centre = numbers<float>(json["particle"]), previous = numbers<float>(json["prev_control_seq"]);
@@ -33,18 +31,10 @@ void compare_svg_gradient(const std::filesystem::path& folder) {
                                weights.data(), gradient.data());
     comparison.compare(gradient, numbers<double>(json["grad_log_likelihood"]), case_name(json), swallowed);
   });
-  EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(SolverGolden, SvgGradient) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller/svg_grad");
-  compare_svg_gradient(folder);
-}
-
-void compare_svmpc_gradient(const std::filesystem::path& folder) {
-  Comparison comparison("svmpc_grad (float32)", 1e-4);
-  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
-    comparison.next_case();
+TEST(SolverGolden, SvMpcGradient) {
+  compare_cases("svmpc_grad", [&](const Json& json, Comparison& comparison) {
     // One particle: its samples stand a whole padding apart.
     const int count = static_cast<int>(json["grad_samples"].size());
     const auto centre = numbers<float>(json["particle"]), mean = numbers<float>(json["prior_mean"]);
@@ -74,18 +64,10 @@ void compare_svmpc_gradient(const std::filesystem::path& folder) {
       prior[r] = detail::published_prior_gradient(centre[r], mean[r], prior_inverse[r]);
     comparison.compare(prior, numbers<double>(json["grad_log_prior_as_called"]), case_name(json) + " prior");
   });
-  EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(SolverGolden, SvMpcGradient) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller/svmpc_grad");
-  compare_svmpc_gradient(folder);
-}
-
-void compare_phi(const std::filesystem::path& folder) {
-  Comparison comparison("svmpc_phi (float32)", 1e-4);
-  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
-    comparison.next_case();
+TEST(SolverGolden, SvMpcPhi) {
+  compare_cases("svmpc_phi", [&](const Json& json, Comparison& comparison) {
     Batch x(json["samples"]), gradient(json["grad"]), phi(x.rows, x.samples);
     std::vector<float> norms(static_cast<std::size_t>(x.samples));
     const int count = detail::squared_norms(x.view(), x.samples, norms.data());
@@ -118,12 +100,6 @@ void compare_phi(const std::filesystem::path& folder) {
     comparison.compare<float>({2 * with_gradient[0] - repulsion[0]}, {number(json["kernel_01"])},
                               case_name(json) + " kernel", 1);
   });
-  EXPECT_GT(comparison.cases(), 0);
-}
-
-TEST(SolverGolden, SvMpcPhi) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller/svmpc_phi");
-  compare_phi(folder);
 }
 
 }  // namespace

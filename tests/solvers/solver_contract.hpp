@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <ostream>
@@ -11,9 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "slalom/solvers/dial_mpc_options.hpp"
-#include "slalom/solvers/icem_options.hpp"
-#include "slalom/solvers/published/published_solvers.hpp"
+#include "slalom/core/option_access.hpp"
+#include "slalom/solvers/controllers.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/set_option.hpp"
@@ -36,44 +36,59 @@ inline bool published_departs(std::string_view set_name) {
   return set_name == "reverse_mppi_published" || set_name == "sv_mpc_published";
 }
 
+/// A method with the options of configs/published.yaml, in which each section has a method's name.
+inline SolverOptions published_options(const char* method) {
+  SolverOptions options = solver_options(method);
+  std::ifstream file(SLALOM_CONFIGS "/published.yaml");
+  std::string line;
+  while (std::getline(file, line) && line != std::string(method) + ":") {
+  }
+  while (std::getline(file, line) && line.starts_with("  ")) {
+    const std::size_t colon = line.find(": ");
+    if (!set_option(options, line.substr(2, colon - 2), line.substr(colon + 2)))
+      throw std::logic_error("unknown option " + line);
+  }
+  return options;
+}
+
 /// Every registered method with its defaults, those of the library with the published options, and variants
 /// of them.
 inline std::vector<OptionSet> option_sets() {
   std::vector<OptionSet> sets;
   for (const char* name : solver_names()) sets.push_back({name, solver_options(name)});
   for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"})
-    sets.push_back({std::string(name) + "_published", published_solver_options(name)});
+    sets.push_back({std::string(name) + "_published", published_options(name)});
   for (OptionSet& s : sets)  // the published sv_mpc promises no bounds
     if (bool* const clamp = s.options.find<bool>("clamp_solution")) *clamp = true;
-  sets.push_back({"svg_mppi_nominal_only", SvgMppiOptions{.adapt_covariance = false}});
-  sets.push_back({"svg_mppi_covariance_only", SvgMppiOptions{.use_nominal = false}});
-  sets.push_back({"svg_mppi_neither", SvgMppiOptions{.use_nominal = false, .adapt_covariance = false}});
-  sets.push_back(
-      {"svg_mppi_five_guides", SvgMppiOptions{.guides = {.count = 5, .weight = GuideWeight::importance}}});
-  sets.push_back({"svg_mppi_pooled_paths",
-                  SvgMppiOptions{.guides = {.count = 3}, .published = {.fit_all_guides = true}}});
-  sets.push_back(
+  const OptionSet variants[] = {
+      {"svg_mppi_nominal_only", SvgMppiOptions{.adapt_covariance = false}},
+      {"svg_mppi_covariance_only", SvgMppiOptions{.use_nominal = false}},
+      {"svg_mppi_neither", SvgMppiOptions{.use_nominal = false, .adapt_covariance = false}},
+      {"svg_mppi_five_guides", SvgMppiOptions{.guides = {.count = 5, .weight = GuideWeight::importance}}},
+      {"svg_mppi_pooled_paths",
+       SvgMppiOptions{.guides = {.count = 3}, .published = {.fit_all_guides = true}}},
       {"svg_mppi_around_solution", SvgMppiOptions{.guides = {.count = 1,
                                                              .gradient_samples = 100,
                                                              .restart = false,
-                                                             .sample_around = SampleCentre::solution}}});
-  sets.push_back({"reverse_mppi_without_rejection", ReverseMppiOptions{.reject_samples = false}});
-  sets.push_back({"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}});
-  sets.push_back({"sv_mpc_splines", SvMpcOptions{.control_points = 5}});
-  sets.push_back({"cem_send_best", CemOptions{.send_best = true}});
-  sets.push_back({"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}});
-  sets.push_back({"mppi_knots", MppiOptions{.noise = {.knots = 5}}});
-  sets.push_back({"mppi_target_ess_fraction", MppiOptions{.weighting = {.target_ess_fraction = 0.03}}});
-  sets.push_back({"mppi_smoothed", MppiOptions{.smoothing = {.half_width = 3, .degree = 2}}});
-  sets.push_back({"svg_mppi_all_parts", SvgMppiOptions{.noise = {.exponent = 1},
-                                                       .weighting = {.target_ess_fraction = 0.03},
-                                                       .smoothing = {.half_width = 2}}});
-  sets.push_back({"icem_mean", IcemOptions{.send_best = false}});
-  sets.push_back({"dial_mpc_all_parts", DialMpcOptions{.noise = {.exponent = 1},
-                                                       .weighting = {.target_ess_fraction = 0.03},
-                                                       .smoothing = {.half_width = 2}}});
-  sets.push_back({"svg_mppi_knots", SvgMppiOptions{.noise = {.knots = 5}}});
-  sets.push_back({"cem_coloured", CemOptions{.noise = {.exponent = 2}}});
+                                                             .sample_around = SampleCentre::solution}}},
+      {"reverse_mppi_without_rejection", ReverseMppiOptions{.reject_samples = false}},
+      {"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}},
+      {"sv_mpc_splines", SvMpcOptions{.control_points = 5}},
+      {"cem_send_best", CemOptions{.send_best = true}},
+      {"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}},
+      {"mppi_knots", MppiOptions{.noise = {.knots = 5}}},
+      {"mppi_target_ess_fraction", MppiOptions{.weighting = {.target_ess_fraction = 0.03}}},
+      {"mppi_smoothed", MppiOptions{.smoothing = {.half_width = 3, .degree = 2}}},
+      {"svg_mppi_all_parts", SvgMppiOptions{.noise = {.exponent = 1},
+                                            .weighting = {.target_ess_fraction = 0.03},
+                                            .smoothing = {.half_width = 2}}},
+      {"icem_mean", IcemOptions{.send_best = false}},
+      {"dial_mpc_all_parts", DialMpcOptions{.noise = {.exponent = 1},
+                                            .weighting = {.target_ess_fraction = 0.03},
+                                            .smoothing = {.half_width = 2}}},
+      {"svg_mppi_knots", SvgMppiOptions{.noise = {.knots = 5}}},
+      {"cem_coloured", CemOptions{.noise = {.exponent = 2}}}};
+  sets.insert(sets.end(), std::begin(variants), std::end(variants));
   return sets;
 }
 

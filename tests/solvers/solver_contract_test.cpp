@@ -40,24 +40,6 @@ TEST_P(SolverContract, FindsTheOptimumOfALinearQuadraticProblem) {
   EXPECT_LT(excess, tolerance) << "optimal " << optimal;
 }
 
-TEST_P(SolverContract, KeepsBoundsThatExcludeZero) {
-  const auto solver = make(2, [](SolverOptions& o) {
-    small(o);
-    set(o, "input_min", {0.5, -3.0});
-    set(o, "input_max", {0.7, -1.0});
-  });
-  const auto evaluator = simple(2, [](float a, float b, int) { return 100.0 * a + b; });
-  for (int i = 0; i < 10; ++i) {
-    const auto& result = solver->solve(evaluator, {.elapsed = 0.03});
-    for (std::size_t k = 0; k < 10; ++k) {
-      EXPECT_GE(static_cast<double>(result.inputs[2 * k]), 0.5);
-      EXPECT_LE(static_cast<double>(result.inputs[2 * k]), 0.7);
-      EXPECT_GE(static_cast<double>(result.inputs[2 * k + 1]), -3.0);
-      EXPECT_LE(static_cast<double>(result.inputs[2 * k + 1]), -1.0);
-    }
-  }
-}
-
 TEST_P(SolverContract, EverySampleIsWithinBounds) {
   if (GetParam().name == "sv_mpc_published") GTEST_SKIP() << "the published particles leave the bounds";
   const auto solver = make(1, small);
@@ -72,11 +54,11 @@ TEST_P(SolverContract, EverySampleIsWithinBounds) {
   }
 }
 
-TEST_P(SolverContract, HandlesManyInputsOfDifferentScale) {
+TEST_P(SolverContract, KeepsTheBoundsOfManyInputsOfDifferentScale) {
   const int inputs = 7;
   std::vector<double> low, high, variance;
   for (int i = 0; i < inputs; ++i) {
-    low.push_back(-std::pow(2.0, i));
+    low.push_back(i % 2 ? std::pow(2.0, i) : -std::pow(2.0, i));  // every other one excludes 0
     high.push_back(std::pow(3.0, i));
     variance.push_back(std::pow(4.0, i) / 16);
   }
@@ -93,7 +75,7 @@ TEST_P(SolverContract, HandlesManyInputsOfDifferentScale) {
     return std::pair(cost, false);
   });
   for (int n = 0; n < 5; ++n) {
-    const auto& result = solver->solve(evaluator, {});
+    const auto& result = solver->solve(evaluator, {.elapsed = 0.03});
     for (std::size_t k = 0; k < result.inputs.size(); ++k) {
       EXPECT_GE(static_cast<double>(result.inputs[k]), low[k % inputs]);
       EXPECT_LE(static_cast<double>(result.inputs[k]), high[k % inputs]);

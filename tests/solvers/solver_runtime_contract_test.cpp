@@ -13,6 +13,7 @@ using namespace testing;
 class SolverRuntimeContract : public SolverContract {};
 
 TEST_P(SolverRuntimeContract, SameBitsForAnyNumberOfThreads) {
+  const std::vector<float> proposals(2 * 12, 0.5f);
   std::vector<float> expected;
   for (const int threads : {1, 2, 7, 16}) {
     const auto solver = make(1, [threads](SolverOptions& o) {
@@ -26,7 +27,7 @@ TEST_P(SolverRuntimeContract, SameBitsForAnyNumberOfThreads) {
     std::vector<float> seen;
     for (int i = 0; i < 4; ++i) {
       evaluator.set_state({1.0 - 0.1 * i, 0.3});
-      const auto& result = solver->solve(evaluator, {.elapsed = 0.025});
+      const auto& result = solver->solve(evaluator, {.elapsed = 0.025, .proposals = {proposals, i % 3}});
       seen.insert(seen.end(), result.inputs.begin(), result.inputs.end());
       seen.insert(seen.end(), result.weights.begin(), result.weights.end());
       seen.insert(seen.end(), result.variances.begin(), result.variances.end());
@@ -129,7 +130,7 @@ TEST_P(SolverRuntimeContract, DeadlineReturnsTheBestSoFar) {
   });
   const auto quick = simple(1, [](float a, float b, int) { return a + b; });
   for (int i = 0; i < 2; ++i) solver->solve(quick, {});
-  // A clock of a million hours a call cannot be met: nothing is evaluated, the last plan comes back.
+  // No time is left: nothing is evaluated, the last plan comes back.
   const auto& result = solver->solve(quick, {.deadline = 0});
   EXPECT_EQ(result.status, Status::deadline);
   expect_usable(result, 10, -2, 1);
@@ -164,9 +165,8 @@ TEST_P(SolverRuntimeContract, WarmStartFollowsTheClock) {
     return std::pair(cost, false);
   });
   for (int i = 0; i < 10; ++i) solver->solve(ramp, {});
-  std::vector<float> before(solver->solve(ramp, {}).inputs.begin(), solver->solve(ramp, {}).inputs.end());
   const auto last = solver->solve(ramp, {}).inputs;
-  before.assign(last.begin(), last.end());
+  const std::vector<float> before(last.begin(), last.end());
   const auto broken = simple(1, [](float, float, int) { return std::nan(""); });
   const auto shifted = solver->solve(broken, {.elapsed = 0.075}).inputs;  // a step and a half
   if (GetParam().name.starts_with("reverse_mppi") || GetParam().name == "cem_send_best" ||
@@ -184,8 +184,8 @@ INSTANTIATE_TEST_SUITE_P(Solvers, SolverRuntimeContract, ::testing::ValuesIn(opt
 /// The published program does not clamp what its particles send.
 TEST(SvMpc, OnlyTheUnclampedSolutionLeavesTheBounds) {
   const auto furthest = [](bool clamp) {
-    SvMpcOptions options = published_sv_mpc();
-    options.published.clamp_solution = clamp;
+    SolverOptions options = published_options("sv_mpc");
+    set(options, "clamp_solution", clamp);
     const auto solver = make_solver(options, 1);
     EXPECT_EQ(solver->keeps_bounds(), clamp);
     const auto evaluator = FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {

@@ -6,11 +6,9 @@
 namespace slalom::testing {
 namespace {
 
-void compare_softmax(const std::filesystem::path& folder) {
-  Comparison comparison("softmax (float32)", 1e-4);
+TEST(SolverGolden, Softmax) {
   int shifted = 0;
-  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
-    comparison.next_case();
+  compare_cases("softmax", [&](const Json& json, Comparison& comparison) {
     auto exact = numbers<double>(json["costs"]);
     // Costs whose differences float32 cannot tell, for their size, are given relative to the least: the
     // weights do not depend on a common offset.
@@ -19,7 +17,7 @@ void compare_softmax(const std::filesystem::path& folder) {
         std::numeric_limits<float>::epsilon() * std::abs(min_cost) / number(json["lambda"]);
     if (resolution > 0.1 * 1e-4) {
       for (double& cost : exact) cost -= min_cost;
-      ++shifted;
+      comparison.note(std::to_string(++shifted) + " of them relative to the least cost, for their precision");
     }
     std::vector<float> costs(exact.begin(), exact.end());
     costs.resize((costs.size() + simd::padding - 1) / simd::padding * simd::padding,
@@ -32,20 +30,10 @@ void compare_softmax(const std::filesystem::path& folder) {
     detail::kernels::scale(1.0f / (sums.weight + 1e-10f), range, weights.data());
     comparison.compare(weights, numbers<double>(json["weights"]), case_name(json));
   });
-  comparison.note(std::to_string(shifted) +
-                  " of them beyond the precision, taken relative to the least cost");
-  EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(SolverGolden, Softmax) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller/softmax");
-  compare_softmax(folder);
-}
-
-void compare_control_term(const std::filesystem::path& folder) {
-  Comparison comparison("control_term (float32)", 1e-4);
-  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
-    comparison.next_case();
+TEST(SolverGolden, ControlTerm) {
+  compare_cases("control_term", [&](const Json& json, Comparison& comparison) {
     Batch samples(json["samples"]);
     const auto mean = numbers<float>(json["mean"]), nominal = numbers<float>(json["nominal"]);
     const auto variance = numbers<float>(json["cov"]);
@@ -56,39 +44,28 @@ void compare_control_term(const std::filesystem::path& folder) {
     detail::kernels::add_linear(samples.view(), coefficients.data(), samples.range(), costs.data());
     comparison.compare(costs, numbers<double>(json["costs_with_control_term"]), case_name(json));
   });
-  EXPECT_GT(comparison.cases(), 0);
-}
-
-TEST(SolverGolden, ControlTerm) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller/control_term");
-  compare_control_term(folder);
 }
 
 TEST(SolverGolden, GaussianFitting) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller/gaussian_fitting");
-  Comparison comparison("gaussian_fitting, clamped (double)", 1e-4);
   int undetermined = 0;
-  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
-    comparison.next_case();
+  const auto compare = [&](const Json& json, Comparison& comparison) {
     const auto x = numbers<double>(json["x"]), y = numbers<double>(json["y"]);
     const auto fit = published_fit(x, y);
     const double fitted = std::sqrt(detail::fitted_variance(fit, true)), expected = number(json["variance"]);
     EXPECT_EQ(std::isinf(fitted), std::isinf(expected)) << case_name(json) << ": the rank decision differs";
-    undetermined += std::isinf(expected);
+    if (std::isinf(expected))
+      comparison.note(std::to_string(++undetermined) + " of them undetermined, every decision equal");
     comparison.compare<double>({std::clamp(fitted, 0.001, 0.1)}, {std::clamp(expected, 0.001, 0.1)},
                                case_name(json), 1);
     if (number(json["cond_A"]) < 1e8) {
       EXPECT_NEAR(std::clamp(fitted, 0.001, 0.1), std::clamp(expected, 0.001, 0.1), 1e-11) << case_name(json);
     }
-  });
-  comparison.note(std::to_string(undetermined) + " of them undetermined, every decision equal");
-  EXPECT_GT(comparison.cases(), 0);
+  };
+  compare_cases("gaussian_fitting", compare, ", clamped (double)");
 }
 
-void compare_mirror_descent(const std::filesystem::path& folder) {
-  Comparison comparison("md_update (float32)", 1e-4);
-  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
-    comparison.next_case();
+TEST(SolverGolden, MirrorDescent) {
+  compare_cases("md_update", [&](const Json& json, Comparison& comparison) {
     auto mean = numbers<float>(json["prior_mean"]), variance = numbers<float>(json["prior_cov"]);
     const auto prior_mean = mean, prior_variance = variance;
     const auto weighted_mean = numbers<float>(json["weighted_mean"]),
@@ -104,12 +81,6 @@ void compare_mirror_descent(const std::filesystem::path& folder) {
     comparison.compare(mean, numbers<double>(json["interp_mean"]), case_name(json) + " warm mean");
     comparison.compare(variance, numbers<double>(json["interp_cov"]), case_name(json) + " warm variance");
   });
-  EXPECT_GT(comparison.cases(), 0);
-}
-
-TEST(SolverGolden, MirrorDescent) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller/md_update");
-  compare_mirror_descent(folder);
 }
 
 }  // namespace

@@ -146,6 +146,62 @@ struct SteinDirections {
   }
 };
 
+/// Sums the lanes in pairs, which has fewer roundings per value and a shorter chain of dependent additions.
+template <class F>
+SLALOM_INLINE float sum_by_halves(const F& value) {
+  float part[F::lanes];
+  value.store(part);
+  for (int n = F::lanes / 2; n > 0; n /= 2)
+    for (int i = 0; i < n; ++i) part[i] += part[i + n];
+  return part[0];
+}
+
+struct TwoMoments {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& v, const float* first, const float* second, const float* centre,
+                                Range range, float* sums) {
+    using F = Pack<Target>;
+    for (int r = 0; r < v.rows; ++r) {
+      const float* values = v.row(r);
+      const F middle(centre[r]);
+      F sum0(0.0f), square0(0.0f), sum1(0.0f), square1(0.0f);
+      for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+        const F value = F::load(values + k), w0 = F::load(first + k), w1 = F::load(second + k);
+        const F difference = value - middle;
+        const F distance = difference * difference;
+        sum0 = sum0 + w0 * value;
+        square0 = square0 + w0 * distance;
+        sum1 = sum1 + w1 * value;
+        square1 = square1 + w1 * distance;
+      }
+      float* to = sums + moments * r;
+      to[0] = sum_by_halves(sum0);
+      to[1] = sum_by_halves(square0);
+      to[2] = sum_by_halves(sum1);
+      to[3] = sum_by_halves(square1);
+    }
+  }
+};
+
+struct SplitWeights {
+  template <class Target>
+  SLALOM_KERNEL static WeightSums<float> run(float falling, float growing, Range range, float* evaluated,
+                                             float* rejected) {
+    using F = Pack<Target>;
+    const F down(1.0f / falling), up(1.0f / growing), zero(0.0f);
+    F positive(0.0f), negative(0.0f);
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      const F difference = F::load(evaluated + k) * down - F::load(rejected + k) * up;
+      const F good = max(difference, zero), bad = max(-difference, zero);
+      good.store(evaluated + k);
+      bad.store(rejected + k);
+      positive = positive + good;
+      negative = negative + bad;
+    }
+    return {sum_by_halves(positive), sum_by_halves(negative), 0};
+  }
+};
+
 struct Gather {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows& from, const int* indices, Range range, const Rows& to) {
@@ -246,6 +302,16 @@ void published_rejection(const Rows& v, const RejectionRows& densities, Range ra
 
 void rejection_logarithm(const float* rejected, float offset, Range range, float* own) {
   simd::dispatch<RejectionLogarithm>(rejected, offset, range, own);
+}
+
+void two_moments(const Rows& v, const float* first, const float* second, const float* centre, Range range,
+                 float* sums) {
+  simd::dispatch<TwoMoments>(v, first, second, centre, range, sums);
+}
+
+WeightSums<float> split_weights(float falling, float growing, Range range, float* evaluated,
+                                float* rejected) {
+  return simd::dispatch<SplitWeights>(falling, growing, range, evaluated, rejected);
 }
 
 }  // namespace slalom::detail::kernels

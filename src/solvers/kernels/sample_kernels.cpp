@@ -78,20 +78,26 @@ struct Colour {
   }
 };
 
+/// sum over rows of coefficient[row] v[row][k], for a pack of samples; two sums that do not wait for each
+/// other.
+template <class F>
+SLALOM_INLINE F linear_term(const Rows& v, const float* coefficient, int k) {
+  F term0(0.0f), term1(0.0f);
+  int r = 0;
+  for (; r + 1 < v.rows; r += 2) {
+    term0 = term0 + F(coefficient[r]) * F::load(v.row(r) + k);
+    term1 = term1 + F(coefficient[r + 1]) * F::load(v.row(r + 1) + k);
+  }
+  if (r < v.rows) term0 = term0 + F(coefficient[r]) * F::load(v.row(r) + k);
+  return term0 + term1;
+}
+
 struct AddLinear {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows& v, const float* coefficient, Range range, float* totals) {
     using F = Pack<Target>;
-    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
-      F term0(0.0f), term1(0.0f);
-      int r = 0;
-      for (; r + 1 < v.rows; r += 2) {
-        term0 = term0 + F(coefficient[r]) * F::load(v.row(r) + k);
-        term1 = term1 + F(coefficient[r + 1]) * F::load(v.row(r + 1) + k);
-      }
-      if (r < v.rows) term0 = term0 + F(coefficient[r]) * F::load(v.row(r) + k);
-      (F::load(totals + k) + (term0 + term1)).store(totals + k);
-    }
+    for (int k = range.first; k < range.first + range.count; k += F::lanes)
+      (F::load(totals + k) + linear_term<F>(v, coefficient, k)).store(totals + k);
   }
 };
 
@@ -149,14 +155,7 @@ struct Finish {
       cost.store(costs + k);
       F total = cost;
       if (linear) {
-        F term0 = zero, term1 = zero;
-        int r = 0;
-        for (; r + 1 < v.rows; r += 2) {
-          term0 = term0 + F(linear[r]) * F::load(v.row(r) + k);
-          term1 = term1 + F(linear[r + 1]) * F::load(v.row(r + 1) + k);
-        }
-        if (r < v.rows) term0 = term0 + F(linear[r]) * F::load(v.row(r) + k);
-        total = cost + (term0 + term1);
+        total = cost + linear_term<F>(v, linear, k);
         total = select(abs(total) <= largest, total, infinite);
       }
       total.store(totals + k);
@@ -176,6 +175,71 @@ struct Minimum {
     for (int k = range.first; k < range.first + range.count; k += F::lanes)
       least = min(least, F::load(costs + k));
     return least_of(least);
+  }
+};
+
+struct ExponentialWeights {
+  template <class Target>
+  SLALOM_KERNEL static WeightSums<float> run(const float* totals, const float* costs, float least,
+                                             float temperature, Range range, float* weights) {
+    using F = Pack<Target>;
+    const F minimum_cost(least), inverse(1.0f / temperature), zero(0.0f);
+    F weight(0.0f), squared(0.0f), cost(0.0f);
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      const F w = exp((minimum_cost - F::load(totals + k)) * inverse);
+      w.store(weights + k);
+      weight = weight + w;
+      squared = squared + w * w;
+      cost = cost + select(w > zero, w * F::load(costs + k), zero);
+    }
+    return {sum_of(weight), sum_of(squared), sum_of(cost)};
+  }
+};
+
+struct Scale {
+  template <class Target>
+  SLALOM_KERNEL static void run(float factor, Range range, float* values) {
+    using F = Pack<Target>;
+    const F f(factor);
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      (F::load(values + k) * f).store(values + k);
+    }
+  }
+};
+
+/// Sums of w (v - centre), or of w (v - centre)^2, for each row. Uses four running sums, so that additions do
+/// not depend on each other.
+template <bool squares>
+struct WeightedPowers {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& v, const float* weights, const float* centre, Range range,
+                                float* sums) {
+    using F = Pack<Target>;
+    constexpr int step = 4 * F::lanes;
+    const int end = range.first + range.count;
+    for (int r = 0; r < v.rows; ++r) {
+      const float* values = v.row(r);
+      const F middle(centre[r]);
+      F s0(0.0f), s1(0.0f), s2(0.0f), s3(0.0f);
+      const auto term = [&](int k) {
+        const F difference = F::load(values + k) - middle;
+        const F weighted = F::load(weights + k) * difference;
+        if constexpr (squares) {
+          return F(weighted * difference);
+        } else {
+          return weighted;
+        }
+      };
+      int k = range.first;
+      for (; k + step <= end; k += step) {
+        s0 = s0 + term(k);
+        s1 = s1 + term(k + F::lanes);
+        s2 = s2 + term(k + 2 * F::lanes);
+        s3 = s3 + term(k + 3 * F::lanes);
+      }
+      for (; k < end; k += F::lanes) s0 = s0 + term(k);
+      sums[r] = sum_of((s0 + s1) + (s2 + s3));
+    }
   }
 };
 
@@ -212,6 +276,23 @@ CostStatistics finish(const Rows& v, const float* linear, Range range, float* co
 
 float minimum(const float* costs, Range range) {
   return simd::dispatch<Minimum>(costs, range);
+}
+
+WeightSums<float> exponential_weights(const float* totals, const float* costs, float least, float temperature,
+                                      Range range, float* weights) {
+  return simd::dispatch<ExponentialWeights>(totals, costs, least, temperature, range, weights);
+}
+
+void scale(float factor, Range range, float* values) {
+  simd::dispatch<Scale>(factor, range, values);
+}
+
+void weighted_sums(const Rows& v, const float* weights, const float* centre, Range range, float* sums) {
+  simd::dispatch<WeightedPowers<false>>(v, weights, centre, range, sums);
+}
+
+void weighted_squares(const Rows& v, const float* weights, const float* centre, Range range, float* sums) {
+  simd::dispatch<WeightedPowers<true>>(v, weights, centre, range, sums);
 }
 
 }  // namespace slalom::detail::kernels

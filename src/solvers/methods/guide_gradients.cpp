@@ -45,7 +45,6 @@ double Guides::take_gradient(const CostGradient& cost, int g, int iteration) noe
   }
   std::copy_n(theta_[g], rows_, taken_[g]);
   taken_costs_[g] = costs_[own];
-  taken_collided_[g] = collided_[own];
   differentiate(cost, g);
   return part_[g] = iteration > 0 ? std::min(2 * part_[g], 1.0) : 1;
 }
@@ -81,7 +80,6 @@ void Guides::return_if_worse(int g) noexcept {
   std::copy_n(taken_[g], rows_, theta_[g]);
   std::copy_n(taken_[g], rows_, guides_[g]);
   end_costs_[g] = taken_costs_[g];
-  end_collided_[g] = taken_collided_[g];
 }
 
 }  // namespace slalom::detail

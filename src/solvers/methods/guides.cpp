@@ -80,7 +80,6 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       kinks_(count_),
       part_(count_),
       taken_costs_(count_),
-      taken_collided_(count_),
       made_(count_),
       fit_points_(path_costs_.size()),
       density_(path_costs_.size()),
@@ -278,7 +277,6 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
     }
   }
   best_cost_ = end_costs_[best_];
-  best_collides_ = end_collided_[best_] != 0;
   return iterations_;
 }
 
@@ -308,6 +306,18 @@ void Guides::densities(std::span<const int> points) noexcept {
   for (std::size_t i = 0; i < points.size(); ++i) density_[i] /= sum;
 }
 
+/// The variance of the Gaussian that is fitted to row `r` of the points, with their densities.
+double Guides::fit_row(int r, std::span<const int> points) noexcept {
+  const int count = static_cast<int>(points.size());
+  for (int i = 0; i < count; ++i) abscissa_[i] = path_[points[i]][r];
+  const bool published = reproduction().fit_absolute_curvature;
+  const GaussianFit fit =
+      published ? fit_gaussian_as_published(abscissa_.data(), square_.data(), logarithm_.data(), count)
+                : fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), count, log_error_);
+  const double variance = fitted_variance(fit, published);
+  return reproduction().fit_standard_deviation ? std::sqrt(variance) : variance;
+}
+
 void Guides::fit_variance(float* variance) noexcept {
   int count = 0;
   for (int l = 0; l < iterations_; ++l)
@@ -320,18 +330,8 @@ void Guides::fit_variance(float* variance) noexcept {
     fit_weights(density_.data(), count, square_.data(), logarithm_.data());
   }
   for (int r = 0; r < rows_; ++r) {
-    const int input = r % inputs_;
-    const double least = options_.variance_min[input], most = options_.variance_max[input];
-    double fitted = std::numeric_limits<double>::infinity();
-    if (known) {
-      for (int i = 0; i < count; ++i) abscissa_[i] = path_[points[i]][r];
-      const bool published = reproduction().fit_absolute_curvature;
-      const GaussianFit fit =
-          published ? fit_gaussian_as_published(abscissa_.data(), square_.data(), logarithm_.data(), count)
-                    : fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), count, log_error_);
-      fitted = fitted_variance(fit, published);
-      if (reproduction().fit_standard_deviation) fitted = std::sqrt(fitted);
-    }
+    const double fitted = known ? fit_row(r, points) : std::numeric_limits<double>::infinity();
+    const double least = options_.variance_min[r % inputs_], most = options_.variance_max[r % inputs_];
     variance[r] = static_cast<float>(std::clamp(fitted, least, std::max(least, most)));
   }
 }

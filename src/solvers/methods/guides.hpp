@@ -72,10 +72,6 @@ class Guides {
   /// Selects the best guide (equation (12)). Returns the number of iterations made.
   int end_move(const BatchEvaluator& evaluator) noexcept;
 
-  /// The index of the guide with the lowest cost after the last move.
-  int best() const noexcept { return best_; }
-  /// Whether the best guide collides.
-  bool best_collides() const noexcept { return best_collides_; }
   /// The cost of the best guide; infinite if no guide has a finite cost.
   float best_cost() const noexcept { return best_cost_; }
   /// The control sequence [row] of the best guide.
@@ -105,6 +101,7 @@ class Guides {
   void return_if_worse(int guide) noexcept;
   void step(int guide, int iteration, const CostGradient* exact) noexcept;
   void densities(std::span<const int> points) noexcept;
+  double fit_row(int r, std::span<const int> points) noexcept;
 
   /// The index of a point of the paths: a guide after an iteration.
   int point(int iteration, int guide) const noexcept { return iteration * count_ + guide; }
@@ -142,15 +139,13 @@ class Guides {
   Matrix<double> taken_;            ///< with exact gradients: the best point of a guide [guide][row]
   std::vector<double> part_;        ///< part of a step that a guide makes from `taken_` [guide]
   std::vector<float> taken_costs_;  ///< [guide]
-  std::vector<std::uint8_t> taken_collided_;  ///< [guide]
-  std::vector<int> made_;                     ///< iterations made [share]
-  std::vector<int> fit_points_;               ///< indices of the fitted points
+  std::vector<int> made_;           ///< iterations made [share]
+  std::vector<int> fit_points_;     ///< indices of the fitted points
   double log_error_ = 0;  ///< error of the logarithms of the densities, from the rounding of the costs
   std::vector<double> density_, square_, logarithm_, abscissa_;  ///< [fitted point]
   int shares_ = 1;
   int iterations_ = 0;
   int best_ = 0;
-  bool best_collides_ = false;
   float best_cost_ = 0;
 };
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "slalom/solvers/dial_mpc_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "solvers/methods/mppi_update.hpp"
 
@@ -9,21 +9,40 @@ namespace slalom {
 
 namespace {
 
-/// `mppi`: one closed-form update with zero as the nominal sequence.
+/// The additions of `dial_mpc` to `mppi`; none with these defaults.
+struct Annealing {
+  int iterations = 1;          ///< updates in a solve
+  int first_iterations = 1;    ///< updates in the first solve
+  double iteration_decay = 1;  ///< factor of the standard deviations from one update to the next
+  double horizon_decay = 1;    ///< factor of the standard deviations from the last step to the first
+};
+
+/// `mppi`: a closed-form update with zero as the nominal sequence. With `Annealing` it is `dial_mpc` (Xue et
+/// al. 2024, algorithm 1): several updates, with less noise in each.
 class MppiSolver final : public SolverBase {
  public:
-  MppiSolver(const MppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+  MppiSolver(const char* name, const MppiOptions& options, const Annealing& annealing, int inputs,
+             std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
+        name_(name),
+        annealing_(annealing),
         shift_(options.shift_warm_start),
         update_(options, inputs),
         mean_(size()),
         shifted_(size()),
-        nominal_(size()),
-        variance_(spread(options.variance)) {
+        zero_(size()),
+        first_variance_(spread(options.variance)),
+        variance_(size()) {
+    // The inputs at the start of the horizon were refined in the most solves, so they get the least noise.
+    for (std::size_t r = 0; r < size(); ++r) {
+      const std::size_t step = r / static_cast<std::size_t>(inputs);
+      const double from_end = horizon() > 1 ? 1 - static_cast<double>(step) / (horizon() - 1) : 0;
+      first_variance_[r] *= static_cast<float>(std::pow(annealing.horizon_decay, 2 * from_end));
+    }
     reset(options.seed);
   }
 
-  const char* name() const noexcept override { return MppiOptions::method; }
+  const char* name() const noexcept override { return name_; }
   std::unique_ptr<Solver> clone() const override {
     auto copy = std::make_unique<MppiSolver>(*this);
     copy->bind_result();
@@ -35,9 +54,10 @@ class MppiSolver final : public SolverBase {
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
     update_.reset();
+    has_solution_ = false;
     std::fill(mean_.begin(), mean_.end(), 0.0f);
-    std::fill(nominal_.begin(), nominal_.end(), 0.0f);
     clamp(mean_.data());
+    std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
     result_ = {};
     bind_result();
   }
@@ -54,26 +74,44 @@ class MppiSolver final : public SolverBase {
       std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
     }
     update_.samples().propose(request.proposals);
-    result_.status = update_.update(evaluator, key(0), nominal_.data(), variance_.data(), low().data(),
-                                    high().data(), pool(), deadline, mean_.data(), result_);
-    result_.iterations = 1;
+    make_updates(evaluator, deadline);
     next_solve();
     result_.times.total = detail::seconds(start, detail::Clock::now());
     return result_;
   }
 
  private:
-  /// Lets the result point to this solver's values.
+  /// Points the spans of the result to this solver's values.
   void bind_result() noexcept {
     result_.inputs = result_.mean = mean_;
-    result_.nominal = nominal_;
+    result_.nominal = zero_;
     result_.variances = variance_;
     if (result_.samples) detail::bind_samples(update_.samples(), result_);
   }
 
+  void make_updates(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
+    const int wanted = has_solution_ ? annealing_.iterations : annealing_.first_iterations;
+    const int few_samples_before = result_.few_samples_solves;
+    double scale = 1;
+    result_.iterations = 0;
+    for (int i = 0; i < wanted; ++i, scale *= annealing_.iteration_decay * annealing_.iteration_decay) {
+      for (std::size_t r = 0; r < size(); ++r) variance_[r] = static_cast<float>(scale * first_variance_[r]);
+      result_.few_samples_solves = few_samples_before;  // the last update counts for the solve
+      result_.status = update_.update(evaluator, key(i), zero_.data(), variance_.data(), low().data(),
+                                      high().data(), pool(), deadline, mean_.data(), result_);
+      if (result_.status == Status::deadline || result_.status == Status::degenerate) return;
+      has_solution_ = true;
+      result_.iterations = i + 1;
+    }
+  }
+
+  const char* name_;
+  Annealing annealing_;
   bool shift_;
   detail::MppiUpdate update_;
-  std::vector<float> mean_, shifted_, nominal_, variance_;  ///< [row]
+  std::vector<float> mean_, shifted_, zero_;      ///< [row]
+  std::vector<float> first_variance_, variance_;  ///< [row]
+  bool has_solution_ = false;
 };
 
 }  // namespace
@@ -81,7 +119,27 @@ class MppiSolver final : public SolverBase {
 std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, MppiOptions::method, inputs);
-  return std::make_unique<MppiSolver>(options, inputs, std::move(pool));
+  return std::make_unique<MppiSolver>(MppiOptions::method, options, Annealing{}, inputs, std::move(pool));
+}
+
+std::unique_ptr<Solver> make_solver(const DialMpcOptions& o, int inputs, std::shared_ptr<ThreadPool> pool) {
+  validate_options(o, DialMpcOptions::method, inputs);
+  const MppiOptions options{.horizon = o.horizon,
+                            .samples = o.samples,
+                            .temperature = o.temperature,
+                            .variance = o.variance,
+                            .input_min = o.input_min,
+                            .input_max = o.input_max,
+                            .noise = o.noise,
+                            .weighting = o.weighting,
+                            .smoothing = o.smoothing,
+                            .control_cost_discount = 1,  // no control term
+                            .zero_mean_share = o.zero_mean_share,
+                            .shift_warm_start = o.shift_warm_start,
+                            .seed = o.seed,
+                            .threads = o.threads};
+  const Annealing annealing{o.iterations, o.first_iterations, o.iteration_decay, o.horizon_decay};
+  return std::make_unique<MppiSolver>(DialMpcOptions::method, options, annealing, inputs, std::move(pool));
 }
 
 }  // namespace slalom

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 namespace slalom::detail {
 
@@ -31,55 +31,43 @@ WeightSums<double> Weighting::try_temperature(SampleSet& samples, double logarit
 }
 
 WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcept {
-  const double wanted = std::max(settings_.share * samples.samples(), 1.0);
-  double at = std::clamp(std::log(temperature_), lowest, highest);
-  double low = at, high = at, low_error = 0, high_error = 0, stride = 1;
-  bool below = false, above = false;  // whether a temperature that is too low or too high is known
-  int side = 0;                       // the side of the last trial: -1 below, 1 above
+  const double wanted = std::max(share_ * samples.samples(), 1.0);
+  struct Trial {
+    double at, error;  // logarithms of the temperature and of effective sample size / wanted
+  };
+  std::optional<Trial> low, high;  // the last temperatures that were too low and too high
+  double at = std::clamp(std::log(temperature_), lowest, highest), stride = 1;
+  bool was_too_low = false;
   for (int trial = 0; trial < maximum_trials; ++trial) {
     const WeightSums<double> sums = try_temperature(samples, at, pool);
     const double error = std::log(std::max(effective(sums), 1e-3) / wanted);
     if (std::abs(error) < tolerance) return sums;
-    (error < 0 ? low : high) = at;
-    (error < 0 ? low_error : high_error) = error;
-    (error < 0 ? below : above) = true;
-    if (below && above) {
+    const bool too_low = error < 0;
+    (too_low ? low : high) = Trial{at, error};
+    if (low && high) {
       // The Illinois rule: if the same end remains twice, its error is halved, so that false position
       // converges quickly.
-      const int now = error < 0 ? -1 : 1;
-      if (now == side) (error < 0 ? high_error : low_error) /= 2;
-      side = now;
-      at = low + (high - low) * low_error / (low_error - high_error);
-    } else if ((error < 0 && at >= highest) || (error > 0 && at <= lowest)) {
+      if (too_low == was_too_low) (too_low ? high : low)->error /= 2;
+      at = low->at + (high->at - low->at) * low->error / (low->error - high->error);
+    } else if (at == (too_low ? highest : lowest)) {
       break;
     } else {
-      at = std::clamp(at + (error < 0 ? stride : -stride), lowest, highest);
+      at = std::clamp(at + (too_low ? stride : -stride), lowest, highest);
       stride *= 2;
     }
+    was_too_low = too_low;
   }
-  if (below && above) return try_temperature(samples, at, pool);
-  return try_temperature(samples, std::log(settings_.temperature), pool);
+  return try_temperature(samples, low && high ? at : std::log(first_temperature_), pool);
 }
-
-MppiUpdate::MppiUpdate(const Settings& settings, SampleSet samples, const Weighting& weighting,
-                       Smoother smoother)
-    : settings_(settings),
-      samples_(std::move(samples)),
-      weighting_(weighting),
-      smoother_(std::move(smoother)),
-      deviation_(samples_.rows()),
-      linear_(deviation_.size()),
-      zero_(deviation_.size()),
-      sums_(deviation_.size()) {}
 
 /// Computes the coefficients of the control term. Correlated samples have the covariance D C D, where D holds
 /// their standard deviations and C their correlations.
 void MppiUpdate::set_control_term(double temperature, const float* mean, const float* nominal,
                                   const float* variance) noexcept {
-  control_coefficients(temperature, settings_.discount, settings_.inverse_variance_offset, mean, nominal,
-                       variance, samples_.rows(), linear_.data());
+  control_coefficients(temperature, discount_, inverse_variance_offset_, mean, nominal, variance,
+                       samples_.rows(), linear_.data());
   if (!samples_.shape().correlated()) return;
-  const double factor = temperature * (1.0 - settings_.discount);
+  const double factor = temperature * (1.0 - discount_);
   const auto scaled = [&](std::size_t r, double value) {
     return deviation_[r] > 0 ? value / deviation_[r] : 0.0;
   };
@@ -90,7 +78,7 @@ void MppiUpdate::set_control_term(double temperature, const float* mean, const f
   for (std::size_t r = 0; r < sums_.size(); ++r) sums_[r] = scaled(r, difference(r));
   samples_.shape().whiten_twice(sums_.data());
   for (std::size_t r = 0; r < sums_.size(); ++r) {
-    const double offset = deviation_[r] > 0 ? settings_.inverse_variance_offset * difference(r) : 0.0;
+    const double offset = deviation_[r] > 0 ? inverse_variance_offset_ * difference(r) : 0.0;
     linear_[r] = static_cast<float>(factor * (scaled(r, sums_[r]) + offset));
   }
 }
@@ -103,7 +91,7 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
   // If the temperature is adapted, the control term is stored separately, in units of the temperature.
   const bool seeks = weighting_.seeks();
   set_control_term(seeks ? 1.0 : weighting_.temperature(), mean, nominal, variance);
-  const int zero_mean_from = static_cast<int>((1.0 - settings_.zero_mean_share) * samples_.samples());
+  const int zero_mean_from = static_cast<int>((1.0 - zero_mean_share_) * samples_.samples());
   const BatchStatistics statistics =
       samples_.draw_and_evaluate(evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from},
                                  seeks ? nullptr : linear_.data(), pool, deadline);
@@ -117,8 +105,8 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
     } else {
       sums = weighting_.weigh(samples_, statistics.minimum_total, pool);
     }
-    const double normaliser = 1.0 / (sums.weight + settings_.normaliser_offset);
-    samples_.scaled_sums(normaliser, zero_.data(), sums_.data(), pool);
+    const double normaliser = 1.0 / (sums.weight + normaliser_offset_);
+    samples_.weighted_sums(zero_.data(), sums_.data(), pool, normaliser);
     std::copy(sums_.begin(), sums_.end(), mean);
     if (smoother_.active()) smoother_.apply(mean);
     for (std::size_t r = 0; r < rows; ++r) mean[r] = std::clamp(mean[r], low[r], high[r]);

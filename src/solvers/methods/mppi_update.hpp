@@ -17,20 +17,17 @@ namespace slalom::detail {
 /// value. In J = S + lambda g, the control term g is in units of lambda.
 class Weighting {
  public:
-  struct Settings {
-    double temperature = 1;  ///< lambda
-    double share = 0;        ///< effective sample size / samples; 0: lambda is fixed
-  };
-
-  Weighting() = default;
-  explicit Weighting(const Settings& settings) : settings_(settings), temperature_(settings.temperature) {}
+  /// `temperature` is lambda, at first or always; `share` is effective sample size / samples, or 0 if lambda
+  /// is fixed.
+  Weighting(double temperature, double share)
+      : first_temperature_(temperature), share_(share), temperature_(temperature) {}
 
   /// Whether the temperature is adapted.
-  bool seeks() const noexcept { return settings_.share > 0; }
+  bool seeks() const noexcept { return share_ > 0; }
   /// The temperature of the last weights.
   double temperature() const noexcept { return temperature_; }
   /// Returns to the configured temperature.
-  void reset() noexcept { temperature_ = settings_.temperature; }
+  void reset() noexcept { temperature_ = first_temperature_; }
 
   /// Sets the samples' weights from their totals. `least` is the lowest total. The weights are not
   /// normalised. Returns their sums.
@@ -44,8 +41,7 @@ class Weighting {
  private:
   WeightSums<double> try_temperature(SampleSet& samples, double logarithm, ThreadPool& pool) noexcept;
 
-  Settings settings_;
-  double temperature_ = 1;
+  double first_temperature_, share_, temperature_;
 };
 
 /// The closed-form update of MPPI (Williams et al., "Information-Theoretic Model Predictive Control", IEEE
@@ -58,23 +54,22 @@ class Weighting {
 /// noise (NoiseShape), the weights and lambda (Weighting) can be replaced, and u can be smoothed (Smoother).
 class MppiUpdate {
  public:
-  struct Settings {
-    double discount = 0;                 ///< alpha
-    double inverse_variance_offset = 0;  ///< added to 1 / variance, 1/input^2
-    double normaliser_offset = 0;        ///< added to the sum of the weights
-    double zero_mean_share = 0;          ///< fraction of the samples that are drawn around zero
-  };
-
   /// Takes the options of `mppi` or `svg_mppi`.
   template <class Options>
   MppiUpdate(const Options& o, int inputs)
-      : MppiUpdate({o.control_cost_discount, o.published.inverse_variance_offset,
-                    o.published.normaliser_offset, o.zero_mean_share},
-                   SampleSet(o.horizon, inputs, o.samples, NoiseShape(o.noise, o.horizon, inputs)),
-                   Weighting({o.temperature, o.weighting.target_ess_fraction}),
-                   o.smoothing.half_width > 0
-                       ? Smoother(o.horizon, inputs, o.smoothing.half_width, o.smoothing.degree)
-                       : Smoother()) {}
+      : discount_(o.control_cost_discount),
+        inverse_variance_offset_(o.published.inverse_variance_offset),
+        normaliser_offset_(o.published.normaliser_offset),
+        zero_mean_share_(o.zero_mean_share),
+        samples_(o.horizon, inputs, o.samples, NoiseShape(o.noise, o.horizon, inputs)),
+        weighting_(o.temperature, o.weighting.target_ess_fraction),
+        smoother_(o.smoothing.half_width > 0
+                      ? Smoother(o.horizon, inputs, o.smoothing.half_width, o.smoothing.degree)
+                      : Smoother()),
+        deviation_(samples_.rows()),
+        linear_(deviation_.size()),
+        zero_(deviation_.size()),
+        sums_(deviation_.size()) {}
 
   SampleSet& samples() noexcept { return samples_; }
   /// Returns to the configured temperature.
@@ -88,12 +83,13 @@ class MppiUpdate {
                 SolveResult& result) noexcept;
 
  private:
-  MppiUpdate(const Settings& settings, SampleSet samples, const Weighting& weighting, Smoother smoother);
-
   void set_control_term(double temperature, const float* mean, const float* nominal,
                         const float* variance) noexcept;
 
-  Settings settings_;
+  double discount_;                 ///< alpha
+  double inverse_variance_offset_;  ///< added to 1 / variance, 1/input^2
+  double normaliser_offset_;        ///< added to the sum of the weights
+  double zero_mean_share_;          ///< fraction of the samples that are drawn around zero
   SampleSet samples_;
   Weighting weighting_;
   Smoother smoother_;

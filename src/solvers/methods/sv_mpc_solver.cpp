@@ -102,7 +102,8 @@ class SvMpcSolver final : public SolverBase {
     result_.guides = {};
     if (usable) {
       sums = particles_.weigh(statistics.minimum_total, static_cast<float>(options_.temperature), pool());
-      particles_.scale_weights(1.0 / (sums.weight + reproduction().normaliser_offset));
+      detail::kernels::scale(static_cast<float>(1.0 / (sums.weight + reproduction().normaliser_offset)),
+                             {0, particles_.stride()}, particles_.weights().data());
       update_solution();
     } else {
       std::fill(particles_.weights().begin(), particles_.weights().end(), 0.0f);

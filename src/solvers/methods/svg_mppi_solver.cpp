@@ -118,20 +118,19 @@ class SvgMppiSolver final : public SolverBase {
     }
   }
 
-  /// Moves the guides. Threads that have no guide draw the noise of the samples meanwhile. They leave out the
-  /// first tiles, which the calling thread will evaluate, since those would have to move between caches.
+  /// Moves the guides, each share on one thread. Threads without a share draw the noise of the samples
+  /// meanwhile, but not that of the first tiles, which the calling thread will evaluate: those would have to
+  /// move between caches.
   void move_guides(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::SampleSet& set = update_.samples();
-    const bool parallel = pool().threads() > 1;
-    const bool draws = parallel && set.lacks_noise(evaluator, key(samples));
-    const int shares = parallel ? guides_.sequences().sequences : 1;
-    const int first = set.tiles() / pool().threads();
-    // The guides may use half of the time, since guides without samples give no solution.
-    const Deadline half = deadline.part(0.5);
-    guides_.begin_move(mean_.data(), nominal_.data(), shares);
+    const int threads = pool().threads(), shares = threads > 1 ? guides_.sequences().sequences : 1;
+    const bool draws = threads > 1 && set.lacks_noise(evaluator, key(samples));
+    const int first = set.tiles() / threads, tiles = draws ? set.tiles() - first : 0;
+    const Deadline half = deadline.part(0.5);  // guides without samples would give no solution
     if (draws) set.begin_prepare(key(samples));
+    guides_.begin_move(mean_.data(), nominal_.data(), shares);
     std::atomic<int> moving{shares};
-    pool().run(draws ? shares + set.tiles() - first : shares, [&](int task) {
+    pool().run(shares + tiles, [&](int task) {
       if (task < shares) {
         guides_.move_share(task, evaluator, key(gradients), half);
         moving.fetch_sub(1, std::memory_order_relaxed);

@@ -36,8 +36,7 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
       statistics_(2 * tiles()),
       weight_sums_(tiles()),
       least_(tiles()),
-      row_sums_(tiles(), steps * inputs),
-      moment_sums_(tiles(), steps * inputs * moments) {}
+      tile_sums_(tiles(), steps * inputs * moments) {}
 
 /// Returns part `index` of the set, divided into parts of `size` samples.
 Range SampleSet::part(int index, int size) const noexcept {
@@ -264,43 +263,33 @@ WeightSums<double> SampleSet::sum_weights() const noexcept {
   return all;
 }
 
-void SampleSet::scale_weights(double factor) noexcept {
-  kernels::scale(static_cast<float>(factor), {0, values_.stride()}, weights_.data());
-}
-
-/// Multiplies the weights by `factor` unless it is 1, then sums over them.
-void SampleSet::sum_rows(RowSums kernel, double factor, const float* centre, double* sums,
-                         ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) {
-    if (factor != 1) kernels::scale(static_cast<float>(factor), range(tile), weights_.data());
-    kernel(row_view(), weights_.data(), centre, range(tile), row_sums_[tile]);
-  });
-  std::fill_n(sums, rows(), 0.0);
+/// Calls each(range, sums) for every tile, and adds the `count` sums of the tiles in their order.
+template <class Each>
+void SampleSet::add_tiles(int count, double* sums, ThreadPool& pool, Each&& each) noexcept {
+  pool.run(tiles(), [&](int tile) { each(range(tile), tile_sums_[tile]); });
+  std::fill_n(sums, count, 0.0);
   for (int tile = 0; tile < tiles(); ++tile)
-    for (int r = 0; r < rows(); ++r) sums[r] += row_sums_[tile][r];
+    for (int i = 0; i < count; ++i) sums[i] += tile_sums_[tile][i];
 }
 
-void SampleSet::weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels::weighted_sums, 1, centre, sums, pool);
-}
-
-void SampleSet::scaled_sums(double factor, const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels::weighted_sums, factor, centre, sums, pool);
+void SampleSet::weighted_sums(const float* centre, double* sums, ThreadPool& pool, double factor) noexcept {
+  add_tiles(rows(), sums, pool, [&](Range r, float* of_tile) {
+    if (factor != 1) kernels::scale(static_cast<float>(factor), r, weights_.data());
+    kernels::weighted_sums(row_view(), weights_.data(), centre, r, of_tile);
+  });
 }
 
 void SampleSet::weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels::weighted_squares, 1, centre, sums, pool);
+  add_tiles(rows(), sums, pool, [&](Range r, float* of_tile) {
+    kernels::weighted_squares(row_view(), weights_.data(), centre, r, of_tile);
+  });
 }
 
 void SampleSet::two_moments(const float* first, const float* second, const float* centre, double* sums,
                             ThreadPool& pool) noexcept {
-  const int count = rows() * moments;
-  pool.run(tiles(), [&](int tile) {
-    kernels::two_moments(row_view(), first, second, centre, range(tile), moment_sums_[tile]);
+  add_tiles(rows() * moments, sums, pool, [&](Range r, float* of_tile) {
+    kernels::two_moments(row_view(), first, second, centre, r, of_tile);
   });
-  std::fill_n(sums, count, 0.0);
-  for (int tile = 0; tile < tiles(); ++tile)
-    for (int i = 0; i < count; ++i) sums[i] += moment_sums_[tile][i];
 }
 
 void control_coefficients(double temperature, double discount, double inverse_variance_offset,

@@ -99,13 +99,8 @@ class SampleSet {
   /// Sums over the present weights.
   WeightSums<double> sum_weights() const noexcept;
 
-  /// Multiplies the weights by a factor.
-  void scale_weights(double factor) noexcept;
-
-  /// sums[row] = sum of w (v - centre), where w are the present weights.
-  void weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept;
-  /// Multiplies the weights by a factor, then computes their sums.
-  void scaled_sums(double factor, const float* centre, double* sums, ThreadPool& pool) noexcept;
+  /// Multiplies the weights by a factor, then computes sums[row] = sum of w (v - centre).
+  void weighted_sums(const float* centre, double* sums, ThreadPool& pool, double factor = 1) noexcept;
   /// sums[row] = sum of w (v - centre)^2.
   void weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept;
   /// sums[row * moments ...] for two lists of weights [padded sample]: the sums of w v and w (v - centre)^2
@@ -114,8 +109,6 @@ class SampleSet {
                    ThreadPool& pool) noexcept;
 
  private:
-  using RowSums = void (*)(const Rows&, const float*, const float*, Range, float*);
-
   std::size_t count() const noexcept { return static_cast<std::size_t>(values_.samples()); }
   bool prepared_for(RandomKey key) const noexcept {
     return prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
@@ -134,7 +127,8 @@ class SampleSet {
   void finish(Range range, const BatchEvaluator* evaluator, const float* linear,
               BatchStatistics& statistics) noexcept;
   void skip(Range range, BatchStatistics& statistics) noexcept;
-  void sum_rows(RowSums kernel, double factor, const float* centre, double* sums, ThreadPool& pool) noexcept;
+  template <class Each>
+  void add_tiles(int count, double* sums, ThreadPool& pool, Each&& each) noexcept;
 
   SequenceBatch values_;
   SequenceBatch noise_;
@@ -149,8 +143,7 @@ class SampleSet {
   std::vector<BatchStatistics> statistics_;     ///< [part of a tile]
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
   std::vector<float> least_;                    ///< [tile]
-  Matrix<float> row_sums_;                      ///< [tile][row]
-  Matrix<float> moment_sums_;                   ///< [tile][row][moment]
+  Matrix<float> tile_sums_;                     ///< [tile][sum]
 };
 
 /// 1 / variance + offset; 0 for an input that is not sampled (variance 0).

@@ -11,6 +11,7 @@
 #include "solvers/methods/guides.hpp"
 #include "solvers/problems.hpp"
 #include "support/allocations.hpp"
+#include "support/thrown_words.hpp"
 
 /// Exact gradients of costs, and guides of svg_mppi that follow them.
 namespace slalom {
@@ -107,6 +108,14 @@ SvgMppiOptions exact_options() {
           .guides = {.step = 0.05, .gradient_variance = 0.1, .gradient = GuideGradient::exact}};
 }
 
+/// The cost of a sequence of 20 inputs in double, from where the integrator starts in these tests.
+double cost_of(const SequenceList& list, int sequence) {
+  std::vector<Input<double, 1>> u;
+  for (int k = 0; k < 20; ++k)
+    u.push_back({{static_cast<double>(list.values[static_cast<std::size_t>(sequence * 20 + k)])}});
+  return predict(DoubleIntegrator{}, {0.5, 0}, u.data(), 20, nullptr).value;
+}
+
 template <class P>
 auto exact_controller(const P& problem, const SvgMppiOptions& options) {
   return Controller<GradientEvaluator<P>>(GradientEvaluator<P>(problem), options);
@@ -117,16 +126,10 @@ TEST(GuideGradient, ExactOnesLowerTheCostOfGuidesInEveryStep) {
   options.guides.restart = false;
   auto controller = exact_controller(DoubleIntegrator{}, options);
   const auto plan = controller.solve({0.5, 0});
-  GradientEvaluator<DoubleIntegrator> evaluator{DoubleIntegrator{}};
-  const auto cost = [&](int point) {
-    std::vector<Input<double, 1>> u;
-    for (int k = 0; k < 20; ++k)
-      u.push_back({{plan.stats.guide_path.values[static_cast<std::size_t>(point * 20 + k)]}});
-    return evaluator.predict({0.5, 0}, u.data(), 20, nullptr).value;
-  };
   const int guides = options.guides.count, points = plan.stats.guide_path.sequences;
   ASSERT_EQ(points, guides * options.guides.iterations);
-  for (int at = guides; at < points; ++at) EXPECT_LT(cost(at), cost(at - guides)) << at;
+  for (int at = guides; at < points; ++at)
+    EXPECT_LT(cost_of(plan.stats.guide_path, at), cost_of(plan.stats.guide_path, at - guides)) << at;
   EXPECT_EQ(plan.stats.gradient_kinks, 0);
 }
 
@@ -136,21 +139,14 @@ TEST(GuideGradient, StepsThatAreTooLongAreHalved) {
   options.guides.step = 20;
   auto controller = exact_controller(DoubleIntegrator{}, options);
   const auto plan = controller.solve({0.5, 0});
-  GradientEvaluator<DoubleIntegrator> evaluator{DoubleIntegrator{}};
-  const auto cost = [&](const SequenceList& list, int sequence) {
-    std::vector<Input<double, 1>> u;
-    for (int k = 0; k < 20; ++k)
-      u.push_back({{static_cast<double>(list.values[static_cast<std::size_t>(sequence * 20 + k)])}});
-    return evaluator.predict({0.5, 0}, u.data(), 20, nullptr).value;
-  };
   const int guides = options.guides.count;
   bool rose = false, fell = false;
   for (int g = 0; g < guides; ++g) {
-    fell = fell || cost(plan.stats.guides, g) < cost(plan.stats.guide_path, g) - 1e-3;
+    fell = fell || cost_of(plan.stats.guides, g) < cost_of(plan.stats.guide_path, g) - 1e-3;
     for (int at = g; at < plan.stats.guide_path.sequences; at += guides) {
-      EXPECT_LE(cost(plan.stats.guides, g), cost(plan.stats.guide_path, at) + 1e-4);
-      rose = rose ||
-             (at >= guides && cost(plan.stats.guide_path, at) > cost(plan.stats.guide_path, at - guides));
+      EXPECT_LE(cost_of(plan.stats.guides, g), cost_of(plan.stats.guide_path, at) + 1e-4);
+      rose = rose || (at >= guides &&
+                      cost_of(plan.stats.guide_path, at) > cost_of(plan.stats.guide_path, at - guides));
     }
   }
   EXPECT_TRUE(rose) << "no step was too long";
@@ -204,10 +200,7 @@ TEST(GuidePath, HasTheCostsOfItsPoints) {
     const SequenceList path = guides.path();
     ASSERT_EQ(path.sequences, iterations * options.guides.count);
     for (int at = 0; at < path.sequences; ++at) {
-      std::vector<Input<double, 1>> u;
-      for (int k = 0; k < 20; ++k)
-        u.push_back({{static_cast<double>(path.values[static_cast<std::size_t>(at * 20 + k)])}});
-      const double cost = evaluator.predict({0.5, 0}, u.data(), 20, nullptr).value;
+      const double cost = cost_of(path, at);
       EXPECT_NEAR(guides.path_costs()[static_cast<std::size_t>(at)], cost, 1e-4 * (1 + cost)) << at;
     }
   }
@@ -256,18 +249,10 @@ TEST(GuideGradient, SameBitsForAnyNumberOfThreadsAndNoAllocation) {
 }
 
 TEST(GuideGradient, WhatAProblemLacksIsSaidWhenTheControllerIsMade) {
-  const auto message = [](auto make) {
-    try {
-      make();
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
   const std::string needs = "guide_gradient: exact needs a problem with derivatives";
-  EXPECT_EQ(message([] { SvgMppi(DoubleIntegrator{}, exact_options()); }).substr(0, needs.size()), needs);
-  EXPECT_EQ(message([] { exact_controller(Sluggish{}, exact_options()); }).substr(0, needs.size()), needs);
-  EXPECT_EQ(message([] {
+  EXPECT_EQ(message_of([] { SvgMppi(DoubleIntegrator{}, exact_options()); }).substr(0, needs.size()), needs);
+  EXPECT_EQ(message_of([] { exact_controller(Sluggish{}, exact_options()); }).substr(0, needs.size()), needs);
+  EXPECT_EQ(message_of([] {
               SvgMppiOptions options = exact_options();
               options.guides.weight = GuideWeight::importance;
               make_solver(options, 1);

@@ -14,6 +14,7 @@
 #include "slalom/slalom.hpp"
 #include "solvers/problems.hpp"
 #include "support/allocations.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom {
 namespace {
@@ -240,16 +241,9 @@ TEST(Ilqr, AllocatesNothingAfterConstruction) {
 }
 
 TEST(Ilqr, MistakesNameTheRule) {
-  const auto message = [](auto make) {
-    try {
-      make();
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  EXPECT_EQ(message([] { Ilqr(DoubleIntegrator{}, 0); }), "feedback: number of steps: 0 must be at least 1");
-  EXPECT_EQ(message([] {
+  EXPECT_EQ(message_of([] { Ilqr(DoubleIntegrator{}, 0); }),
+            "feedback: number of steps: 0 must be at least 1");
+  EXPECT_EQ(message_of([] {
               Ilqr{DoubleIntegrator{}, 5, {.iterations = 0}};
             }),
             "ilqr.iterations: 0 must be in [1, 1000]");

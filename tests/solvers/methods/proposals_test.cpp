@@ -12,6 +12,7 @@
 #include "slalom/solvers/registry.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/set_option.hpp"
+#include "support/thrown_words.hpp"
 
 /// Control sequences of other controllers in a solve; solver_contract_test.cpp tests what holds without them.
 namespace slalom {
@@ -32,13 +33,12 @@ auto far_away() {
   });
 }
 
-std::unique_ptr<Solver> make(const char* method, int threads = 1) {
+std::unique_ptr<Solver> make(const char* method) {
   SolverOptions options = solver_options(method);
   testing::set(options, "horizon", steps);
   testing::set(options, "variance", 0.01);
   testing::set(options, "input_min", -4);
   testing::set(options, "input_max", 4);
-  testing::set(options, "threads", threads);
   return make_solver(options, 1);
 }
 
@@ -108,19 +108,6 @@ TEST(Proposals, MoreThanSamples) {
   }
 }
 
-TEST(Proposals, SameBitsForAnyNumberOfThreads) {
-  const auto evaluator = far_away();
-  const std::vector<float> values(steps, 2.5f);
-  for (const char* method : taking) {
-    const auto one = make(method), three = make(method, 3);
-    for (int i = 0; i < 3; ++i) {
-      const auto a = one->solve(evaluator, {.proposals = {values, 1}}).inputs;
-      const auto b = three->solve(evaluator, {.proposals = {values, 1}}).inputs;
-      EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin())) << method;
-    }
-  }
-}
-
 TEST(Proposals, AreRejectedByOtherMethods) {
   const auto evaluator = far_away();
   const std::vector<float> values(steps, 3.0f);
@@ -173,16 +160,8 @@ TEST(Proposals, ShortSequencesHoldTheirLastInputs) {
 }
 
 TEST(Proposals, MistakesNameTheRule) {
-  const auto message = [](auto make_proposals) {
-    try {
-      make_proposals();
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  EXPECT_EQ(message([] { Proposals{pushed(), 0}; }), "proposals: capacity 0 must be at least 1");
-  EXPECT_EQ(message([] {
+  EXPECT_EQ(message_of([] { Proposals{pushed(), 0}; }), "proposals: capacity 0 must be at least 1");
+  EXPECT_EQ(message_of([] {
               Proposals{SvMpc{DoubleIntegrator{}}, 1};
             }),
             "proposals: the method sv_mpc does not accept proposals");
