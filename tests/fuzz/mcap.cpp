@@ -5,7 +5,6 @@
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
-#include "view/recording/mcap_reader.hpp"
 #include "view/recording/mcap_writer.hpp"
 #include "view/recording/replay.hpp"
 

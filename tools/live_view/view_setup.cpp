@@ -43,11 +43,6 @@ view::Choices choices() {
   return choices;
 }
 
-int method_index(const view::Choices& choices, const std::string& method) {
-  const auto& all = choices.methods;
-  return static_cast<int>(std::find(all.begin(), all.end(), method) - all.begin());
-}
-
 std::string further_arguments(const ScenarioArguments& a) {
   std::string words;
   if (a.evaluation != "true") words += " --evaluation " + a.evaluation;

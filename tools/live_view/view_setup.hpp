@@ -11,8 +11,6 @@ namespace slalom::tools {
 
 /// The available courses, methods and configurations.
 view::Choices choices();
-/// The index of a method in them.
-int method_index(const view::Choices& choices, const std::string& method);
 
 /// The command-line arguments besides course, method, configuration, seed and obstacles; begins with a space.
 std::string further_arguments(const ScenarioArguments& arguments);

@@ -25,31 +25,30 @@ McapRecording::McapRecording(const std::string& file, const RecordingFacts& fact
       environment_(facts.scenario.environment),
       configuration_(facts.scenario.configuration),
       choices_(choices()),
-      names_{.course = environment_->course.name,
-             .method = facts.method,
-             .config = facts.arguments.config,
-             .seed = facts.seed,
-             .obstacles = facts.scenario.lap.obstacles,
-             .opponents = facts.scenario.lap.opponents},
+      state_{.names = {.course = environment_->course.name,
+                       .method = facts.method,
+                       .config = facts.arguments.config,
+                       .seed = facts.seed,
+                       .obstacles = facts.scenario.lap.obstacles,
+                       .opponents = facts.scenario.lap.opponents}},
       control_period_(facts.control_period),
       stream_(file, std::ios::binary),
       recorder_(stream_, recorder_options(facts)) {
   if (!stream_) throw IoError(file, 0, "cannot be written");
   recorder_.add_text(view::hello_message(*environment_, choices_, 0, control_period_));
   recorder_.add_course(view::encode_scene(*environment_));
-  recorder_.add_text(view::options_message({.names = names_,
+  recorder_.add_text(view::options_message({.names = state_.names,
                                             .now = configuration_,
                                             .loaded = configuration_,
                                             .further_arguments = further_arguments_}));
 }
 
 void McapRecording::tell_state() {
-  recorder_.add_text(view::state_message(
-      {.names = names_, .environment = *environment_, .laps = laps_, .control_period = control_period_}));
+  recorder_.add_text(view::state_message(state_, *environment_, control_period_));
 }
 
 void McapRecording::begin_lap(int, std::uint64_t seed) {
-  names_.seed = seed;
+  state_.names.seed = seed;
   recorder_.begin_drive();
   tell_state();
 }
@@ -58,14 +57,17 @@ void McapRecording::add(const evaluation::ControlStep& tick) {
   ++ticks_;
   recorder_.add_frame(encoder_.encode(tick, {.deadline = control_period_,
                                              .prediction_step = configuration_.vehicle.time_step,
-                                             .method = method_index(choices_, names_.method)}) +
+                                             .method = choices_.method_index(state_.names.method)}) +
                       view::encode_bodies(tick.world));
 }
 
 void McapRecording::end_lap(const evaluation::LapResult& lap, int number) {
   if (!lap.finished) return;
-  laps_.push_back(
-      {.tick = ticks_, .lap = number, .time = lap.time, .contacts = lap.collisions, .method = names_.method});
+  state_.laps.push_back({.tick = ticks_,
+                         .lap = number,
+                         .time = lap.time,
+                         .contacts = lap.collisions,
+                         .method = state_.names.method});
   tell_state();
 }
 

@@ -29,8 +29,7 @@ class McapRecording : public Recording {
   std::shared_ptr<const evaluation::Environment> environment_;
   vehicle::Configuration configuration_;
   view::Choices choices_;
-  view::ScenarioNames names_;
-  std::vector<view::LapNote> laps_;
+  view::DriveState state_;
   double control_period_;
   int ticks_ = 0;
   std::ofstream stream_;

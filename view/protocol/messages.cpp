@@ -1,5 +1,6 @@
 #include "view/protocol/messages.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "slalom/core/option_access.hpp"
@@ -69,6 +70,10 @@ std::string changed_yaml(const OptionsFacts& facts, const std::vector<std::strin
 
 }  // namespace
 
+int Choices::method_index(const std::string& method) const {
+  return static_cast<int>(std::ranges::find(methods, method) - methods.begin());
+}
+
 std::string command_line(const OptionsFacts& facts) {
   return line_of(facts, changed_options(facts));
 }
@@ -100,7 +105,8 @@ std::string hello_message(const evaluation::Environment& environment, const Choi
                     {"control_period", control_period}});
 }
 
-std::string state_message(const StateFacts& facts) {
+std::string state_message(const DriveState& facts, const evaluation::Environment& environment,
+                          double control_period) {
   Json laps = Json::array();
   for (const LapNote& lap : facts.laps)
     laps.push_back({{"lap", lap.lap},
@@ -111,11 +117,11 @@ std::string state_message(const StateFacts& facts) {
   const ScenarioNames& names = facts.names;
   Json state = {{"type", "state"},
                 {"course", names.course},
-                {"description", facts.environment.course.description},
-                {"length", facts.environment.course.length},
+                {"description", environment.course.description},
+                {"length", environment.course.length},
                 {"method", names.method},
                 {"config", names.config},
-                {"evaluation", evaluation::name(facts.environment.protocol)},
+                {"evaluation", evaluation::name(environment.protocol)},
                 {"seed", std::to_string(names.seed)},
                 {"obstacles", names.obstacles},
                 {"opponents", names.opponents},
@@ -126,7 +132,7 @@ std::string state_message(const StateFacts& facts) {
                 {"newest", facts.newest},
                 {"oldest", facts.oldest},
                 {"time", facts.time},
-                {"control_period", facts.control_period},
+                {"control_period", control_period},
                 {"laps", laps},
                 {"ghost", facts.ghost},
                 {"ghost_label", facts.ghost_label},

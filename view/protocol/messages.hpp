@@ -25,6 +25,8 @@ struct ScenarioNames {
 /// The available choices.
 struct Choices {
   std::vector<std::string> courses, methods, configurations;
+  /// The index of a method; the number of methods if it is not among them.
+  int method_index(const std::string& method) const;
 };
 
 /// Names and sizes that do not change while a server runs. `history`: s of the drive that are stored;
@@ -55,21 +57,21 @@ struct LapNote {
   bool ghost = false;  ///< driven by the ghost
 };
 
-struct StateFacts {
+/// A drive as the page is told of it.
+struct DriveState {
   ScenarioNames names;
-  const evaluation::Environment& environment;
-  const std::vector<LapNote>& laps;
-  double time = 0, control_period = 0;      ///< s
+  std::vector<LapNote> laps{};
+  double time = 0, rate = 1;                ///< s; simulated to real time, 0: as fast as possible
   int tick = -1, newest = -1, oldest = -1;  ///< the one shown, and the range of the stored ones
   bool paused = false, real_time = false, edited = false;
   bool introduction = false;  ///< the scenario with which the program starts without arguments, unchanged
-  double rate = 1;
   std::string ghost{};        ///< its method; empty if there is none
   std::string ghost_label{};  ///< name of the ghost
-  int generation = 0;
+  int generation = 0;         ///< number of drives that have begun
   /// The part of an evaluation that is shown: experiment, lap, collision (-1: the whole lap) and its tick.
   std::array<int, 4> contact{-1, -1, -1, -1};
 };
-std::string state_message(const StateFacts& facts);
+std::string state_message(const DriveState& state, const evaluation::Environment& environment,
+                          double control_period);
 
 }  // namespace slalom::view

@@ -8,26 +8,27 @@
 #include <vector>
 
 #include "slalom/maps/pose.hpp"
+#include "src/evaluation/json.hpp"
 
-/// Foxglove messages as JSON. Lengths are rounded to 0.1 mm, and angles to 1e-6 rad.
+/// Foxglove messages. Lengths are rounded to 0.1 mm, and angles to 1e-6 rad; what is not finite is 0.
 namespace slalom::view::foxglove {
 
 using Color = std::array<double, 4>;  ///< red, green, blue, opacity in [0, 1]
 
-/// Returns the transform of the frame `child`, which is at `pose` in the frame `map`. `time`: ns.
-std::string frame_transform(std::uint64_t time, const std::string& child, const maps::Pose& pose);
+/// Returns a time (ns) as seconds and nanoseconds.
+Json timestamp(std::uint64_t time);
 
-struct Scan {
-  double angle_min = 0, angle_increment = 0;   ///< rad
-  std::span<const std::uint16_t> millimetres;  ///< ranges
-};
-/// Returns a scan whose sensor is the origin of `frame`.
-std::string laser_scan(std::uint64_t time, const std::string& frame, const Scan& scan);
+/// Returns the transform of the frame `child`, which is at `pose` in the frame `map`. `time`: ns.
+Json frame_transform(std::uint64_t time, const std::string& child, const maps::Pose& pose);
+
+/// Returns a scan whose sensor is the origin of `frame`. Angles in rad, ranges in mm.
+Json laser_scan(std::uint64_t time, const std::string& frame, double angle_min, double angle_increment,
+                std::span<const std::uint16_t> ranges);
 
 /// Returns a grid with `columns` cells of one byte in each row. Its first cell has its corner at `corner` in
 /// the frame `map`.
-std::string grid(std::uint64_t time, const maps::Pose& corner, std::uint32_t columns, double cell_size,
-                 const std::string& field, std::string_view cells);
+Json grid(std::uint64_t time, const maps::Pose& corner, std::uint32_t columns, double cell_size,
+          const std::string& field, std::string_view cells);
 
 /// A scene update: entities in the frame `map`. They replace earlier ones of the same name.
 class Scene {
@@ -36,20 +37,17 @@ class Scene {
 
   /// Begins an entity; the shapes that follow are part of it.
   void begin(const std::string& id);
-  void line(std::span<const maps::Point> points, const Color& color, double pixels, double height = 0);
+  void line(std::span<const maps::Point> points, const Color& color, double pixels);
   void box(const maps::Pose& pose, double length, double width, double height, const Color& color);
   void disc(const maps::Point& centre, double diameter, double height, const Color& color);
   void text(const maps::Point& at, double height, const std::string& words, const Color& color);
-  std::string take();
+  Json message() const { return {{"deletions", Json::array()}, {"entities", entities_}}; }
 
  private:
-  void end();
+  void add(const char* list, Json shape) { entities_.back()[list].push_back(std::move(shape)); }
 
   std::uint64_t time_;
-  std::string entities_, head_, cubes_, cylinders_, lines_, texts_;
+  Json entities_ = Json::array();
 };
-
-/// Appends a number with at most `digits` decimals; 0 if it is not finite.
-void append_number(std::string& to, double value, int digits = 4);
 
 }  // namespace slalom::view::foxglove

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <zlib.h>
+
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <string>
 #include <string_view>
@@ -26,16 +27,21 @@ enum class Op : std::uint8_t {
   statistics = 0x0b,
   metadata = 0x0c,
   metadata_index = 0x0d,
-  summary_offset = 0x0e,
   data_end = 0x0f,
 };
+
+/// Returns the CRC-32 of bytes that follow others, whose CRC-32 is `before`.
+inline std::uint32_t crc(std::string_view bytes, std::uint32_t before = 0) {
+  return static_cast<std::uint32_t>(
+      crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
 
 /// The content of records, built by appending.
 class Bytes {
  public:
   template <class T>
   Bytes& put(T value) {
-    static_assert(std::is_integral_v<T>);
+    static_assert(std::is_integral_v<T> || std::is_enum_v<T>);
     out_.append(reinterpret_cast<const char*>(&value), sizeof value);
     return *this;
   }
@@ -58,10 +64,10 @@ class Bytes {
     return text(inner.view());
   }
   /// Appends a whole record.
-  Bytes& record(Op op, std::string_view content) { return put(static_cast<std::uint8_t>(op)).block(content); }
+  Bytes& record(Op op, const Bytes& content) { return put(op).block(content.view()); }
 
   std::string_view view() const noexcept { return out_; }
-  std::size_t size() const noexcept { return out_.size(); }
+  std::uint64_t size() const noexcept { return out_.size(); }
   void clear() noexcept { out_.clear(); }
 
  private:

@@ -5,6 +5,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "view/recording/mcap_bytes.hpp"
@@ -27,7 +28,7 @@ class Writer {
   std::uint16_t add_schema(const std::string& name, const std::string& encoding, std::string_view data);
   std::uint16_t add_channel(const std::string& topic, const std::string& message_encoding,
                             std::uint16_t schema);
-  /// `time`: ns.
+  /// `time`: ns; not before that of an earlier message.
   void add_message(std::uint16_t channel, std::uint64_t time, std::string_view data);
   void add_attachment(const std::string& name, const std::string& media_type, std::uint64_t time,
                       std::string_view data);
@@ -37,33 +38,23 @@ class Writer {
   void finish();
 
  private:
-  struct ChunkIndex {
-    std::uint64_t first_time, last_time, start, length;
-    std::map<std::uint16_t, std::uint64_t> index_offsets;
-    std::uint64_t index_length, compressed, uncompressed;
-  };
   using Times = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  ///< ns, offset in the chunk
 
   void write(std::string_view bytes);
-  void write_record(Op op, std::string_view content);
+  void write_record(Op op, const Bytes& content);
   void close_chunk();
-  void write_indexes(ChunkIndex& index);
-  std::string summary(std::uint64_t start, std::string& offsets) const;
-  std::string statistics() const;
 
   std::ostream& stream_;
   std::size_t chunk_size_;
   std::uint64_t offset_ = 0;
   std::uint32_t crc_ = 0;  ///< checksum of all that was written
   Bytes chunk_;
-  std::uint64_t chunk_first_ = 0, chunk_last_ = 0, first_ = 0, last_ = 0;
-  bool chunk_has_messages_ = false;
-  std::map<std::uint16_t, Times> chunk_times_;
-  std::vector<std::string> schemas_, channels_;  ///< contents of their records
-  std::map<std::uint16_t, std::uint64_t> counts_;
-  std::vector<ChunkIndex> chunks_;
-  Bytes attachment_index_, metadata_index_;
-  std::uint32_t attachments_ = 0, metadata_ = 0;
+  std::map<std::uint16_t, Times> chunk_times_;                  ///< of each channel
+  std::uint64_t chunk_first_ = 0, first_ = 0, last_ = 0;        ///< ns
+  Bytes schemas_, channels_, chunks_, attachments_, metadata_;  ///< records of the summary
+  std::uint16_t schema_count_ = 0;
+  std::uint32_t chunk_count_ = 0, attachment_count_ = 0, metadata_count_ = 0;
+  std::map<std::uint16_t, std::uint64_t> counts_;  ///< messages of each channel
   std::uint64_t messages_ = 0;
 };
 

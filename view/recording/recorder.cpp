@@ -19,12 +19,8 @@ bool is_wall_clock(std::string_view name) {
   return name.size() > 3 && name.substr(name.size() - 3) == "_ms" && name != "deadline_ms";
 }
 
-Json maybe(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// The schema of an object whose fields are scalars of a frame, or null where there is no value.
-std::string figures_schema(bool wall_clock) {
+Json figures_schema(bool wall_clock) {
   Json properties = {{"timestamp",
                       {{"type", "object"},
                        {"properties", {{"sec", {{"type", "integer"}}}, {"nsec", {{"type", "integer"}}}}}}}};
@@ -34,7 +30,7 @@ std::string figures_schema(bool wall_clock) {
     properties["covariance"] = {{"type", "array"}, {"items", {{"type", "number"}}}};
     properties["plan"] = {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
   }
-  return Json{{"type", "object"}, {"properties", properties}}.dump();
+  return {{"type", "object"}, {"properties", properties}};
 }
 
 }  // namespace
@@ -45,26 +41,21 @@ Recorder::Recorder(std::ostream& stream, RecorderOptions options)
       replay_([this](const std::string& segment) { attach(segment); }) {
   writer_.add_metadata("slalom", options_.settings);
   const Json schemas = Json::parse(foxglove_schemas());
-  const auto schema = [&](const std::string& name, const std::string& text) {
-    return writer_.add_schema(name, "jsonschema", text);
+  std::map<std::string, std::uint16_t> ids;  // of the schemas that are in the file
+  const auto add_channel = [&](const char* topic, const std::string& schema, const Json& content) {
+    auto& id = ids[schema];
+    if (id == 0) id = writer_.add_schema(schema, "jsonschema", content.dump());
+    channels_.push_back(writer_.add_channel(topic, "json", id));
   };
-  const auto foxglove = [&](const std::string& name) {
-    return schema("foxglove." + name, schemas.at("foxglove." + name).dump());
-  };
-  const auto transform = foxglove("FrameTransform"), grid = foxglove("Grid");
-  const auto scan = foxglove("LaserScan"), scene = foxglove("SceneUpdate");
-  const auto tick = schema("slalom.Tick", figures_schema(false));
-  struct Plan {
-    const char* topic;
-    std::uint16_t schema;
-  };
-  const Plan plans[] = {{"/tf", transform},  {"/map", grid},   {"/course", scene},     {"/scan", scan},
-                        {"/cost_map", grid}, {"/cars", scene}, {"/candidates", scene}, {"/guides", scene},
-                        {"/plan", scene},    {"/tick", tick}};
-  for (const Plan& each : plans) channels_.push_back(writer_.add_channel(each.topic, "json", each.schema));
-  if (options_.wall_clock)
-    channels_.push_back(
-        writer_.add_channel("/wall_clock", "json", schema("slalom.WallClock", figures_schema(true))));
+  const std::pair<const char*, const char*> topics[] = {
+      {"/tf", "foxglove.FrameTransform"},      {"/map", "foxglove.Grid"},
+      {"/course", "foxglove.SceneUpdate"},     {"/scan", "foxglove.LaserScan"},
+      {"/cost_map", "foxglove.Grid"},          {"/cars", "foxglove.SceneUpdate"},
+      {"/candidates", "foxglove.SceneUpdate"}, {"/guides", "foxglove.SceneUpdate"},
+      {"/plan", "foxglove.SceneUpdate"}};
+  for (const auto& [topic, schema] : topics) add_channel(topic, schema, schemas.at(schema));
+  add_channel("/tick", "slalom.Tick", figures_schema(false));
+  if (options_.wall_clock) add_channel("/wall_clock", "slalom.WallClock", figures_schema(true));
 }
 
 void Recorder::begin_drive() {
@@ -72,14 +63,29 @@ void Recorder::begin_drive() {
   time_ = offset_;
 }
 
-void Recorder::add(Topic topic, const std::string& json) {
-  writer_.add_message(channels_[static_cast<std::size_t>(topic)], time_, json);
+void Recorder::add(Topic topic, const Json& message) {
+  writer_.add_message(channels_[static_cast<std::size_t>(topic)], time_, json_text(message));
 }
 
 void Recorder::attach(const std::string& segment) {
   char name[32];
   std::snprintf(name, sizeof name, "replay/%05d.gz", segments_++);
   writer_.add_attachment(name, "application/gzip", time_, segment);
+}
+
+/// The states of the plan: x, y, yaw, speed, steering, lateral standard deviation.
+std::vector<std::array<double, 6>> Recorder::plan_of(const FrameReader& reader) {
+  const auto block = reader.block(Block::plan);
+  if (block.empty()) return {};
+  PayloadReader payload(block);
+  std::vector<std::array<double, 6>> states(payload.get<std::uint32_t>());
+  const double x = payload.get<double>(), y = payload.get<double>();
+  for (auto& state : states) {
+    for (double& each : state) each = payload.f32();
+    state[0] += x;
+    state[1] += y;
+  }
+  return states;
 }
 
 void Recorder::add_text(std::string_view json) {
@@ -115,7 +121,7 @@ void Recorder::add_course(std::string_view message) {
   foxglove::Scene scene(time_);
   scene.begin("course");
   scene.line(points, {0.5, 0.56, 0.64, 0.7}, 1);
-  add(Topic::course, scene.take());
+  add(Topic::course, scene.message());
 }
 
 std::string Recorder::without_wall_clock(std::string_view frame, const FrameReader& reader) const {
@@ -156,29 +162,20 @@ void Recorder::finish() {
 }
 
 void Recorder::add_tick(const FrameReader& reader, const std::vector<double>& scalars) {
-  const Json stamp = {{"sec", time_ / 1'000'000'000}, {"nsec", time_ % 1'000'000'000}};
-  Json tick = {{"timestamp", stamp}}, times = {{"timestamp", stamp}};
+  Json tick = {{"timestamp", foxglove::timestamp(time_)}}, times = tick;
   const auto& names = scalar_names();
   for (std::size_t i = 0; i < names.size(); ++i)
-    (is_wall_clock(names[i]) ? times : tick)[names[i]] = maybe(scalars[i]);
+    (is_wall_clock(names[i]) ? times : tick)[names[i]] = scalars[i];
   Json covariance = Json::array(), plan = Json::array();
   const std::string_view variances = reader.block(Block::covariance);
   PayloadReader variance(variances);
   for (std::size_t i = 0; i < variances.size() / 4; ++i) covariance.push_back(variance.f32());
-  if (const auto block = reader.block(Block::plan); !block.empty()) {
-    PayloadReader states(block);
-    const auto count = states.get<std::uint32_t>();
-    const double x = states.get<double>(), y = states.get<double>();
-    for (std::uint32_t i = 0; i < count; ++i) {
-      double v[6];
-      for (double& each : v) each = states.f32();
-      plan.push_back({maybe(x + v[0]), maybe(y + v[1]), maybe(v[2]), maybe(v[3]), maybe(v[4])});
-    }
-  }
+  for (const auto& [x, y, yaw, speed, steer, spread] : plan_of(reader))
+    plan.push_back({x, y, yaw, speed, steer});
   tick["covariance"] = covariance;
   tick["plan"] = plan;
-  add(Topic::tick, tick.dump());
-  if (options_.wall_clock) add(Topic::times, times.dump());
+  add(Topic::tick, tick);
+  if (options_.wall_clock) add(Topic::times, times);
 }
 
 }  // namespace slalom::view

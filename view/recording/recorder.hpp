@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <ostream>
@@ -19,7 +20,6 @@ struct RecorderOptions {
   std::string program = "slalom";                         ///< name of the program that writes the recording
   std::map<std::string, std::string> settings;            ///< stored as the metadata "slalom"
   double lidar_angle_min = 0, lidar_angle_increment = 0;  ///< rad
-  double lidar_range_max = 30;                            ///< m
   bool wall_clock = false;  ///< records wall-clock times; without them the same drive gives the same bytes
 };
 
@@ -41,24 +41,13 @@ class Recorder {
   void finish();
 
  private:
-  enum class Topic {
-    transform,
-    map,
-    course,
-    scan,
-    cost_map,
-    cars,
-    candidates,
-    guides,
-    plan,
-    tick,
-    times,
-    count
-  };
+  /// The channels, in the order in which they are added.
+  enum class Topic { transform, map, course, scan, cost_map, cars, candidates, guides, plan, tick, times };
 
-  void add(Topic topic, const std::string& json);
+  void add(Topic topic, const Json& message);
   void attach(const std::string& segment);
   std::string without_wall_clock(std::string_view frame, const FrameReader& reader) const;
+  static std::vector<std::array<double, 6>> plan_of(const FrameReader& reader);
   void add_tick(const FrameReader& reader, const std::vector<double>& scalars);
   void add_scan(const FrameReader& reader);
   void add_cost_map(const FrameReader& reader);

@@ -36,8 +36,8 @@ void Recorder::add_scan(const FrameReader& reader) {
   std::vector<std::uint16_t> ranges(payload.get<std::uint32_t>());
   for (auto& each : ranges) each = payload.get<std::uint16_t>();
   add(Topic::transform, foxglove::frame_transform(time_, "lidar", sensor));
-  add(Topic::scan, foxglove::laser_scan(time_, "lidar",
-                                        {options_.lidar_angle_min, options_.lidar_angle_increment, ranges}));
+  add(Topic::scan,
+      foxglove::laser_scan(time_, "lidar", options_.lidar_angle_min, options_.lidar_angle_increment, ranges));
 }
 
 void Recorder::add_cost_map(const FrameReader& reader) {
@@ -110,7 +110,7 @@ void Recorder::add_cars(const FrameReader& reader) {
     const auto points = ghost.points(ghost.get<std::uint32_t>());
     scene.line(points, ghost_color, 2);
   }
-  add(Topic::cars, scene.take());
+  add(Topic::cars, scene.message());
 }
 
 void Recorder::add_candidates(const FrameReader& reader) {
@@ -140,7 +140,7 @@ void Recorder::add_candidates(const FrameReader& reader) {
       scene.line(std::span(points).subspan(i * length, length), color, 1);
     }
   }
-  add(Topic::candidates, scene.take());
+  add(Topic::candidates, scene.message());
 }
 
 void Recorder::add_guides(const FrameReader& reader) {
@@ -160,26 +160,20 @@ void Recorder::add_guides(const FrameReader& reader) {
       scene.line(ends, {guide_color[0], guide_color[1], guide_color[2], 0.5}, 1);
     }
   }
-  add(Topic::guides, scene.take());
+  add(Topic::guides, scene.message());
 }
 
 void Recorder::add_plan(const FrameReader& reader) {
   foxglove::Scene scene(time_);
   scene.begin("plan");
-  if (const auto block = reader.block(Block::plan); !block.empty()) {
-    PayloadReader payload(block);
-    const auto count = payload.get<std::uint32_t>();
-    const double x = payload.get<double>(), y = payload.get<double>();
-    std::vector<maps::Point> middle, left, right;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const maps::Point p{x + payload.f32(), y + payload.f32()};
-      const double yaw = payload.f32();
-      payload.take(2 * sizeof(float));
-      const double side = 2 * payload.f32();  // two standard deviations
-      middle.push_back(p);
-      left.push_back({p.x - side * std::sin(yaw), p.y + side * std::cos(yaw)});
-      right.push_back({p.x + side * std::sin(yaw), p.y - side * std::cos(yaw)});
-    }
+  std::vector<maps::Point> middle, left, right;
+  for (const auto& [x, y, yaw, speed, steer, spread] : plan_of(reader)) {
+    const double u = -2 * spread * std::sin(yaw), v = 2 * spread * std::cos(yaw);  // two standard deviations
+    middle.push_back({x, y});
+    left.push_back({x + u, y + v});
+    right.push_back({x - u, y - v});
+  }
+  if (!middle.empty()) {
     scene.line(middle, plan_color, 4);
     const Color edge{plan_color[0], plan_color[1], plan_color[2], 0.4};
     scene.line(left, edge, 1);
@@ -190,7 +184,7 @@ void Recorder::add_plan(const FrameReader& reader) {
     const auto count = payload.get<std::uint32_t>();
     scene.line(payload.points(count), nominal_color, 2);
   }
-  add(Topic::plan, scene.take());
+  add(Topic::plan, scene.message());
 }
 
 }  // namespace slalom::view

@@ -56,16 +56,16 @@ maps::Pose pose_of(const Json& command) {
   return {field::number(command, "x"), field::number(command, "y"), field::number(command, "yaw", 0)};
 }
 
-AddBody body_of(const Json& command) {
-  AddBody body{.pose = pose_of(command)};
+Action addition(const Json& command) {
+  Body body{.pose = pose_of(command)};
   const std::string kind = field::text(command, "kind");
   field::require(kind == "car" || kind == "box" || kind == "disc", "kind", "car, box or disc");
-  body.kind = kind == "car" ? BodyKind::parked_car : kind == "box" ? BodyKind::box : BodyKind::disc;
+  body.is_disc = kind == "disc";
   body.length = field::number(command, "length", body.length);
   body.width = field::number(command, "width", body.length);
   const double least = std::min(body.length, body.width), most = std::max(body.length, body.width);
   field::require(least >= 0.02 && most <= 10, "length and width", "in [0.02, 10] m");
-  return body;
+  return kind == "car" ? add_parked_car(body.pose) : add_body(body);
 }
 
 std::uint64_t seed_of(const std::string& digits) {
@@ -82,15 +82,15 @@ int count_of(const Json& command, const char* key, int present, int most) {
 
 }  // namespace
 
-std::optional<Action> edit_of(const std::string& what, const Json& command, const sim::CarState& car) {
-  if (what == "add") return body_of(command);
-  if (what == "move") return MoveBody{field::integer(command, "body"), pose_of(command)};
-  if (what == "remove") return RemoveBody{field::integer(command, "body")};
-  if (what == "place_car") return MoveCar{pose_of(command)};
+Action edit_of(const std::string& what, const Json& command, const sim::CarState& car) {
+  if (what == "add") return addition(command);
+  if (what == "move") return move_body(field::integer(command, "body"), pose_of(command));
+  if (what == "remove") return remove_body(field::integer(command, "body"));
+  if (what == "place_car") return move_car(pose_of(command));
   if (what != "nudge") return {};
   const double aside = field::number(command, "left", 0), turn = field::number(command, "turn", 0);
   field::require(std::abs(aside) <= 2 && std::abs(turn) <= 3.2, "nudge", "at most 2 m and 3.2 rad");
-  return MoveCar{{car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn}};
+  return move_car({car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn});
 }
 
 bool apply_settings(vehicle::Configuration& configuration, const Json& command, const std::string& method) {

@@ -2,12 +2,11 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "view/protocol/messages.hpp"
 #include "view/session/drives.hpp"
-#include "view/session/scenario.hpp"
 
 /// Reads the commands of a page. The functions throw MalformedCommand, which names the key, where a field is
 /// missing, of another type or out of range.
@@ -29,10 +28,9 @@ bool flag(const nlohmann::ordered_json& command, const char* key);
 
 }  // namespace field
 
-/// The action of the commands add, move, remove, place_car and nudge; nothing for others. `car`: present
-/// state of the car.
-std::optional<Action> edit_of(const std::string& what, const nlohmann::ordered_json& command,
-                              const sim::CarState& car);
+/// The action of the commands add, move, remove, place_car and nudge; empty for others. `car`: present state
+/// of the car.
+Action edit_of(const std::string& what, const nlohmann::ordered_json& command, const sim::CarState& car);
 
 /// Applies the settings `set` of a command, a list of key=value. False if there are none.
 bool apply_settings(vehicle::Configuration& configuration, const nlohmann::ordered_json& command,

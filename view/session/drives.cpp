@@ -8,71 +8,29 @@ namespace {
 
 constexpr std::size_t max_bodies = 512;
 
-void add(sim::World& world, const AddBody& body) {
+/// An action that changes the worlds of car and ghost in the same way.
+template <class Edit>
+Action edit_worlds(Edit edit) {
+  return [edit = std::move(edit)](Drives& drives) {
+    drives.edited = true;
+    edit(drives.car.world());
+    if (drives.ghost) edit(drives.ghost->world());
+  };
+}
+
+void require_room(const sim::World& world) {
   if (world.bodies() >= max_bodies) throw std::invalid_argument("bodies: at most 512 are supported");
-  if (body.kind == BodyKind::parked_car)
-    world.add_parked_car(body.pose);
-  else if (body.kind == BodyKind::disc)
+}
+
+void add(sim::World& world, const Body& body) {
+  require_room(world);
+  if (body.is_disc)
     world.add_disc({{body.pose.x, body.pose.y}, 0.5 * body.length});
   else
     world.add_box({body.pose, body.length, body.width});
 }
 
-/// Applies the edits of bodies, which concern the worlds of car and ghost.
-struct EditBodies {
-  sim::World& world;
-  void operator()(const AddBody& e) const { add(world, e); }
-  void operator()(const MoveBody& e) const { world.move_body(e.body, e.pose); }
-  void operator()(const RemoveBody& e) const { world.remove_body(e.body); }
-  void operator()(const SetBodies& e) const {
-    while (world.bodies() > world.cars()) world.remove_body(static_cast<int>(world.bodies()) - 1);
-    for (const AddBody& body : e.bodies) add(world, body);
-  }
-  template <class Other>
-  void operator()(const Other&) const {}
-};
-
-/// Applies the other actions.
-struct ChangeDrives {
-  Drives& drives;
-  void operator()(const MoveCar& e) const {
-    sim::World& world = drives.car.world();
-    if (world.track().in_wall({e.pose.x, e.pose.y}))
-      throw std::invalid_argument("car: must not overlap a wall");
-    sim::CarState state = world.state(0);
-    state.x = e.pose.x;
-    state.y = e.pose.y;
-    state.yaw = e.pose.yaw;
-    world.set_state(0, state);
-  }
-  void operator()(const ChangeDriver& e) const { drives.car.change_driver(e.driver); }
-  void operator()(const StartGhost& e) const {
-    evaluation::LapDrive ghost = drives.car;
-    if (e.driver) ghost.change_driver(*e.driver);
-    drives.ghost = std::move(ghost);
-    drives.ghost_label = e.label;
-  }
-  void operator()(const EndGhost&) const {
-    drives.ghost.reset();
-    drives.ghost_label.clear();
-  }
-  template <class Other>
-  void operator()(const Other&) const {}
-};
-
 }  // namespace
-
-std::vector<AddBody> bodies_of(const sim::World& world) {
-  std::vector<AddBody> bodies;
-  for (std::size_t i = world.cars(); i < world.bodies(); ++i) {
-    const sim::Box box = world.outline(i);
-    bodies.push_back({.kind = world.disc(i) ? BodyKind::disc : BodyKind::box,
-                      .pose = box.pose,
-                      .length = box.length,
-                      .width = box.width});
-  }
-  return bodies;
-}
 
 void Drives::tick(const Delays& delays, const evaluation::ControlStepCallback& on_car,
                   const evaluation::ControlStepCallback& on_ghost) {
@@ -80,11 +38,72 @@ void Drives::tick(const Delays& delays, const evaluation::ControlStepCallback& o
   car.step(on_car, delays.car);
 }
 
-void Drives::apply(const Action& action) {
-  std::visit(EditBodies{car.world()}, action);
-  if (ghost) std::visit(EditBodies{ghost->world()}, action);
-  std::visit(ChangeDrives{*this}, action);
-  if (!std::holds_alternative<StartGhost>(action) && !std::holds_alternative<EndGhost>(action)) edited = true;
+std::vector<Body> bodies_of(const sim::World& world) {
+  std::vector<Body> bodies;
+  for (std::size_t i = world.cars(); i < world.bodies(); ++i) {
+    const sim::Box box = world.outline(i);
+    bodies.push_back({box.pose, box.length, box.width, world.disc(i).has_value()});
+  }
+  return bodies;
+}
+
+Action add_body(const Body& body) {
+  return edit_worlds([body](sim::World& world) { add(world, body); });
+}
+
+Action add_parked_car(const maps::Pose& pose) {
+  return edit_worlds([pose](sim::World& world) {
+    require_room(world);
+    world.add_parked_car(pose);
+  });
+}
+
+Action move_body(int body, const maps::Pose& pose) {
+  return edit_worlds([body, pose](sim::World& world) { world.move_body(body, pose); });
+}
+
+Action remove_body(int body) {
+  return edit_worlds([body](sim::World& world) { world.remove_body(body); });
+}
+
+Action set_bodies(std::vector<Body> bodies) {
+  return edit_worlds([bodies = std::move(bodies)](sim::World& world) {
+    while (world.bodies() > world.cars()) world.remove_body(static_cast<int>(world.bodies()) - 1);
+    for (const Body& body : bodies) add(world, body);
+  });
+}
+
+Action move_car(const maps::Pose& pose) {
+  return [pose](Drives& drives) {
+    sim::World& world = drives.car.world();
+    if (world.track().in_wall({pose.x, pose.y})) throw std::invalid_argument("car: must not overlap a wall");
+    sim::CarState state = world.state(0);
+    state.x = pose.x;
+    state.y = pose.y;
+    state.yaw = pose.yaw;
+    world.set_state(0, state);
+    drives.edited = true;
+  };
+}
+
+Action change_driver(evaluation::Driver driver) {
+  return [driver = std::move(driver)](Drives& drives) {
+    drives.car.change_driver(driver);
+    drives.edited = true;
+  };
+}
+
+Action start_ghost(std::string label, std::optional<evaluation::Driver> driver) {
+  return [label = std::move(label), driver = std::move(driver)](Drives& drives) {
+    drives.ghost = drives.car;
+    if (driver) drives.ghost->change_driver(*driver);
+    drives.ghost_label = label;
+  };
+}
+
+void end_ghost(Drives& drives) {
+  drives.ghost.reset();
+  drives.ghost_label.clear();
 }
 
 }  // namespace slalom::view

@@ -1,53 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "slalom/evaluation/lap.hpp"
 
 namespace slalom::view {
-
-enum class BodyKind { parked_car, box, disc };
-
-/// Adds a body that does not drive.
-struct AddBody {
-  BodyKind kind = BodyKind::disc;
-  maps::Pose pose;
-  double length = 0.3, width = 0.3;  ///< m; the length of a disc is its diameter
-};
-/// Replaces all bodies that do not drive; they are numbered in this order, after the driven cars.
-struct SetBodies {
-  std::vector<AddBody> bodies;
-};
-struct MoveBody {
-  int body = 0;
-  maps::Pose pose;
-};
-struct RemoveBody {
-  int body = 0;
-};
-/// Puts the car elsewhere, but not the ghost.
-struct MoveCar {
-  maps::Pose pose;
-};
-/// Lets another driver drive the car from the next tick on.
-struct ChangeDriver {
-  evaluation::Driver driver;
-};
-/// Starts a ghost as a copy of the car, with another driver if one is given.
-struct StartGhost {
-  std::optional<evaluation::Driver> driver{};
-  std::string label;  ///< its name on the page
-};
-struct EndGhost {};
-/// An action of a user between two ticks.
-using Action =
-    std::variant<AddBody, SetBodies, MoveBody, RemoveBody, MoveCar, ChangeDriver, StartGhost, EndGhost>;
-
-/// The bodies of a world that do not drive, in the order of their numbers.
-std::vector<AddBody> bodies_of(const sim::World& world);
 
 /// Delays by which commands take effect later than the settings say, s.
 struct Delays {
@@ -62,11 +22,40 @@ struct Drives {
   bool edited = false;  ///< whether the drive differs from that of the command line
 
   int ticks() const noexcept { return car.steps(); }
+  const sim::World& world() const noexcept { return car.world(); }
   /// Drives one control period.
   void tick(const Delays& delays, const evaluation::ControlStepCallback& on_car = {},
             const evaluation::ControlStepCallback& on_ghost = {});
-  /// Throws std::invalid_argument if a world rejects the action, or a driver is not valid.
-  void apply(const Action& action);
 };
+
+/// An action of a user between two ticks. It throws std::invalid_argument, perhaps after it has changed
+/// something, if a world rejects it or a driver is not valid.
+using Action = std::function<void(Drives&)>;
+
+/// A box or disc that does not drive.
+struct Body {
+  maps::Pose pose;
+  double length = 0.3, width = 0.3;  ///< m; the length of a disc is its diameter
+  bool is_disc = false;
+};
+/// The bodies of a world that do not drive, in the order of their numbers.
+std::vector<Body> bodies_of(const sim::World& world);
+
+// These change the worlds of car and ghost.
+Action add_body(const Body& body);
+Action add_parked_car(const maps::Pose& pose);
+Action move_body(int body, const maps::Pose& pose);
+Action remove_body(int body);
+/// Replaces all bodies that do not drive; they are numbered in this order, after the driven cars.
+Action set_bodies(std::vector<Body> bodies);
+
+/// Puts the car elsewhere, but not the ghost.
+Action move_car(const maps::Pose& pose);
+/// Lets another driver drive the car from the next tick on.
+Action change_driver(evaluation::Driver driver);
+/// Starts a ghost as a copy of the car, with another driver if one is given. `label`: its name on the page.
+Action start_ghost(std::string label, std::optional<evaluation::Driver> driver = {});
+/// Takes the ghost away.
+void end_ghost(Drives& drives);
 
 }  // namespace slalom::view

@@ -1,8 +1,10 @@
 #include "view/session/session.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "src/evaluation/json.hpp"
 #include "view/protocol/frame_reader.hpp"
 
 namespace slalom::view {
@@ -10,7 +12,15 @@ namespace {
 
 constexpr auto min_frame_gap = std::chrono::milliseconds(12);  // no screen shows more
 constexpr auto max_state_gap = std::chrono::seconds(1);
-constexpr int max_late_ticks = 4;  // ticks that a late clock may owe
+constexpr int max_late_ticks = 4;         // ticks that a late clock may owe
+constexpr std::size_t max_changes = 200;  // that can be undone
+
+// The introduction, in slow motion until the cars have passed the obstacle.
+constexpr double approaching_rate = 0.5, passing_rate = 0.1;
+constexpr double reach = 4;             // m from the car to an obstacle ahead, about the length of a plan
+constexpr double beside = 1.5;          // m to either side of the car's axis
+constexpr double behind = 0.6;          // m from the centre of a car to that of a car that it has passed
+constexpr int max_passing_ticks = 120;  // a car may be blocked
 
 std::shared_ptr<const std::string> shared(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
@@ -26,7 +36,7 @@ std::size_t bytes_of(const SolveResult* solve) {
 
 /// The message of a tick: the blocks of the car, the bodies of its world, and the same of the ghost.
 std::string frame_of(std::string_view car, std::string_view ghost, const Drives& drives) {
-  std::string frame = std::string(car) + encode_bodies(drives.car.world());
+  std::string frame = std::string(car) + encode_bodies(drives.world());
   if (drives.ghost && !ghost.empty())
     frame += encode_ghost_frame(std::string(ghost) + encode_bodies(drives.ghost->world()));
   return frame;
@@ -38,13 +48,22 @@ std::string_view before_bodies(std::string_view frame) {
   return frame.empty() ? frame : frame.substr(0, FrameReader(frame).offset(Block::bodies) - head);
 }
 
+/// Whether a body that does not drive lies ahead of the first car of a world, or beside it.
+bool has_obstacle_near(const sim::World& world) {
+  const sim::CarState& car = world.state(0);
+  return std::ranges::any_of(bodies_of(world), [&](const Body& body) {
+    const auto [ahead, aside] = maps::inverse_transform({car.x, car.y, car.yaw}, {body.pose.x, body.pose.y});
+    return ahead > -behind && ahead < reach && std::abs(aside) < beside;
+  });
+}
+
 }  // namespace
 
 Session::Session(SessionOptions options, Server& server)
     : options_(std::move(options)), server_(server), waiting_(options_.wait_for_client) {
   install(options_.load(options_.scenario), options_.scenario);
-  if (!options_.against.empty()) start_ghost(options_.against);
-  introduces_ = options_.introduction;
+  if (!options_.against.empty()) set_ghost(options_.against);
+  state_.introduction = options_.introduction;
   slow_down();
 }
 
@@ -57,11 +76,19 @@ void Session::run(const std::atomic<bool>& stop) {
 }
 
 void Session::turn() {
-  for (const Received& each : server_.take()) handle(each);
+  for (const Received& each : server_.take()) {
+    if (each.kind == Received::Kind::joined)
+      join(each.client);
+    else if (each.kind == Received::Kind::left)
+      leave(each.client);
+    else
+      execute(each.client, parse_json_or_null(each.text));
+  }
   if (until_due() <= Clock::duration::zero()) {
     if (steps_left_ > 0) --steps_left_;
     tick();
   }
+  if (std::exchange(are_options_changed_, false)) tell_text(0, options_message(options_facts()));
   const auto now = Clock::now();
   if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
   last_state_ = now;
@@ -71,66 +98,61 @@ void Session::turn() {
 
 Session::Clock::duration Session::until_due() const {
   if (steps_left_ > 0) return Clock::duration::zero();
-  if (waiting_ || paused_) return std::chrono::hours(1);
-  if (rate_ <= 0) return Clock::duration::zero();
+  if (waiting_ || state_.paused) return std::chrono::hours(1);
+  if (state_.rate <= 0) return Clock::duration::zero();
   return due_ - Clock::now();
-}
-
-Drives Session::start_of(const LoadedScenario& scenario, const ScenarioNames& names) const {
-  return {evaluation::LapDrive({scenario.environment, {scenario.configuration, names.method}, scenario.lap},
-                               names.seed)};
 }
 
 /// Drives a scenario from its start, without a ghost.
 void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   // Everything that may throw comes before anything is replaced.
-  Drives drives = start_of(loaded, names);
+  const evaluation::Driver driver{loaded.configuration, names.method};
+  Drives drives{evaluation::LapDrive({loaded.environment, driver, loaded.lap}, names.seed)};
   scene_ = shared(encode_scene(*loaded.environment));
-  scenario_ = std::move(loaded);
-  names_ = names;
-  undo_ = {};
+  loaded_ = std::move(loaded.configuration);
+  state_.names = names;
+  undo_.clear();
+  redo_.clear();
   server_.send(0, {scene_, true});
   begin(std::move(drives));
 }
 
 /// Drives again from the start with the same seed and the present drivers of car and ghost.
 void Session::restart() {
-  LoadedScenario scenario = scenario_;
-  scenario.configuration = driver().configuration;
-  ScenarioNames names = names_;
-  names.method = driver().method;
-  Drives drives = start_of(scenario, names);
-  if (drives_->ghost) drives.apply(StartGhost{drives_->ghost->setup().driver, drives_->ghost_label});
+  Drives drives{evaluation::LapDrive(setup(), state_.names.seed)};
+  if (drives_->ghost) start_ghost(drives_->ghost_label, drives_->ghost->setup().driver)(drives);
   begin(std::move(drives));
 }
 
 void Session::begin(Drives drives) {
   drives_ = std::move(drives);
-  timeline_.begin(options_.history, control_period());
-  laps_.clear();
-  undo_.forget_bodies();
-  viewed_ = stop_at_ = -1;
+  timeline_ = Timeline(options_.history, control_period());
+  state_.laps.clear();
+  state_.contact.fill(-1);
+  ++state_.generation;
+  // Options can still be set back; the bodies of another world cannot.
+  for (auto* changes : {&undo_, &redo_}) {
+    std::erase_if(*changes, [](const Change& each) { return each.before.index() == 1; });
+    for (Change& each : *changes) each.ticks = 0;
+  }
+  viewed_ = stop_at_ = passing_ticks_ = -1;
   steps_left_ = 0;
-  contact_.fill(-1);
-  slow_motion_ = {};
   slow_down();
-  ++generation_;
   due_ = Clock::now();
-  is_state_changed_ = true;
-  tell_options();
+  is_state_changed_ = are_options_changed_ = true;
 }
 
 void Session::tick() {
-  if (rate_ > 0) {
+  if (state_.rate > 0) {
     const auto period = std::chrono::duration<double>(control_period());
-    const auto step = std::chrono::duration_cast<Clock::duration>(period / rate_);
+    const auto step = std::chrono::duration_cast<Clock::duration>(period / state_.rate);
     due_ = std::max(due_ + step, Clock::now() - max_late_ticks * step);
   }
   Drives& drives = *drives_;
   timeline_.checkpoint(drives, copy_bytes_);
   copy_bytes_ = 0;
   std::string car, ghost_car, ghost;
-  const Delays delays = real_time_ ? last_updates_ : Delays{};
+  const Delays delays = state_.real_time ? last_updates_ : Delays{};
   const auto on_ghost = [&](const evaluation::ControlStep& step) {
     std::vector<maps::Pose> plan;
     for (const auto& state : step.output.predicted) plan.push_back(state.pose);
@@ -153,19 +175,18 @@ void Session::tick() {
   if (drives.ghost) note_laps(*drives.ghost, drives.ghost_label, true);
   slow_down();
   if (number == stop_at_) {
-    paused_ = is_state_changed_ = true;
+    state_.paused = is_state_changed_ = true;
     stop_at_ = -1;
   }
   is_newest_sent_ = false;
-  if (Clock::now() - last_frame_ >= min_frame_gap || paused_) publish_newest();
+  if (Clock::now() - last_frame_ >= min_frame_gap || state_.paused) publish_newest();
 }
 
 StepFacts Session::facts_of(const evaluation::LapDrive& drive) const {
-  const auto& methods = options_.choices.methods;
   const evaluation::Driver& driver = drive.setup().driver;
   return {.deadline = drive.setup().control_period(),
           .prediction_step = driver.configuration.vehicle.time_step,
-          .method = static_cast<int>(std::ranges::find(methods, driver.method) - methods.begin())};
+          .method = options_.choices.method_index(driver.method)};
 }
 
 void Session::publish_newest() {
@@ -177,18 +198,18 @@ void Session::publish_newest() {
 void Session::note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost) {
   const sim::LapTimer& timer = *drive.world().laps(0);
   int laps = 0, contacts = 0;
-  for (const LapNote& lap : laps_) {
+  for (const LapNote& lap : state_.laps) {
     if (lap.ghost != is_ghost) continue;
     laps = lap.lap;
     contacts += lap.contacts;
   }
   if (timer.laps() <= laps) return;
-  laps_.push_back({.tick = drive.steps(),
-                   .lap = timer.laps(),
-                   .time = timer.last_lap_time(),
-                   .contacts = drive.collisions() - contacts,
-                   .method = method,
-                   .ghost = is_ghost});
+  state_.laps.push_back({.tick = drive.steps(),
+                         .lap = timer.laps(),
+                         .time = timer.last_lap_time(),
+                         .contacts = drive.collisions() - contacts,
+                         .method = method,
+                         .ghost = is_ghost});
   is_state_changed_ = true;
 }
 
@@ -197,22 +218,35 @@ void Session::show_step(int tick) {
   if (timeline_.empty()) return;
   tick = std::clamp(tick, timeline_.oldest(), timeline_.newest());
   viewed_ = tick == timeline_.newest() ? -1 : tick;
-  paused_ = is_newest_sent_ = is_state_changed_ = true;
+  state_.paused = is_newest_sent_ = is_state_changed_ = true;
   server_.publish(0, timeline_.at(tick).frame);
 }
 
-/// Keeps the introduction in slow motion until the obstacle has been passed.
+/// Keeps the introduction in slow motion until both cars have passed the obstacle.
 void Session::slow_down() {
-  if (!introduces_ || slow_motion_.is_over()) return;
-  const auto* ghost = drives_->ghost ? &std::as_const(*drives_->ghost).world() : nullptr;
-  const double rate = slow_motion_.rate({&std::as_const(drives_->car).world(), ghost});
-  is_state_changed_ = is_state_changed_ || rate != rate_;
-  rate_ = rate;
+  if (!state_.introduction || passing_ticks_ > max_passing_ticks) return;
+  const bool is_near = has_obstacle_near(drives_->world()) ||
+                       (drives_->ghost && has_obstacle_near(std::as_const(*drives_->ghost).world()));
+  if (is_near)
+    ++passing_ticks_;
+  else if (passing_ticks_ >= 0)
+    passing_ticks_ = max_passing_ticks + 1;
+  const bool is_over = passing_ticks_ > max_passing_ticks;
+  const double rate = is_over ? 1 : passing_ticks_ >= 0 ? passing_rate : approaching_rate;
+  is_state_changed_ = is_state_changed_ || rate != state_.rate;
+  state_.rate = rate;
 }
 
 /// A copy of the drives as they were after the tick that is shown.
 Drives Session::shown() const {
   return viewed_ >= 0 ? timeline_.after(viewed_) : *drives_;
+}
+
+/// Applies actions to the drives, from the tick that is shown on. If one throws, nothing has changed.
+void Session::perform(const std::vector<Action>& actions) {
+  Drives drives = shown();
+  for (const Action& each : actions) each(drives);
+  commit(std::move(drives), actions);
 }
 
 /// Makes a copy that `shown` returned the present, after these actions have been applied to it.
@@ -221,34 +255,39 @@ void Session::commit(Drives drives, const std::vector<Action>& actions) {
   drives_ = std::move(drives);
   if (is_back) {
     timeline_.forget_after(viewed_);
-    std::erase_if(laps_, [&](const LapNote& lap) { return lap.tick > viewed_ + 1; });
+    std::erase_if(state_.laps, [&](const LapNote& lap) { return lap.tick > viewed_ + 1; });
+    for (auto* changes : {&undo_, &redo_})
+      std::erase_if(*changes, [&](const Change& each) { return each.ticks > viewed_; });
     viewed_ = -1;
     due_ = Clock::now();
   }
   for (const Action& each : actions) timeline_.note(drives_->ticks(), each);
   is_state_changed_ = true;
-  if (is_back || !actions.empty()) tell_options();
+  are_options_changed_ = are_options_changed_ || is_back || !actions.empty();
 }
 
-/// Applies actions to the drives, from the tick that is shown on. If one throws, nothing has changed.
-void Session::perform(const std::vector<Action>& actions) {
+/// Edits the worlds. While nothing moves, this is shown at once. Returns the bodies before.
+std::vector<Body> Session::edit(const Action& action) {
   Drives drives = shown();
-  for (const Action& each : actions) drives.apply(each);
-  commit(std::move(drives), actions);
-}
-
-/// Edits the worlds. While nothing moves, this is shown at once.
-void Session::edit(const Action& action, int drag) {
-  Drives drives = shown();
-  const SetBodies before{bodies_of(std::as_const(drives.car).world())};
-  drives.apply(action);
-  if (!std::holds_alternative<MoveCar>(action)) undo_.remember(before, drag);
+  std::vector<Body> before = bodies_of(drives.world());
+  action(drives);
   commit(std::move(drives), {action});
-  if (timeline_.empty()) return;
+  if (timeline_.empty()) return before;
   const std::string& frame = *timeline_.steps().back().frame;
   const std::string_view ghost = FrameReader(frame).block(Block::ghost_frame);
   timeline_.show(shared(frame_of(before_bodies(frame), before_bodies(ghost), *drives_)));
-  if (paused_) server_.publish(0, timeline_.steps().back().frame);
+  if (state_.paused) server_.publish(0, timeline_.steps().back().frame);
+  return before;
+}
+
+/// Stores what a change has replaced, so that it can be undone; what was undone cannot be done again after
+/// it. Changes of the same drag count as one; 0 is never the same.
+void Session::remember(Change change, int drag) {
+  if (drag != 0 && drag == std::exchange(drag_, drag)) return;
+  drag_ = drag;
+  undo_.push_back(std::move(change));
+  if (undo_.size() > max_changes) undo_.erase(undo_.begin());
+  redo_.clear();
 }
 
 }  // namespace slalom::view

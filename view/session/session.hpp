@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -9,18 +8,29 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
 #include "view/session/drives.hpp"
-#include "view/session/scenario.hpp"
-#include "view/session/slow_motion.hpp"
 #include "view/session/timeline.hpp"
-#include "view/session/undo.hpp"
 
 namespace slalom::view {
+
+/// A scenario, loaded.
+struct LoadedScenario {
+  std::shared_ptr<const evaluation::Environment> environment;
+  vehicle::Configuration configuration;
+  evaluation::LapSettings lap;
+};
+
+/// A lap of an evaluation, loaded.
+struct LoadedLap {
+  ScenarioNames names;
+  LoadedScenario scenario;
+};
 
 struct SessionOptions {
   ScenarioNames scenario;
@@ -56,12 +66,16 @@ class Session {
  private:
   using Clock = std::chrono::steady_clock;
   using Json = nlohmann::ordered_json;
+  /// The options or the bodies that a change has replaced after some ticks.
+  struct Change {
+    int ticks;
+    std::variant<vehicle::Configuration, std::vector<Body>> before;
+  };
 
   // Driving.
   void install(LoadedScenario loaded, const ScenarioNames& names);
-  Drives start_of(const LoadedScenario& scenario, const ScenarioNames& names) const;
-  void begin(Drives drives);
   void restart();
+  void begin(Drives drives);
   void tick();
   void show_step(int tick);
   void publish_newest();
@@ -72,17 +86,17 @@ class Session {
 
   // Changing the drive, from the tick that is shown on.
   Drives shown() const;
-  void commit(Drives drives, const std::vector<Action>& actions);
   void perform(const std::vector<Action>& actions);
-  void edit(const Action& action, int drag);
-  void change_driver(const vehicle::Configuration& configuration, const std::string& method, bool remember);
+  void commit(Drives drives, const std::vector<Action>& actions);
+  std::vector<Body> edit(const Action& action);
+  void remember(Change change, int drag = 0);
+  void change_driver(const vehicle::Configuration& configuration, const std::string& method);
   void undo(bool again);
   void fork(const Json& command);
-  void start_ghost(const std::string& method);
+  void set_ghost(const std::string& method);
   void show_lap(const Json& command);
 
   // Commands.
-  void handle(const Received& received);
   void execute(std::uint64_t client, const Json& command);
   void obey(std::uint64_t client, const std::string& what, const Json& command);
   bool obey_transport(const std::string& what, const Json& command);
@@ -96,43 +110,41 @@ class Session {
   void tell_text(std::uint64_t client, std::string text);
   void tell_roles();
   void tell_past(std::uint64_t client, int from, int to);
-  void tell_options() { tell_text(0, options_message(options_facts())); }
   std::string hello() const;
   std::string state() const;
   OptionsFacts options_facts() const;
 
-  const evaluation::Driver& driver() const { return drives_->car.setup().driver; }
-  double control_period() const { return drives_->car.setup().control_period(); }
+  const evaluation::LapSetup& setup() const { return drives_->car.setup(); }
+  const evaluation::Driver& driver() const { return setup().driver; }
+  double control_period() const { return setup().control_period(); }
+  int shown_tick() const { return viewed_ >= 0 ? viewed_ : timeline_.newest(); }
 
   SessionOptions options_;
   Server& server_;
   std::vector<std::uint64_t> clients_;  ///< by age
   std::uint64_t driving_client_ = 0;    ///< 0 if there is no client
 
-  ScenarioNames names_;
-  LoadedScenario scenario_;
+  vehicle::Configuration loaded_;             ///< the configuration of the scenario, without changes
   std::shared_ptr<const std::string> scene_;  ///< message with the course
   std::optional<Drives> drives_;
   Timeline timeline_;
-  UndoHistory undo_;
-  std::vector<LapNote> laps_;
-  std::array<int, 4> contact_{-1, -1, -1, -1};  ///< see StateFacts
-  int generation_ = 0;                          ///< number of drives that have begun
+  std::vector<Change> undo_, redo_;  ///< what can be undone and done again, newest last
+  int drag_ = 0;                     ///< the drag of the last change
+  /// The drive as pages are told of it. `state` fills in what follows from drives and timeline.
+  DriveState state_;
 
   FrameEncoder encoder_;
   Delays last_updates_;         ///< s of wall clock
   std::size_t copy_bytes_ = 0;  ///< about the size of a copy of the drives
 
-  bool waiting_ = true, paused_ = false, real_time_ = false;
-  double rate_ = 1;          ///< ratio of simulated to real time; 0: as fast as possible
-  int viewed_ = -1;          ///< tick that is shown while it is not the newest
-  int stop_at_ = -1;         ///< tick at which to pause
-  int steps_left_ = 0;       ///< ticks of a command "step" that are still to come
-  bool introduces_ = false;  ///< the scenario of the introduction is driven, unchanged
-  SlowMotion slow_motion_;
+  bool waiting_ = true;
+  int viewed_ = -1;         ///< tick that is shown while it is not the newest
+  int stop_at_ = -1;        ///< tick at which to pause
+  int steps_left_ = 0;      ///< ticks of a command "step" that are still to come
+  int passing_ticks_ = -1;  ///< of the introduction, since the cars came to the obstacle; -1 before
   Clock::time_point due_ = Clock::now(), last_state_ = Clock::now(), last_frame_ = Clock::now();
   bool is_newest_sent_ = true;  ///< false if the newest tick came too early for a frame
-  bool is_state_changed_ = true;
+  bool is_state_changed_ = true, are_options_changed_ = false;
   std::uint64_t refused_ = 0;
   std::future<void> saving_;  ///< the last member: its thread ends before what it uses
 };

@@ -22,12 +22,6 @@ bool is_among(std::initializer_list<std::string_view> names, const std::string& 
 
 }  // namespace
 
-void Session::handle(const Received& received) {
-  if (received.kind == Received::Kind::joined) return join(received.client);
-  if (received.kind == Received::Kind::left) return leave(received.client);
-  execute(received.client, parse_json_or_null(received.text));
-}
-
 /// Executes a command and answers it: an error with the reason, and `done` if the command has an `id`.
 void Session::execute(std::uint64_t client, const Json& command) {
   const auto id = command.find("id");
@@ -61,20 +55,23 @@ void Session::obey(std::uint64_t client, const std::string& what, const Json& co
     throw std::invalid_argument("another page drives this car; take over to change it");
   is_state_changed_ = true;
   if (what == "nudge" && viewed_ >= 0) perform({});  // it is relative to where the car is shown
-  if (const auto action = edit_of(what, command, std::as_const(drives_->car).world().state(0)))
-    edit(*action, field::integer(command, "drag", 0));
-  else if (!obey_transport(what, command) && !obey_options(what, command))
+  if (const Action action = edit_of(what, command, drives_->world().state(0))) {
+    const int drag = field::integer(command, "drag", 0);
+    std::vector<Body> before = edit(action);
+    if (what != "nudge" && what != "place_car") remember({drives_->ticks(), std::move(before)}, drag);
+  } else if (!obey_transport(what, command) && !obey_options(what, command)) {
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command");
+  }
   // Another scenario or another rate ends the introduction.
   const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);
-  if (!introduces_ || !(is_other || is_among({"rate", "real_time", "lap"}, what))) return;
-  introduces_ = false;
-  if (is_other) rate_ = 1;
+  if (!state_.introduction || !(is_other || is_among({"rate", "real_time", "lap"}, what))) return;
+  state_.introduction = false;
+  if (is_other) state_.rate = 1;
 }
 
 bool Session::obey_transport(const std::string& what, const Json& command) {
   if (what == "pause") {
-    paused_ = true;
+    state_.paused = true;
     steps_left_ = 0;
     publish_newest();
     // A page that is far behind keeps the tick that it shows.
@@ -84,13 +81,13 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
     if (viewed_ >= 0) perform({});
     stop_at_ = -1;
     steps_left_ = 0;
-    paused_ = waiting_ = false;
+    state_.paused = waiting_ = false;
     due_ = Clock::now();
   } else if (what == "step") {
     const int ticks = std::clamp(field::integer(command, "ticks", 1), 1, max_steps);
     if (viewed_ >= 0) perform({});
     waiting_ = false;
-    paused_ = true;
+    state_.paused = true;
     steps_left_ = std::min(steps_left_ + ticks, max_steps);
   } else if (what == "seek") {
     steps_left_ = 0;
@@ -99,20 +96,20 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
     const double rate = field::number(command, "rate");
     if (rate != 0 && !(rate >= least_rate && rate <= most_rate))
       throw MalformedCommand("rate: must be 0 for the maximum speed, or in [0.001, 100]");
-    rate_ = rate;
+    state_.rate = rate;
     due_ = Clock::now();
   } else if (what == "real_time") {
-    real_time_ = field::flag(command, "on");
-    if (real_time_) rate_ = 1;
+    state_.real_time = field::flag(command, "on");
+    if (state_.real_time) state_.rate = 1;
   } else if (what == "restart") {
     restart();
-    paused_ = false;
+    state_.paused = false;
   } else if (what == "scenario") {
-    ScenarioNames present = names_;
+    ScenarioNames present = state_.names;
     present.method = driver().method;
     const ScenarioNames names = chosen_scenario(present, command, options_.choices);
     install(options_.load(names), names);
-    paused_ = false;
+    state_.paused = false;
   } else if (what == "lap") {
     show_lap(command);
   } else {
@@ -122,21 +119,26 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
 }
 
 bool Session::obey_options(const std::string& what, const Json& command) {
-  const evaluation::Driver present = driver();
+  const vehicle::Configuration before = driver().configuration;
+  const std::string method = driver().method;
+  const auto change_options = [&](const vehicle::Configuration& changed) {
+    change_driver(changed, method);
+    remember({drives_->ticks(), before});
+  };
   if (what == "set") {
-    vehicle::Configuration changed = present.configuration;
-    vehicle::set_option(changed, field::text(command, "key"), field::text(command, "value"), present.method);
-    change_driver(changed, present.method, true);
+    vehicle::Configuration changed = before;
+    vehicle::set_option(changed, field::text(command, "key"), field::text(command, "value"), method);
+    change_options(changed);
   } else if (what == "reset_options") {
-    change_driver(scenario_.configuration, present.method, true);
+    change_options(loaded_);
   } else if (what == "method") {
-    change_driver(present.configuration, field::text(command, "method"), false);
+    change_driver(before, field::text(command, "method"));
   } else if (what == "undo" || what == "redo") {
     undo(what == "redo");
   } else if (what == "fork") {
     fork(command);
   } else if (what == "ghost") {
-    start_ghost(field::text(command, "method"));
+    set_ghost(field::text(command, "method"));
   } else {
     return false;
   }
@@ -144,51 +146,53 @@ bool Session::obey_options(const std::string& what, const Json& command) {
 }
 
 /// Lets another configuration or method drive. With another control period the drive begins anew.
-void Session::change_driver(const vehicle::Configuration& configuration, const std::string& method,
-                            bool remember) {
-  const vehicle::Configuration before = driver().configuration;
-  const evaluation::LapSetup setup{scenario_.environment, {configuration, method}, scenario_.lap};
-  if (setup.control_period() == control_period())
-    perform({ChangeDriver{setup.driver}});
+void Session::change_driver(const vehicle::Configuration& configuration, const std::string& method) {
+  evaluation::LapSetup changed = setup();
+  changed.driver = {configuration, method};
+  if (changed.control_period() == control_period())
+    perform({view::change_driver(changed.driver)});
   else
-    begin({evaluation::LapDrive(setup, names_.seed)});
-  if (remember) undo_.remember(before);
-  tell_options();
+    begin({evaluation::LapDrive(changed, state_.names.seed)});
 }
 
+/// Takes the last change back, or with `again` the last undo.
 void Session::undo(bool again) {
-  UndoHistory history = undo_;
-  const SetBodies present{bodies_of(std::as_const(drives_->car).world())};
-  const auto last = history.take(again, driver().configuration, present);
-  if (!last) throw std::invalid_argument(again ? "nothing to redo" : "nothing to undo");
-  if (const auto* bodies = std::get_if<SetBodies>(&*last))
-    edit(*bodies, 0);
-  else
-    change_driver(std::get<vehicle::Configuration>(*last), driver().method, false);
-  undo_ = std::move(history);
-  tell_options();
+  auto &from = again ? redo_ : undo_, &to = again ? undo_ : redo_;
+  if (from.empty()) throw std::invalid_argument(again ? "nothing to redo" : "nothing to undo");
+  if (viewed_ >= 0) perform({});
+  if (from.empty()) return;  // going back has undone it
+  const Change last = from.back();
+  Change replaced{drives_->ticks(), driver().configuration};
+  if (const auto* bodies = std::get_if<1>(&last.before)) {
+    replaced.before = edit(set_bodies(*bodies));
+  } else {
+    change_driver(std::get<0>(last.before), driver().method);
+  }
+  from.pop_back();
+  to.push_back(std::move(replaced));
+  drag_ = 0;
 }
 
 /// Continues with another method or other options; the present driver continues as a ghost.
 void Session::fork(const Json& command) {
   const std::string method = field::text(command, "method"), before = driver().method;
-  vehicle::Configuration changed = driver().configuration;
-  const bool has_settings = apply_settings(changed, command, method);
-  const evaluation::LapSetup setup{scenario_.environment, {changed, method}, scenario_.lap};
-  if (setup.control_period() != control_period())
-    throw std::invalid_argument("fork: the control period cannot change during a drive");
   const vehicle::Configuration replaced = driver().configuration;
+  evaluation::LapSetup changed = setup();
+  changed.driver.method = method;
+  const bool has_settings = apply_settings(changed.driver.configuration, command, method);
+  if (changed.control_period() != control_period())
+    throw std::invalid_argument("fork: the control period cannot change during a drive");
   perform(
-      {StartGhost{.label = before == method ? before + " as before" : before}, ChangeDriver{setup.driver}});
-  if (has_settings) undo_.remember(replaced);
-  tell_options();
+      {start_ghost(before == method ? before + " as before" : before), view::change_driver(changed.driver)});
+  if (has_settings) remember({drives_->ticks(), replaced});
 }
 
-void Session::start_ghost(const std::string& method) {
-  if (method.empty()) return perform({EndGhost{}});
+/// Starts a ghost with a method as a copy of the car; without one, ends the ghost.
+void Session::set_ghost(const std::string& method) {
+  if (method.empty()) return perform({end_ghost});
   std::optional<evaluation::Driver> other;
   if (method != driver().method) other = {driver().configuration, method};
-  perform({StartGhost{other, method}});
+  perform({start_ghost(method, std::move(other))});
 }
 
 /// Shows a lap of the evaluation: from its start, or the seconds before one of its collisions.
@@ -198,35 +202,35 @@ void Session::show_lap(const Json& command) {
             contact = field::integer(command, "contact", -1);
   tell(0, {{"type", "note"}, {"message", "Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6"}});
   LoadedLap loaded = options_.load_lap(experiment, lap);
+  const evaluation::Driver driver{loaded.scenario.configuration, loaded.names.method};
+  Drives drives{
+      evaluation::LapDrive({loaded.scenario.environment, driver, loaded.scenario.lap}, loaded.names.seed)};
+  Drives before = drives;  // at the moment that is shown first
   int hit = -1;
-  std::optional<Drives> before;
   if (contact >= 0) {
-    Drives drives = start_of(loaded.scenario, loaded.names);
     const double period = drives.car.setup().control_period(), timeout = drives.car.setup().timeout();
     const int lead = static_cast<int>(before_contact / period);
-    const auto collisions = [&] { return drives.car.first_collisions(); };
-    Timeline search;
-    search.begin(timeout, period);
+    Drives latest = drives;
+    const auto collisions = [&] { return std::as_const(drives.car).first_collisions(); };
     while (std::ssize(collisions()) <= contact) {
       if (drives.ticks() * period > timeout)
         throw std::runtime_error(
             "the repeated lap has no such collision: another version drove the evaluation");
-      search.checkpoint(drives, copy_bytes_);
+      if (drives.ticks() % lead == 0) before = std::exchange(latest, drives);
       drives.tick({});
-      search.keep({drives.ticks() - 1, {}, std::make_shared<const std::string>()});
     }
     hit = static_cast<int>(collisions()[static_cast<std::size_t>(contact)].time / period);
-    if (hit > lead) before = search.after(hit - lead - 1);
+    while (before.ticks() < hit - lead) before.tick({});
   }
   install(std::move(loaded.scenario), loaded.names);
-  waiting_ = real_time_ = paused_ = false;
-  rate_ = 1;
+  waiting_ = state_.real_time = state_.paused = false;
+  state_.rate = 1;
   if (hit >= 0) {
-    if (before) drives_ = std::move(before);
+    drives_ = std::move(before);
     stop_at_ = hit + static_cast<int>(after_contact / control_period());
-    rate_ = contact_rate;
+    state_.rate = contact_rate;
   }
-  contact_ = {experiment, lap, contact, hit};
+  state_.contact = {experiment, lap, contact, hit};
   due_ = Clock::now();
 }
 

@@ -1,16 +1,30 @@
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "src/evaluation/json.hpp"
+#include "view/embedded.hpp"
 #include "view/protocol/frame_writer.hpp"
-#include "view/session/saving.hpp"
+#include "view/recording/encodings.hpp"
+#include "view/recording/recorder.hpp"
 #include "view/session/session.hpp"
 
 namespace slalom::view {
 namespace {
 
 constexpr int max_ticks_per_message = 800;
+
+std::string file_message(const std::string& name, const std::string& content) {
+  FrameWriter to;
+  to.begin(Block::file);
+  to.put(static_cast<std::uint32_t>(name.size()));
+  to.append(name);
+  to.pad();
+  to.append(content);
+  to.end();
+  return to.take();
+}
 
 }  // namespace
 
@@ -33,8 +47,7 @@ void Session::join(std::uint64_t client) {
   if (driving_client_ == 0) driving_client_ = client;
   tell_roles();
   if (std::exchange(waiting_, false)) due_ = Clock::now();
-  if (!timeline_.empty())
-    server_.publish(client, timeline_.at(viewed_ >= 0 ? viewed_ : timeline_.newest()).frame);
+  if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
 }
 
 /// If the client that drives has left, the one that has watched longest drives.
@@ -65,41 +78,31 @@ void Session::tell_past(std::uint64_t client, int from, int to) {
 }
 
 std::string Session::hello() const {
-  return hello_message(*scenario_.environment, options_.choices, options_.history, control_period());
+  return hello_message(*setup().environment, options_.choices, options_.history, control_period());
 }
 
 std::string Session::state() const {
-  ScenarioNames names = names_;
-  names.method = driver().method;
-  const auto& ghost = drives_->ghost;
-  return state_message({.names = names,
-                        .environment = *scenario_.environment,
-                        .laps = laps_,
-                        .time = std::as_const(drives_->car).world().time(),
-                        .control_period = control_period(),
-                        .tick = viewed_ >= 0 ? viewed_ : timeline_.newest(),
-                        .newest = timeline_.newest(),
-                        .oldest = timeline_.oldest(),
-                        .paused = paused_,
-                        .real_time = real_time_,
-                        .edited = drives_->edited,
-                        .introduction = introduces_,
-                        .rate = rate_,
-                        .ghost = ghost ? ghost->setup().driver.method : "",
-                        .ghost_label = drives_->ghost_label,
-                        .generation = generation_,
-                        .contact = contact_});
+  DriveState now = state_;
+  now.names.method = driver().method;
+  now.time = drives_->world().time();
+  now.tick = shown_tick();
+  now.newest = timeline_.newest();
+  now.oldest = timeline_.oldest();
+  now.edited = drives_->edited;
+  now.ghost = drives_->ghost ? drives_->ghost->setup().driver.method : "";
+  now.ghost_label = drives_->ghost_label;
+  return state_message(now, *setup().environment, control_period());
 }
 
 OptionsFacts Session::options_facts() const {
-  ScenarioNames names = names_;
+  ScenarioNames names = state_.names;
   names.method = driver().method;
   return {.names = names,
           .now = driver().configuration,
-          .loaded = scenario_.configuration,
+          .loaded = loaded_,
           .further_arguments = options_.further_arguments,
-          .undo = undo_.undos(),
-          .redo = undo_.redos()};
+          .undo = undo_.size(),
+          .redo = redo_.size()};
 }
 
 /// Sends the last minute to a client as a file, which a thread makes while the drive continues.
@@ -109,21 +112,39 @@ void Session::save(std::uint64_t client, const std::string& what) {
   if (timeline_.empty()) throw std::invalid_argument("nothing has been driven yet");
   if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     throw std::invalid_argument("the previous file is still being written");
-  SavedDrive drive{hello(), options_message(options_facts()), state(), scene_, {}};
-  for (const Timeline::Step& step : timeline_.steps()) drive.frames.push_back(step.frame);
-  const sim::WorldOptions world = scenario_.environment->world_options();
+  const auto tell_drive = [hello = hello(), course = scene_, options = options_message(options_facts()),
+                           state = state(), steps = timeline_.steps()](auto& to) {
+    to.add_text(hello);
+    to.add_course(*course);
+    to.add_text(options);
+    to.add_text(state);
+    for (const Timeline::Step& step : steps) to.add_frame(*step.frame);
+    to.finish();
+  };
+  const sim::WorldOptions world = setup().environment->world_options();
   const Json settings = {{"command_line", command_line(options_facts())}};
-  const RecorderOptions recorder{.program = options_.program,
-                                 .settings = {{"settings", json_text(settings)}},
-                                 .lidar_angle_min = world.lidar.angle_min(),
-                                 .lidar_angle_increment = world.lidar.angle_increment(),
-                                 .wall_clock = options_.record_times};
-  const std::string name = "slalom-" + scenario_.environment->course.name + "-" + driver().method + "-" +
+  const RecorderOptions recorder_options{.program = options_.program,
+                                         .settings = {{"settings", json_text(settings)}},
+                                         .lidar_angle_min = world.lidar.angle_min(),
+                                         .lidar_angle_increment = world.lidar.angle_increment(),
+                                         .wall_clock = options_.record_times};
+  const std::string name = "slalom-" + setup().environment->course.name + "-" + driver().method + "-" +
                            std::to_string(timeline_.newest()) + (is_replay ? ".html" : ".mcap");
-  saving_ = std::async(std::launch::async, [=, this, drive = std::move(drive)] {
+  saving_ = std::async(std::launch::async, [=, this] {
     try {
-      std::string file = is_replay ? replay_message(name, drive) : recording_message(name, drive, recorder);
-      server_.send(client, {std::make_shared<const std::string>(std::move(file)), true});
+      std::string file;
+      if (is_replay) {
+        std::vector<std::string> segments;
+        ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); });
+        tell_drive(replay);
+        file = replay_page(gunzip(page_gzip()), segments);
+      } else {
+        std::ostringstream stream;
+        Recorder recorder(stream, recorder_options);
+        tell_drive(recorder);
+        file = std::move(stream).str();
+      }
+      server_.send(client, {std::make_shared<const std::string>(file_message(name, file)), true});
     } catch (const std::exception& error) {
       tell(client, {{"type", "error"}, {"message", error.what()}});
     }

@@ -13,18 +13,15 @@ constexpr std::size_t max_copies = 48;
 
 }  // namespace
 
-void Timeline::begin(double seconds, double control_period) {
-  *this = {};
-  most_steps_ = static_cast<std::size_t>(seconds / control_period);
-  ticks_per_copy_ = std::max(1, static_cast<int>(std::lround(1 / control_period)));
-}
+Timeline::Timeline(double seconds, double control_period)
+    : most_steps_(static_cast<std::ptrdiff_t>(seconds / control_period)),
+      ticks_per_copy_(std::max(1, static_cast<int>(std::lround(1 / control_period)))) {}
 
 void Timeline::checkpoint(const Drives& drives, std::size_t copy_bytes) {
   if (!copies_.empty() && drives.ticks() - copies_.back().ticks() < ticks_per_copy_) return;
-  most_copies_ =
-      std::clamp(max_copy_bytes / std::max<std::size_t>(1, copy_bytes), std::size_t{4}, max_copies);
   copies_.push_back(drives);
-  while (copies_.size() > most_copies_) thin_out();
+  const std::size_t most = max_copy_bytes / std::max<std::size_t>(1, copy_bytes);
+  while (copies_.size() > std::clamp(most, std::size_t{4}, max_copies)) thin_out();
 }
 
 /// Forgets the copy among the older half whose neighbours are nearest to each other.
@@ -40,8 +37,7 @@ void Timeline::keep(Step step) {
   bytes_ += step.frame->size();
   steps_.push_back(std::move(step));
   const auto is_surplus = [&] {
-    return bytes_ > max_frame_bytes ||
-           newest() - copies_[1].ticks() >= static_cast<std::ptrdiff_t>(most_steps_);
+    return bytes_ > max_frame_bytes || newest() - copies_[1].ticks() >= most_steps_;
   };
   while (copies_.size() > 1 && is_surplus()) forget_oldest();
 }
@@ -51,7 +47,7 @@ void Timeline::forget_oldest() {
   copies_.pop_front();
   const int first = copies_.front().ticks();
   for (; !empty() && oldest() < first; steps_.pop_front()) bytes_ -= steps_.front().frame->size();
-  std::erase_if(actions_, [&](const Noted& each) { return each.ticks <= first; });
+  std::erase_if(actions_, [&](const auto& each) { return each.first <= first; });
 }
 
 void Timeline::show(std::shared_ptr<const std::string> frame) {
@@ -62,9 +58,9 @@ void Timeline::show(std::shared_ptr<const std::string> frame) {
 Drives Timeline::after(int tick) const {
   const auto later = std::ranges::find_if(copies_, [&](const Drives& each) { return each.ticks() > tick; });
   Drives drives = *std::prev(later);
-  auto noted = std::ranges::find_if(actions_, [&](const Noted& e) { return e.ticks > drives.ticks(); });
+  auto noted = std::ranges::find_if(actions_, [&](const auto& each) { return each.first > drives.ticks(); });
   while (drives.ticks() <= tick) {
-    for (; noted != actions_.end() && noted->ticks <= drives.ticks(); ++noted) drives.apply(noted->action);
+    for (; noted != actions_.end() && noted->first <= drives.ticks(); ++noted) noted->second(drives);
     drives.tick(at(drives.ticks()).delays);
   }
   return drives;
@@ -73,7 +69,7 @@ Drives Timeline::after(int tick) const {
 void Timeline::forget_after(int tick) {
   for (; newest() > tick; steps_.pop_back()) bytes_ -= steps_.back().frame->size();
   while (copies_.size() > 1 && copies_.back().ticks() > tick) copies_.pop_back();
-  std::erase_if(actions_, [&](const Noted& each) { return each.ticks > tick; });
+  std::erase_if(actions_, [&](const auto& each) { return each.first > tick; });
 }
 
 }  // namespace slalom::view

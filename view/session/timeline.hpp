@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "view/session/drives.hpp"
@@ -21,14 +22,14 @@ class Timeline {
     std::shared_ptr<const std::string> frame;  ///< message to the page
   };
 
-  /// Forgets everything. `seconds`: the time that is stored; `control_period`: s per tick.
-  void begin(double seconds, double control_period);
+  /// `seconds`: the time that is stored; `control_period`: s per tick.
+  explicit Timeline(double seconds = 0, double control_period = 1);
 
   /// Keeps a copy of the drives if the last one is a second old. To be called before each tick;
   /// `copy_bytes`: about the size of a copy, of which 1 GiB is kept at most.
   void checkpoint(const Drives& drives, std::size_t copy_bytes);
   /// Notes an action after `ticks` ticks.
-  void note(int ticks, Action action) { actions_.push_back({ticks, std::move(action)}); }
+  void note(int ticks, Action action) { actions_.emplace_back(ticks, std::move(action)); }
   /// Adds the tick that was driven last.
   void keep(Step step);
 
@@ -47,19 +48,15 @@ class Timeline {
   void forget_after(int tick);
 
  private:
-  struct Noted {
-    int ticks;
-    Action action;
-  };
   void thin_out();
   void forget_oldest();
 
-  std::size_t most_steps_ = 0;
-  int ticks_per_copy_ = 1;
-  std::size_t most_copies_ = 0, bytes_ = 0;  ///< bytes of the frames
-  std::deque<Step> steps_;                   ///< from the first tick after the oldest copy on
-  std::vector<Noted> actions_;               ///< in order
-  std::deque<Drives> copies_;                ///< by age
+  std::ptrdiff_t most_steps_;
+  int ticks_per_copy_;
+  std::size_t bytes_ = 0;                        ///< of the frames
+  std::deque<Step> steps_;                       ///< from the first tick after the oldest copy on
+  std::vector<std::pair<int, Action>> actions_;  ///< after how many ticks, in order
+  std::deque<Drives> copies_;                    ///< by age
 };
 
 }  // namespace slalom::view

@@ -1,5 +1,6 @@
 import type { Past } from "./past";
-import type { LapRow, Pose, State } from "./protocol";
+import { page, scalar } from "./page";
+import type { LapRow, Pose } from "./protocol";
 
 /** The control steps of a lap: share of the way round (0 to 1), time since its start (s), and pose. */
 interface Driven {
@@ -49,11 +50,11 @@ export class BestLap {
   }
 
   /** To be called when laps or steps may have become known, or unknown since the drive went back. */
-  update(state: State, past: Past, scalars: string[]) {
-    if (this.lap && !state.laps.some((row) => isSame(row, this.lap!.row))) this.lap = undefined;
-    const best = bestOf(state.laps);
-    if (best && !(this.lap && isSame(best, this.lap.row)))
-      this.lap = collected(best, past, scalars) ?? this.lap;
+  update(past: Past) {
+    const { laps } = page.state!;
+    if (this.lap && !laps.some((row) => isSame(row, this.lap!.row))) this.lap = undefined;
+    const best = bestOf(laps);
+    if (best && !(this.lap && isSame(best, this.lap.row))) this.lap = collected(best, past) ?? this.lap;
   }
 
   /** The time (s) by which a car is behind at this share of the way, `time` after the start of its lap. */
@@ -76,10 +77,7 @@ export class BestLap {
 }
 
 /** The steps of a lap, or undefined where one of them is not known. */
-function collected(row: LapRow, past: Past, scalars: string[]): Driven | undefined {
-  const [lap, progress, time, x, y, yaw] = ["lap", "progress", "lap_time", "x", "y", "yaw"].map((name) =>
-    scalars.indexOf(name),
-  );
+function collected(row: LapRow, past: Past): Driven | undefined {
   const driven: Driven = { row, progress: [], times: [], poses: [] };
   let isWithin = false;
   for (let position = past.oldest; position <= past.newest; ++position) {
@@ -88,13 +86,14 @@ function collected(row: LapRow, past: Past, scalars: string[]): Driven | undefin
       if (isWithin) return undefined;
       continue;
     }
-    isWithin = step[lap] === row.lap - 1;
+    const of = (name: string) => scalar(name, step);
+    isWithin = of("lap") === row.lap - 1;
     if (!isWithin && driven.times.length) break;
     // A car that rolls back is at these places again later.
-    if (!isWithin || step[progress] <= (driven.progress.at(-1) ?? -Infinity)) continue;
-    driven.progress.push(step[progress]);
-    driven.times.push(step[time]);
-    driven.poses.push({ x: step[x], y: step[y], yaw: step[yaw] });
+    if (!isWithin || of("progress") <= (driven.progress.at(-1) ?? -Infinity)) continue;
+    driven.progress.push(of("progress"));
+    driven.times.push(of("lap_time"));
+    driven.poses.push({ x: of("x"), y: of("y"), yaw: of("yaw") });
   }
   return driven.times.length > 1 && driven.progress[0] < atEnds && driven.progress.at(-1)! > 1 - atEnds
     ? driven

@@ -1,6 +1,6 @@
 import type { Handlers, Link } from "./link";
-import { decode } from "./decode";
-import type { Text } from "./protocol";
+import type { Command } from "./page";
+import { decode, type Frame, type Text } from "./protocol";
 
 /** Keeps a WebSocket open: reconnects by itself, with a wait that grows to three seconds. */
 export class Connection implements Link {
@@ -19,11 +19,11 @@ export class Connection implements Link {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
-  send(command: Record<string, unknown>) {
+  send(command: Command) {
     if (this.connected) this.socket!.send(JSON.stringify(command));
   }
 
-  ask(command: Record<string, unknown>): Promise<void> {
+  ask(command: Command): Promise<void> {
     if (!this.connected) return Promise.reject(new Error("There is no connection to the server."));
     const id = ++this.asked;
     return new Promise((done, fail) => {
@@ -95,11 +95,11 @@ export class Connection implements Link {
     const message = decode(data);
     if (message.file) this.handlers.file(message.file.name, message.file.content);
     else if (message.past) this.handlers.past(message.past);
-    else if (message.scene) this.handlers.scene(message.scene);
-    else if (message.frame) {
+    else if (message.grid) this.handlers.scene(message);
+    else {
       this.received += 1;
       this.arrived += 1;
-      this.handlers.frame(message.frame);
+      this.handlers.frame(message as Frame);
     }
   }
 }

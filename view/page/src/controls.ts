@@ -1,4 +1,5 @@
 import { all, get, press } from "./dom";
+import { redraw } from "./page";
 import type { Layer, Term } from "./scene/layers";
 import type { Tool } from "./scene/pointer";
 import type { SceneView } from "./scene/scene";
@@ -9,11 +10,7 @@ const stride = 40; // pixels that an arrow key moves the view
 export class Controls {
   tool: Tool = "disc";
 
-  /** `changed`: the scene is to be drawn again. */
-  constructor(
-    private readonly scene: SceneView,
-    private readonly changed: () => void,
-  ) {
+  constructor(private readonly scene: SceneView) {
     for (const b of all("[data-tool]")) b.onclick = () => this.setTool(b.dataset.tool as Tool);
     for (const b of all("[data-follow]")) b.onclick = () => this.setFollow(b.dataset.follow as "follow");
     for (const box of all<HTMLInputElement>("[data-layer]"))
@@ -21,12 +18,12 @@ export class Controls {
         const name = box.dataset.layer as Layer;
         if (box.checked) scene.visible.add(name);
         else scene.visible.delete(name);
-        changed();
+        redraw();
       };
     const term = get<HTMLSelectElement>("term");
     term.onchange = () => {
       scene.term = term.value as Term;
-      changed();
+      redraw();
     };
   }
 
@@ -38,7 +35,7 @@ export class Controls {
   setFollow(what: "follow" | "heading" | "fit") {
     if (what === "fit") this.scene.fit();
     else this.scene.camera.follow = what;
-    this.changed();
+    redraw();
   }
 
   /** Shows what the camera follows: a drag may have changed it. */
@@ -52,11 +49,11 @@ export class Controls {
     const { scene } = this;
     const move = (x: number, y: number) => () => {
       scene.camera.pan(x * stride, y * stride);
-      this.changed();
+      redraw();
     };
     const zoom = (factor: number) => () => {
       scene.zoom(factor);
-      this.changed();
+      redraw();
     };
     return {
       f: () => this.setFollow(scene.camera.follow === "follow" ? "heading" : "follow"),

@@ -1,49 +1,26 @@
 import { get } from "./dom";
-import type { State } from "./protocol";
+import { page, scalar, send } from "./page";
 
-interface Setting {
-  send(command: Record<string, unknown>): void;
-  state(): State | undefined;
-  /** The tick that the page shows, if it shows any. */
-  shown(): number | undefined;
-  /** Opens the dialog of a fork, in a drive that is paused. */
-  fork(): void;
-}
-
-/** The controls of the drive: time, nudges and forks. Returns their keys. */
-export function attachDrive({ send, state, shown, fork }: Setting): Record<string, () => void> {
+/** The controls of the drive: time, nudges and forks. `openFork` opens the dialog. Returns their keys. */
+export function attachDrive(openFork: () => void): Record<string, () => void> {
   const nudge = (left: number) => () => send({ do: "nudge", left });
   const step = () => send({ do: "step" });
   const restart = () => send({ do: "restart" });
   const back = () => {
-    const now = state();
+    const now = page.state;
     if (now) send({ do: "seek", tick: (now.paused ? now.tick : now.newest) - 1 });
   };
   const play = () => {
     // A slow browser shows an earlier tick than the server has reached; it pauses at the tick shown.
-    if (state()?.paused) send({ do: "play" });
-    else send({ do: "pause", tick: shown() });
+    if (page.state?.paused) send({ do: "play" });
+    else send({ do: "pause", tick: page.frame && scalar("tick") });
   };
-  const openFork = () => {
-    if (!state()?.paused) send({ do: "pause" });
-    fork();
+  const fork = () => {
+    if (!page.state?.paused) send({ do: "pause" });
+    openFork();
   };
-  const buttons = {
-    play,
-    step,
-    restart,
-    fork: openFork,
-    "nudge-left": nudge(0.15),
-    "nudge-right": nudge(-0.15),
-  };
+  const [left, right] = [nudge(0.15), nudge(-0.15)];
+  const buttons = { play, step, restart, fork, "nudge-left": left, "nudge-right": right };
   for (const [id, act] of Object.entries(buttons)) get(id).onclick = act;
-  return {
-    " ": play,
-    ".": step,
-    ",": back,
-    "[": buttons["nudge-left"],
-    "]": buttons["nudge-right"],
-    r: restart,
-    k: openFork,
-  };
+  return { " ": play, ".": step, ",": back, "[": left, "]": right, r: restart, k: fork };
 }

@@ -1,4 +1,5 @@
 import { get } from "./dom";
+import { ask, send } from "./page";
 import type { Hello, State } from "./protocol";
 import { toast } from "./toast";
 
@@ -15,10 +16,7 @@ function choose(id: string, value: string) {
 
 /** The fields of the scenario, in the header and in its sheet. */
 export class ScenarioFields {
-  constructor(
-    send: (command: Record<string, unknown>) => void,
-    ask: (command: Record<string, unknown>) => Promise<void>,
-  ) {
+  constructor() {
     // A field keeps what was typed while it is not valid.
     for (const key of ["course", "config", "seed", ...numbers]) {
       const field = get<HTMLInputElement>(key);

@@ -1,6 +1,7 @@
 import { all, get } from "./dom";
 import { modesOf, verdict } from "./modes";
-import type { Frame, Hello } from "./protocol";
+import { page, scalar, send } from "./page";
+import type { Frame } from "./protocol";
 import type { Camera } from "./scene/camera";
 
 /** Layers that the introduction does not explain. */
@@ -12,12 +13,9 @@ export class Introduction {
   private hasJudged = false; // a caption has said what a controller does
   private tick = 0;
 
-  /** `again` drives from the start; `close` shows the ordinary view. */
-  constructor(
-    again: () => void,
-    private readonly close: () => void,
-  ) {
-    get("introduction-again").onclick = again;
+  /** `close` shows the ordinary view. */
+  constructor(private readonly close: () => void) {
+    get("introduction-again").onclick = () => send({ do: "restart" });
     get("introduction-close").onclick = () => this.end();
   }
 
@@ -44,16 +42,15 @@ export class Introduction {
   }
 
   /** Says what is to be seen in a frame. */
-  show(frame: Frame, hello: Hello) {
+  show(frame: Frame) {
     if (!this.isOpen || !frame.ghostFrame) return;
     const both = [frame, frame.ghostFrame];
     const modes = both.map(modesOf);
-    const scalar = (of: Frame, name: string) => of.scalars[hello.scalars.indexOf(name)];
-    const method = (of: Frame) => hello.methods[scalar(of, "method")];
-    if (scalar(frame, "tick") < this.tick) this.hasJudged = false;
-    this.tick = scalar(frame, "tick");
+    const method = (of: Frame) => page.hello!.methods[scalar("method", of.scalars)];
+    if (scalar("tick") < this.tick) this.hasJudged = false;
+    this.tick = scalar("tick");
     this.hasJudged ||= modes.some((each) => verdict(each) !== undefined);
-    const outcome = (of: Frame) => `${method(of)} ${collisions(scalar(of, "contacts"))}`;
+    const outcome = (of: Frame) => `${method(of)} ${collisions(scalar("contacts", of.scalars))}`;
     const passing =
       "Lines are samples: the wider and the more opaque, the more weight. The line with dots is the plan.";
     const drivers = both.map(method).join(" and ");

@@ -1,3 +1,4 @@
+import type { Command } from "./page";
 import type { Frame, Scene, Text } from "./protocol";
 
 /** Who gets what comes, from a server or from a recording. */
@@ -14,9 +15,8 @@ export interface Handlers {
 
 /** Where the page gets its messages from and sends its commands to. */
 export interface Link {
-  send(command: Record<string, unknown>): void;
-  /** Sends a command and waits until it was executed; fails with the reason why it could not be. */
-  ask(command: Record<string, unknown>): Promise<void>;
+  send(command: Command): void;
+  ask(command: Command): Promise<void>;
   /** Tells that what was received has been drawn. */
   drawn(): void;
   readonly received: number; // frames

@@ -9,15 +9,16 @@ import { ScenarioFields } from "./fields";
 import { Introduction } from "./introduction";
 import { attachKeys, attachPanes, returnFocus } from "./keys";
 import { fillLists, foldHeader } from "./layout";
-import type { Handlers, Link } from "./link";
+import type { Handlers } from "./link";
 import { Charts } from "./panes/charts";
 import { EvaluationPane } from "./panes/evaluation";
 import { ForkBox } from "./panes/fork";
 import { OptionsPane } from "./panes/options";
+import { isReplay, page, period, redraw, scalar, send } from "./page";
 import { Gaps, Past } from "./past";
-import { Player, recordings } from "./player";
+import { Player } from "./player";
 import { Popover } from "./popover";
-import type { Frame, Hello, State, Text } from "./protocol";
+import type { State, Text } from "./protocol";
 import { Readout } from "./readout";
 import { attachSaveMenu, saveFile } from "./save";
 import { Lanes } from "./scene/lanes";
@@ -32,13 +33,6 @@ import { download, toast } from "./toast";
 fillLists();
 foldHeader();
 
-let hello: Hello | undefined;
-let state: State | undefined;
-let frame: Frame | undefined;
-let position = 0; // number of the shown frame, in the past
-let dirty = true; // the page is to be drawn again
-let changedOptions: string[] = [];
-
 const wanted = new URLSearchParams(location.hash.slice(1)); // scenario in the address, still to be set
 let isNew = wanted.size === 0; // whether nobody has told this page what to show
 const theme = new Themes();
@@ -46,9 +40,7 @@ const scene = new SceneView(get<HTMLCanvasElement>("scene"), theme.now);
 const past = new Past(Infinity);
 const ghostPast = new Past(Infinity);
 const best = new BestLap();
-const tickOf = (time: number) => Math.round(time / (state?.control_period ?? 1));
-const scalar = (name: string) => (frame && hello ? frame.scalars[hello.scalars.indexOf(name)] : NaN);
-const redraw = () => (dirty = true);
+const tickOf = (time: number) => Math.round(time / period());
 
 function forgetPast() {
   past.clear();
@@ -58,7 +50,7 @@ function forgetPast() {
 
 const handlers: Handlers = {
   frame(next, at) {
-    frame = next;
+    page.frame = next;
     showFrame(at);
   },
   scene(next) {
@@ -69,10 +61,10 @@ const handlers: Handlers = {
   },
   past(scalars, from) {
     gaps.answered();
-    const width = hello?.scalars.length ?? 0;
+    const width = page.hello?.scalars.length ?? 0;
     for (let i = 0; width && i < scalars.length; i += width) {
       const row = scalars.slice(i, i + width);
-      past.set(from ?? row[hello!.scalars.indexOf("tick")], row);
+      past.set(from ?? scalar("tick", row), row);
     }
     showBestLap();
     redraw();
@@ -81,47 +73,36 @@ const handlers: Handlers = {
   file: saveFile,
   status(connected, attempts) {
     showConnection(connected, attempts);
-    if (connected) state = undefined; // it may be that of another server
+    if (connected) page.state = undefined; // it may be that of another server
   },
 };
-const recorded = recordings();
-const isReplay = recorded.length > 0;
-const link: Link = isReplay ? new Player(handlers, recorded) : new Connection(handlers);
-const send = (command: Record<string, unknown>) => link.send(command);
-const ask = (command: Record<string, unknown>) => link.ask(command);
+page.link = isReplay ? new Player(handlers) : new Connection(handlers);
 const seek = (tick: number) => send({ do: "seek", tick });
 
 const charts = new Charts(get("charts"), { past, hovered: hover, chosen: (time) => seek(tickOf(time)) });
-const options = new OptionsPane(send);
-const fork = new ForkBox(ask);
+const options = new OptionsPane();
+const fork = new ForkBox();
 const readout = new Readout();
-const gaps = new Gaps(send);
+const gaps = new Gaps();
 const lanes = new Lanes(scene);
-const fields = new ScenarioFields(send, ask);
-const controls = new Controls(scene, redraw);
-const introduction = new Introduction(
-  () => send({ do: "restart" }),
-  () => setSplit(false),
-);
-const timeline = new Timeline(isReplay, seek, (at) =>
-  hover(at === undefined || !state ? undefined : at * state.control_period),
-);
-const evaluation = new EvaluationPane(send, () => {
+const fields = new ScenarioFields();
+const controls = new Controls(scene);
+const introduction = new Introduction(() => setSplit(false));
+const timeline = new Timeline(seek, (at) => hover(at && at * period()));
+const evaluation = new EvaluationPane(() => {
   scene.marks = evaluation.marks();
   redraw();
 });
 
 function got(message: Text) {
   if (message.type === "hello") {
-    hello = message;
+    page.hello = message;
     if (!isReplay) past.most = ghostPast.most = Math.ceil(message.history_seconds / message.control_period);
-    scene.hello = message;
     fields.offer(message);
   } else if (message.type === "state") showState(message);
   else if (message.type === "options") {
-    options.show(message);
-    fork.takeOptions(message);
-    changedOptions = message.changed;
+    page.options = message;
+    options.show();
     showAddress();
   } else if (message.type === "role") {
     showRole(message.drives);
@@ -138,13 +119,13 @@ function got(message: Text) {
 }
 
 function showAddress() {
-  if (!state || isReplay || wanted.size) return;
-  const address = addressOf(state, changedOptions);
+  if (!page.state || isReplay || wanted.size) return;
+  const address = addressOf(page.state);
   history.replaceState(null, "", `${location.pathname}${location.search}#${address}`);
 }
 
 function showState(next: State) {
-  if (state && next.generation !== state.generation) forgetPast();
+  if (page.state && next.generation !== page.state.generation) forgetPast();
   if (isNew && next.introduction && !isReplay) {
     setSplit(true);
     introduction.open(scene.camera);
@@ -152,11 +133,11 @@ function showState(next: State) {
   isNew = false;
   if (!next.introduction) introduction.end();
   if (!isReplay && next.paused) past.forgetAfter(next.newest);
-  state = next;
+  page.state = next;
   fields.show(next);
-  showStatus(next, isReplay);
+  showStatus(next);
   showTimeline();
-  if (wanted.size) applyAddress(wanted, next, changedOptions, send);
+  if (wanted.size) applyAddress(wanted);
   showAddress();
   evaluation.showState(next);
   showBestLap();
@@ -168,47 +149,46 @@ function setSplit(on: boolean) {
   scene.setSplit(on);
   press(get("split"), on);
   resize();
-  showFrame(position);
+  showFrame(page.position);
 }
 
 function showTimeline() {
-  if (!state) return;
-  timeline.show(state, isReplay ? state.newest : Math.max(state.newest, past.newest), scalar("time"));
+  const { state } = page;
+  if (state) timeline.show(isReplay ? state.newest : Math.max(state.newest, past.newest));
 }
 
 /** Puts the cursor of the charts, the slider and the scene to a time (s). */
 function hover(time: number | undefined) {
-  const at = time === undefined || !state ? undefined : tickOf(time);
+  const at = time === undefined || !page.state ? undefined : tickOf(time);
   const row = at === undefined ? undefined : past.at(at);
   charts.showCursor(time);
   timeline.showCursor(at);
-  const of = (name: string) => row![hello!.scalars.indexOf(name)];
-  scene.probe = row && { x: of("x"), y: of("y"), yaw: of("yaw") };
+  scene.probe = row && { x: scalar("x", row), y: scalar("y", row), yaw: scalar("yaw", row) };
   redraw();
 }
 
 /** Shows the best lap and the other figures, whenever a frame, a lap or late steps arrive. */
 function showBestLap() {
-  if (!frame || !hello) return;
-  if (state) best.update(state, past, hello.scalars);
+  if (!page.frame || !page.hello) return;
+  if (page.state) best.update(past);
   scene.best = best.at(scalar("lap_time"));
-  readout.show(frame, hello, state, best);
+  readout.show(best);
 }
 
 function showFrame(at?: number) {
-  if (!frame || !hello) return;
-  position = at ?? scalar("tick");
-  if (!isReplay && !state?.paused) for (const each of [past, ghostPast]) each.forgetAfter(position);
+  const { frame } = page;
+  if (!frame || !page.hello) return;
+  const isPaused = page.state?.paused;
+  const position = at ?? scalar("tick");
+  page.position = position;
+  if (!isReplay && !isPaused) for (const each of [past, ghostPast]) each.forgetAfter(position);
   past.set(position, frame.scalars);
   if (frame.ghostFrame) ghostPast.set(position, frame.ghostFrame.scalars);
-  scene.frame = frame;
-  const period = state?.control_period ?? hello.control_period;
-  charts.show(frame, hello, position, period);
   showBestLap();
   get("split").hidden = !frame.ghostFrame;
-  lanes.show(frame, hello, position * period);
-  introduction.show(frame, hello);
-  if (!state?.paused) showTimeline();
+  lanes.show(frame, position * period());
+  introduction.show(frame);
+  if (!isPaused) showTimeline();
   redraw();
 }
 
@@ -226,12 +206,12 @@ for (const id of ["stage", "layers", "readout", "introduction"]) resized.observe
 resize();
 
 function draw() {
-  if (dirty) {
-    dirty = false;
-    if (!isReplay && state) gaps.fill(past, state);
-    const scalars = hello?.scalars ?? [];
-    scene.driven = past.line(scalars, position);
-    scene.ghostDriven = scene.isSideBySide ? ghostPast.line(scalars, position) : [];
+  const { frame } = page;
+  if (page.isDirty) {
+    page.isDirty = false;
+    if (!isReplay && page.state) gaps.fill(past);
+    scene.driven = past.line(page.position);
+    scene.ghostDriven = scene.isSideBySide ? ghostPast.line(page.position) : [];
     scene.draw();
     lanes.place();
     charts.draw();
@@ -245,7 +225,7 @@ function draw() {
     get("scale-low").textContent = scene.costRange[0].toPrecision(3);
     get("scale-high").textContent = scene.costRange[1].toPrecision(3);
   }
-  link.drawn();
+  page.link.drawn();
   requestAnimationFrame(draw);
 }
 
@@ -262,24 +242,11 @@ function chooseMark(x: number, y: number) {
   if (mark) evaluation.go(mark.lap, mark.contact);
   return mark !== undefined;
 }
-attachPointer({
-  canvas: get<HTMLCanvasElement>("scene"),
-  scene,
-  send,
-  tool: () => controls.tool,
-  redraw,
-  clicked: chooseMark,
-  fixed: isReplay,
-});
+attachPointer(get<HTMLCanvasElement>("scene"), scene, () => controls.tool, chooseMark);
 
 const click = (id: string, act: () => void) => (get(id).onclick = act);
 const help = () => get<HTMLDialogElement>("help-box").showModal();
-const driveKeys = attachDrive({
-  send,
-  state: () => state,
-  shown: () => (frame ? scalar("tick") : undefined),
-  fork: () => !isReplay && hello && state && fork.open(hello, state),
-});
+const driveKeys = attachDrive(() => !isReplay && page.hello && page.state && fork.open());
 click("theme", () => {
   theme.toggle();
   showTheme();
@@ -288,16 +255,12 @@ click("help", help);
 click("take-over", () => send({ do: "take_over" }));
 click("split", () => {
   if (introduction.isOpen) introduction.end();
-  else if (frame?.ghostFrame) setSplit(!scene.isSplit);
+  else if (page.frame?.ghostFrame) setSplit(!scene.isSplit);
 });
-click("csv", () => download(`slalom-${state?.course}-${position}.csv`, charts.csv(), "text/csv"));
+click("csv", () => download(`slalom-${page.state?.course}-${page.position}.csv`, charts.csv(), "text/csv"));
 new Popover(get("scenario-open"), get("scenario"));
 const showPane = attachPanes(document.querySelector("nav")!, (name) => name === "charts" && charts.rebuild());
-const menu = attachSaveMenu(
-  send,
-  () => scene.draw(),
-  () => state,
-);
+const menu = attachSaveMenu(() => scene.draw());
 
 function deleteSelected() {
   if (scene.selected > 0) send({ do: "remove", body: scene.selected });
@@ -334,13 +297,10 @@ showPane("charts");
 requestAnimationFrame(draw);
 
 // The state of the page, for tests and for debugging in the console.
-const inside = {
-  frame: () => frame,
-  state: () => state,
-  hello: () => hello,
-  received: () => link.received,
-  waiting: () => link.waiting,
-};
-const properties = Object.entries(inside).map(([name, get]) => [name, { get }]);
-const known = { replay: isReplay, scalar, scene, past, best, send };
-Object.assign(window, { slalom: Object.defineProperties(known, Object.fromEntries(properties)) });
+const names = ["frame", "state", "hello"] as const;
+const getters = names.map((name) => [name, { get: () => page[name] }]);
+const counters = (["received", "waiting"] as const).map((name) => [name, { get: () => page.link[name] }]);
+const known = { replay: isReplay, scalar: (name: string) => scalar(name), scene, past, best, send };
+Object.assign(window, {
+  slalom: Object.defineProperties(known, Object.fromEntries([...getters, ...counters])),
+});

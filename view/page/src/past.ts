@@ -1,4 +1,4 @@
-import type { State } from "./protocol";
+import { page, scalar, send } from "./page";
 
 /**
  * The scalars of the control steps of the last minute, by their position: the tick, or the index of the frame
@@ -49,14 +49,14 @@ export class Past {
   }
 
   /** The line that was driven, as x and y (m) one after the other, up to a position. */
-  line(scalars: string[], position: number): number[] {
-    const [x, y] = [scalars.indexOf("x"), scalars.indexOf("y")];
+  line(position: number): number[] {
     const line: number[] = [];
     for (const row of this.rows.slice(0, Math.max(0, position - this.first + 1))) {
       if (!row) continue;
-      const [dx, dy] = [row[x] - line[line.length - 2], row[y] - line[line.length - 1]];
+      const [x, y] = [scalar("x", row), scalar("y", row)];
+      const [dx, dy] = [x - line[line.length - 2], y - line[line.length - 1]];
       if (Math.hypot(dx, dy) > 2) line.length = 0; // the car was put elsewhere
-      line.push(row[x], row[y]);
+      line.push(x, y);
     }
     return line;
   }
@@ -81,16 +81,15 @@ export class Gaps {
   private isAsking = false;
   private askedAt = -Infinity;
 
-  constructor(private readonly send: (command: Record<string, unknown>) => void) {}
-
-  fill(past: Past, state: State) {
+  fill(past: Past) {
+    const state = page.state!;
     const now = performance.now();
     if (now - this.askedAt < (this.isAsking ? patience : pause)) return;
     const gap = past.missing(Math.max(0, state.oldest), Math.max(state.newest, past.newest), many);
     if (!gap) return;
     this.isAsking = true;
     this.askedAt = now;
-    this.send({ do: "past", ...gap });
+    send({ do: "past", ...gap });
   }
 
   answered() {

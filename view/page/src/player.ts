@@ -1,13 +1,8 @@
 import type { Handlers, Link } from "./link";
-import { decode } from "./decode";
-import type { State, Text } from "./protocol";
+import { recordings, type Command } from "./page";
+import { decode, type Frame, type State, type Text } from "./protocol";
 
-/** The recording inside this page, if there is one. */
-export function recordings(): HTMLScriptElement[] {
-  return [...document.querySelectorAll<HTMLScriptElement>('script[type="application/x-slalom-replay"]')];
-}
-
-async function unpacked(script: HTMLScriptElement): Promise<ArrayBuffer> {
+async function unpacked(script: Element): Promise<ArrayBuffer> {
   const text = atob(script.textContent!.trim());
   const packed = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
@@ -32,17 +27,14 @@ export class Player implements Link {
   private last = 0;
   private loading = true;
 
-  constructor(
-    private readonly handlers: Handlers,
-    scripts: HTMLScriptElement[],
-  ) {
-    void this.load(scripts);
+  constructor(private readonly handlers: Handlers) {
+    void this.load();
     requestAnimationFrame((now) => this.turn(now));
   }
 
-  private async load(scripts: HTMLScriptElement[]) {
+  private async load() {
     try {
-      for (const script of scripts) this.take(await unpacked(script));
+      for (const script of recordings) this.take(await unpacked(script));
     } catch (error) {
       this.handlers.text({ type: "error", message: `The recording cannot be read: ${error}` });
     }
@@ -58,7 +50,7 @@ export class Player implements Link {
       const content = bytes.slice(at + 5, at + 5 + length);
       at += 5 + length;
       if (kind === 0) this.takeText(JSON.parse(new TextDecoder().decode(content)) as Text);
-      else if (new DataView(content).getUint16(4, true) >= 20) this.handlers.scene(decode(content).scene!);
+      else if (new DataView(content).getUint16(4, true) >= 20) this.handlers.scene(decode(content));
       else {
         this.handlers.past(scalarsOf(content), this.frames.length);
         this.frames.push(content);
@@ -93,7 +85,7 @@ export class Player implements Link {
     const before = this.shown;
     this.shown = index;
     this.received += 1;
-    this.handlers.frame(decode(this.frames[index]).frame!, index);
+    this.handlers.frame(decode(this.frames[index]) as Frame, index);
     if (this.paused || index % 10 === 0 || Math.abs(index - before) > 1) this.tell();
   }
 
@@ -115,7 +107,7 @@ export class Player implements Link {
     requestAnimationFrame((then) => this.turn(then));
   }
 
-  ask(command: Record<string, unknown>) {
+  ask(command: Command) {
     this.send(command);
     return Promise.resolve();
   }
@@ -124,7 +116,7 @@ export class Player implements Link {
     // Nobody waits for it: frames come from this page.
   }
 
-  send(command: Record<string, unknown>) {
+  send(command: Command) {
     const end = this.frames.length - 1;
     switch (command.do) {
       case "play":

@@ -1,84 +1,183 @@
 // The messages of the live view, which docs/live-view.md describes: in m, rad, s and the map frame where
 // nothing else is said.
 
+/** Reads little-endian numbers one after the other. */
+class Reader {
+  constructor(
+    private readonly view: DataView,
+    public at: number,
+    readonly end: number,
+  ) {}
+
+  private take(bytes: number) {
+    if (this.at + bytes > this.end) throw new Error("a block is too short");
+    this.at += bytes;
+    return this.at - bytes;
+  }
+  u8 = () => this.view.getUint8(this.take(1));
+  u16 = () => this.view.getUint16(this.take(2), true);
+  i16 = () => this.view.getInt16(this.take(2), true);
+  u32 = () => this.view.getUint32(this.take(4), true);
+  f32 = () => this.view.getFloat32(this.take(4), true);
+  f64 = () => this.view.getFloat64(this.take(8), true);
+  f32s = (n: number) => Float32Array.from({ length: n }, this.f32);
+  u8s = (n: number) => Uint8Array.from({ length: n }, this.u8);
+  f64s = () => Float64Array.from({ length: (this.end - this.at) / 8 }, this.f64);
+  pose = () => ({ x: this.f64(), y: this.f64(), yaw: this.f64() });
+  align = () => (this.at = (this.at + 3) & ~3);
+  rest = () => new Uint8Array(this.view.buffer, this.at, this.end - this.at);
+
+  /** Points as an origin, a unit and differences of 16 bits: x, y, x, y ... */
+  points(count: number): Float32Array {
+    const [x, y, unit] = [this.f64(), this.f64(), this.f32()];
+    const out = new Float32Array(count * 2);
+    let [u, v] = [0, 0];
+    for (let i = 0; i < count; ++i) {
+      u = ((u + this.i16()) << 16) >> 16;
+      v = ((v + this.i16()) << 16) >> 16;
+      out[2 * i] = x + unit * u;
+      out[2 * i + 1] = y + unit * v;
+    }
+    return out;
+  }
+}
+
+/** Reads each block of a binary message; the types of the blocks follow from it. */
+const blocks = {
+  scalars: (r: Reader) => r.f64s(),
+  past: (r: Reader) => r.f64s(), // the scalars of consecutive steps
+  scan: (r: Reader) => ({ ...r.pose(), ranges: Uint16Array.from({ length: r.u32() }, r.u16) }), // mm
+  /** Cells around a pose: row 0 at the largest x, column 0 at the largest y; the centre is relative to it. */
+  costMap: (r: Reader) => {
+    const pose = r.pose();
+    const [rows, columns] = [r.u16(), r.u16()];
+    const [resolution, centerX, centerY] = r.f32s(3);
+    const bits = r.u8s(Math.ceil((rows * columns) / 8));
+    const cell = (_: unknown, i: number) => (bits[i >> 3] & (1 << (i & 7)) ? 255 : 0);
+    const cells = Uint8Array.from({ length: rows * columns }, cell);
+    return { ...pose, rows, columns, resolution, centerX, centerY, cells };
+  },
+  /** `terms`: of each trajectory the costs of distance, yaw, collision, the solver's cost and the weight. */
+  candidates: (r: Reader) => {
+    const [count, points] = [r.u16(), r.u16()];
+    const [terms, collided] = [r.f32s(count * 5), r.u8s(count)];
+    r.align();
+    return { count, points, terms, collided, xy: r.points(count * points) };
+  },
+  /** The trajectories are [iteration][guide]; the last iteration is where the guides ended. */
+  guides: (r: Reader) => {
+    const [guides, iterations, points] = [r.u16(), r.u16(), r.u16(), r.u16()];
+    return { guides, iterations, points, xy: r.points(guides * iterations * points) };
+  },
+  nominal: (r: Reader) => {
+    const points = r.u32();
+    return { points, xy: r.points(points) };
+  },
+  /** `spread`: lateral standard deviation. */
+  plan: (r: Reader) => {
+    const [length, x0, y0] = [r.u32(), r.f64(), r.f64()];
+    return Array.from({ length }, () => {
+      const [x, y, yaw, speed, steer, spread] = r.f32s(6);
+      return { x: x0 + x, y: y0 + y, yaw, speed, steer, spread };
+    });
+  },
+  /** Kinds: 0 driven, 1 parked car, 2 box, 3 disc, 4 opponent; `touched`: it has collided. */
+  bodies: (r: Reader) =>
+    Array.from({ length: r.u32() }, () => {
+      const [id, kind, touched] = [r.u16(), r.u8(), r.u8() !== 0];
+      const [x, y, yaw, length, width] = r.f32s(5);
+      return { id, kind, touched, x, y, yaw, length, width };
+    }),
+  covariance: (r: Reader) => r.f32s((r.end - r.at) / 4),
+  ghost: (r: Reader) => {
+    const pose = r.pose();
+    const [steer, speed, laps, lapTime] = [r.f64(), r.f64(), r.f64(), r.f64()];
+    return { ...pose, steer, speed, laps, lapTime, plan: r.points(r.u32()) };
+  },
+  /** Cars that are tracked: the box of now, and the places where each is expected, for each hypothesis. */
+  others: (r: Reader) =>
+    Array.from({ length: r.u32() }, () => {
+      const [length, width, yaw] = r.f32s(3);
+      const [count, points] = [r.u16(), r.u16()];
+      const weights = r.f32s(count);
+      const xy = r.points(count * points);
+      return { x: xy[0], y: xy[1], yaw, length, width, weights, points, xy };
+    }),
+  /** The map, with the corner of its first cell at a pose. */
+  grid: (r: Reader) => {
+    const [width, height, resolution] = [r.u32(), r.u32(), r.f64()];
+    const grid = { width, height, resolution, ...r.pose(), cells: new Uint8Array(width * height) };
+    let to = 0;
+    for (let runs = r.u32(); runs > 0; --runs) {
+      const run = r.u32();
+      const from = to;
+      to += run & 0xffffff;
+      grid.cells.fill(run >>> 24, from, to);
+    }
+    return grid;
+  },
+  /** The course line; `xyv`: x, y and speed of each point. */
+  path: (r: Reader) => {
+    const [n, closed] = [r.u32(), r.u32() !== 0];
+    return { closed, xyv: r.f32s(3 * n) };
+  },
+  file: (r: Reader) => {
+    const name = new TextDecoder().decode(r.u8s(r.u32()));
+    r.align();
+    return { name, content: r.rest() };
+  },
+};
+const kinds: Record<number, keyof typeof blocks> = {
+  ...{ 1: "scalars", 2: "scan", 3: "costMap", 4: "candidates", 5: "guides", 6: "nominal", 7: "plan" },
+  ...{ 8: "bodies", 9: "covariance", 10: "ghost", 12: "others", 20: "grid", 21: "path", 22: "past" },
+  30: "file",
+};
+type Blocks = { [Name in keyof typeof blocks]: ReturnType<(typeof blocks)[Name]> };
+
+/** A binary message. `ghostFrame`: the frame of the ghost's controller, in the ghost's world. */
+export type Message = Partial<Blocks> & { ghostFrame?: Frame };
+export type Frame = Message & Pick<Blocks, "scalars" | "bodies">;
+export type Scene = Pick<Message, "grid" | "path">;
+export type Body = Blocks["bodies"][number];
+export type Candidates = Blocks["candidates"];
+export type CostMap = Blocks["costMap"];
+export type Grid = Blocks["grid"];
+export type Guides = Blocks["guides"];
+export type Other = Blocks["others"][number];
+export type Path = Blocks["path"];
+export type PlanState = Blocks["plan"][number];
+export type Scan = Blocks["scan"];
+
+const magic = 0x31564c53; // "SLV1"
+const ghostFrame = 11; // kind of a block that is a message
+
+/** Reads a binary message. Blocks of an unknown kind are of a later version and skipped. */
+export function decode(buffer: ArrayBuffer): Message {
+  const view = new DataView(buffer);
+  if (view.byteLength < 4 || view.getUint32(0, true) !== magic)
+    throw new Error("not a message of the live view");
+  const message: Message = {};
+  for (let at = 4; at + 8 <= view.byteLength;) {
+    const kind = view.getUint16(at, true);
+    const length = view.getUint32(at + 4, true);
+    const r = new Reader(view, at + 8, Math.min(at + 8 + length, view.byteLength));
+    at += 8 + ((length + 3) & ~3);
+    const name = kinds[kind];
+    if (kind === ghostFrame) message.ghostFrame = decode(buffer.slice(r.at, r.end)) as Frame;
+    else if (name) Object.assign(message, { [name]: blocks[name](r) });
+  }
+  return message;
+}
+
 type Numbers<Names extends string> = Record<Names, number>;
+type Texts<Names extends string> = Record<Names, string>;
 export type Pose = Numbers<"x" | "y" | "yaw">;
 
-export interface Trajectories {
-  count: number;
-  points: number; // points of each trajectory
-  xy: Float32Array; // [trajectory][point][2]
-}
-export interface Candidates extends Trajectories {
-  terms: Float32Array; // [trajectory][distance, yaw, collision, solver's cost, weight]
-  collided: Uint8Array;
-}
-/** The trajectories are [iteration][guide]; the last iteration is where the guides ended. */
-export interface Guides extends Trajectories {
-  guides: number;
-  iterations: number;
-}
-export interface PlanState extends Pose, Numbers<"speed" | "steer"> {
-  spread: number; // lateral standard deviation
-}
-/** A body of the world; kinds: 0 driven, 1 parked car, 2 box, 3 disc, 4 opponent. */
-export interface Body extends Pose, Numbers<"id" | "kind" | "length" | "width"> {
-  touched: boolean; // it has collided
-}
-export interface Scan extends Pose {
-  ranges: Uint16Array; // mm
-}
-/** Cells around a pose: row 0 at the largest x, column 0 at the largest y; the centre is relative to it. */
-export interface CostMap extends Pose, Numbers<"rows" | "columns" | "resolution" | "centerX" | "centerY"> {
-  cells: Uint8Array;
-}
-/** A car that is tracked: its box now, and the places where it is expected, for each hypothesis. */
-export interface Other extends Pose, Numbers<"length" | "width" | "points"> {
-  weights: Float32Array; // weights of the hypotheses
-  xy: Float32Array; // [hypothesis][time][2]
-}
-export interface Ghost extends Pose, Numbers<"steer" | "speed" | "laps" | "lapTime"> {
-  plan: Float32Array; // [point][2]
-}
-export interface Frame {
-  scalars: Float64Array;
-  scan?: Scan;
-  costMap?: CostMap;
-  candidates?: Candidates;
-  guides?: Guides;
-  nominal?: Trajectories;
-  plan?: PlanState[];
-  covariance?: Float32Array;
-  bodies: Body[];
-  others?: Other[];
-  ghost?: Ghost;
-  ghostFrame?: Frame; // frame of the ghost's controller, in the ghost's world
-}
-/** The map, with the corner of its first cell at a pose. */
-export interface Grid extends Pose, Numbers<"width" | "height" | "resolution"> {
-  cells: Uint8Array;
-}
-export interface Path {
-  closed: boolean;
-  xyv: Float32Array; // [point][x, y, speed]
-}
-export interface Scene {
-  grid?: Grid;
-  path?: Path;
-}
-
-export interface OptionDeclaration extends Record<
-  "name" | "symbol" | "unit" | "help" | "value" | "default",
-  string
-> {
+export interface OptionDeclaration extends Texts<"name" | "symbol" | "unit" | "help" | "value" | "default"> {
   type: "flag" | "integer" | "count" | "number" | "numbers" | "choice";
   min?: number;
   max?: number;
   choices?: string[];
-}
-export interface OptionSection {
-  name: string;
-  options: OptionDeclaration[];
 }
 export interface Hello extends Numbers<"protocol" | "history_seconds" | "control_period"> {
   type: "hello";
@@ -97,7 +196,7 @@ export interface LapRow extends Numbers<"lap" | "time" | "contacts"> {
 type Names = "course" | "description" | "method" | "config" | "evaluation" | "seed" | "ghost" | "ghost_label";
 type Counts =
   "length" | "obstacles" | "opponents" | "rate" | "tick" | "newest" | "oldest" | "time" | "generation";
-export interface State extends Record<Names, string>, Numbers<Counts | "control_period"> {
+export interface State extends Texts<Names>, Numbers<Counts | "control_period"> {
   type: "state";
   paused: boolean;
   real_time: boolean;
@@ -106,41 +205,28 @@ export interface State extends Record<Names, string>, Numbers<Counts | "control_
   laps: LapRow[];
   contact?: Numbers<"experiment" | "lap" | "contact" | "tick">;
 }
-export interface Options extends Numbers<"undo" | "redo"> {
+export interface Options extends Numbers<"undo" | "redo">, Texts<"command_line" | "yaml"> {
   type: "options";
-  sections: OptionSection[];
+  sections: { name: string; options: OptionDeclaration[] }[];
   changed: string[];
-  command_line: string;
-  yaml: string;
-}
-export interface Problem {
-  type: "error";
-  message: string;
-  id?: number;
-}
-export interface Done {
-  type: "done";
-  id: number;
-}
-/** Tells a page whether it drives or watches. */
-export interface Role {
-  type: "role";
-  drives: boolean;
-}
-export interface Note {
-  type: "note";
-  message: string;
 }
 export interface EvaluationLap extends Numbers<"experiment" | "lap" | "time" | "contacts"> {
   seed: string;
   finished: boolean;
   points: [number, number][];
 }
-export interface Evaluation {
+export interface Evaluation extends Texts<"folder" | "course"> {
   type: "evaluation";
-  folder: string;
-  course: string;
   experiments: { label: string; scenario: string; obstacles: number }[];
   laps: EvaluationLap[];
 }
-export type Text = Hello | State | Options | Problem | Done | Role | Note | Evaluation;
+/** A message in JSON. `role` tells a page whether it drives or watches. */
+export type Text =
+  | Hello
+  | State
+  | Options
+  | Evaluation
+  | { type: "role"; drives: boolean }
+  | { type: "note"; message: string }
+  | { type: "error"; message: string; id?: number }
+  | { type: "done"; id: number };

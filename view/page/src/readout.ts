@@ -1,6 +1,6 @@
 import type { BestLap } from "./best_lap";
 import { get } from "./dom";
-import type { Frame, Hello, State } from "./protocol";
+import { page, scalar } from "./page";
 
 const fewSamples = 3; // limit of SolveResult::has_few_samples
 const fewFrames = 20; // in a row with few samples, before it is said
@@ -24,8 +24,7 @@ function figure(
 export class Readout {
   private frames = 0; // with few samples, in a row
 
-  show(frame: Frame, hello: Hello, state: State | undefined, best: BestLap) {
-    const scalar = (name: string) => frame.scalars[hello.scalars.indexOf(name)];
+  show(best: BestLap) {
     figure("speed", scalar("speed"), 1);
     figure("lap-time", scalar("lap_time"), 1);
     figure("clearance", scalar("clearance"), 2);
@@ -33,25 +32,26 @@ export class Readout {
     figure("contacts", scalar("contacts"), 0);
     get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
     get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
-    this.label(hello, scalar);
+    this.label();
     const behind = best.behind(scalar("progress"), scalar("lap_time"));
     get("best").hidden = get("best-label").hidden = behind === undefined;
     get("best-label").textContent = `to best lap (${best.number})`;
     if (behind !== undefined) figure("best", behind, 2, signed(behind, 2));
-    const ghost = frame.ghost;
+    const ghost = page.frame?.ghost;
     get("gap").hidden = get("gap-label").hidden = !ghost;
-    if (!ghost || !state) return;
-    const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * state.length;
+    if (!ghost || !page.state) return;
+    const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * page.state.length;
     figure("gap", ahead, 1, signed(ahead, 1));
-    get("ghost-label").textContent = "ghost · " + (state.ghost_label || state.ghost);
+    get("ghost-label").textContent = "ghost · " + (page.state.ghost_label || page.state.ghost);
   }
 
-  private label(hello: Hello, scalar: (name: string) => number) {
+  private label() {
+    const { statuses, methods } = page.hello!;
     const label = get("label");
-    const status = hello.statuses[scalar("status")] ?? "";
+    const status = statuses[scalar("status")] ?? "";
     this.frames = scalar("effective_samples") < fewSamples ? this.frames + 1 : 0;
     const isFew = this.frames >= fewFrames;
-    const parts = [hello.methods[scalar("method")] ?? ""];
+    const parts = [methods[scalar("method")] ?? ""];
     if (status && status !== "ok") parts.push(status.replace(/_/g, " "));
     if (isFew) parts.push("few samples");
     const advice = "raise the temperature or reduce the variances";

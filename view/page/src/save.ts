@@ -1,6 +1,6 @@
 import { get } from "./dom";
+import { page, send } from "./page";
 import { Popover } from "./popover";
-import type { State } from "./protocol";
 import { copy, download, toast } from "./toast";
 
 /** Saves a file that the server has made. */
@@ -11,11 +11,7 @@ export function saveFile(name: string, content: Uint8Array) {
 }
 
 /** The menu that saves a picture, the last minute as a replay or a recording, or a link. Returns the menu. */
-export function attachSaveMenu(
-  send: (command: Record<string, unknown>) => void,
-  drawScene: () => void,
-  state: () => State | undefined,
-): Popover {
+export function attachSaveMenu(drawScene: () => void): Popover {
   const menu = new Popover(get("save-open"), get("save"));
   const on = (id: string, act: () => void) =>
     (get(id).onclick = () => {
@@ -24,7 +20,7 @@ export function attachSaveMenu(
     });
   on("save-picture", () => {
     drawScene();
-    const name = `slalom-${state()?.course}-${state()?.tick}.png`;
+    const name = `slalom-${page.state?.course}-${page.state?.tick}.png`;
     get<HTMLCanvasElement>("scene").toBlob((blob) => blob && download(name, blob, "image/png"));
   });
   on("save-replay", () => {

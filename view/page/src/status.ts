@@ -1,5 +1,6 @@
 import { get, html, type Markup } from "./dom";
 import { icon } from "./layout";
+import { isReplay } from "./page";
 import type { State } from "./protocol";
 
 /** Shows whether there is a server, and for how many attempts there has been none. */
@@ -18,7 +19,7 @@ export function showRole(drives: boolean) {
 }
 
 /** How the time of a drive passes: its name and what it means. */
-function modeOf(state: State, isReplay: boolean): [name: string, meaning: string] {
+function modeOf(state: State): [name: string, meaning: string] {
   if (isReplay) return ["replay", "A recording of an earlier drive"];
   if (state.real_time)
     return ["real time", "Commands take effect after the wall-clock time of the planner, as on a car"];
@@ -26,20 +27,20 @@ function modeOf(state: State, isReplay: boolean): [name: string, meaning: string
   return ["lockstep", `Simulated time waits for the planner: ${why}`];
 }
 
-function progressOf(state: State, isReplay: boolean): string {
+function progressOf(state: State): string {
   if (state.paused) return state.tick < state.newest && !isReplay ? " · earlier tick" : " · paused";
   return state.rate === 0 ? " · max speed" : state.rate !== 1 ? ` · ${state.rate}×` : "";
 }
 
 /** Shows whether the drive is paused, how time passes, and the laps driven. */
-export function showStatus(state: State, isReplay: boolean) {
+export function showStatus(state: State) {
   get("play").innerHTML =
     `${icon(state.paused ? "play" : "pause")}<span>${state.paused ? "Play" : "Pause"}</span>`;
   get("play").classList.toggle("primary", state.paused);
-  const [mode, meaning] = modeOf(state, isReplay);
+  const [mode, meaning] = modeOf(state);
   get("mode").className = "pill" + (state.paused ? " warn" : "");
   get("mode").title = meaning;
-  get("mode-text").textContent = mode + progressOf(state, isReplay);
+  get("mode-text").textContent = mode + progressOf(state);
   get("laps").innerHTML = laps(state).text;
   const rules =
     state.evaluation === "published" ? "evaluation of the published program" : "physical evaluation";

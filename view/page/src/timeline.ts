@@ -1,5 +1,5 @@
 import { get } from "./dom";
-import type { State } from "./protocol";
+import { isReplay, page, scalar } from "./page";
 
 const thumb = 16; // px, width of the slider's thumb
 
@@ -10,11 +10,7 @@ export class Timeline {
   private readonly mark = get("timeline-mark");
   private readonly text = get("time");
 
-  constructor(
-    private readonly isReplay: boolean,
-    seek: (position: number) => void,
-    hovered: (position: number | undefined) => void,
-  ) {
+  constructor(seek: (position: number) => void, hovered: (position: number | undefined) => void) {
     this.slider.oninput = () => {
       this.scrubbing = true;
       seek(Number(this.slider.value));
@@ -25,17 +21,19 @@ export class Timeline {
     if (isReplay) this.slider.setAttribute("aria-label", "Time in the recording");
   }
 
-  /** `newest`: position of the newest frame; `time`: s, of the frame that is shown. */
-  show(state: State, newest: number, time: number) {
+  /** `newest`: position of the newest frame. */
+  show(newest: number) {
     const { slider } = this;
-    const shown = state.paused || this.isReplay ? state.tick : newest;
+    const state = page.state!;
+    const shown = state.paused || isReplay ? state.tick : newest;
     slider.min = String(Math.max(0, state.oldest));
     slider.max = String(Math.max(1, newest));
     if (!this.scrubbing) slider.value = String(shown);
     const seconds = (steps: number) => (steps * state.control_period).toFixed(1);
     const back = (newest - Number(slider.value)) * state.control_period;
-    if (this.isReplay) this.text.textContent = `${seconds(state.tick)} of ${seconds(newest)} s`;
-    else this.text.textContent = back > 1e-6 ? `−${back.toFixed(2)} s` : `${(time || 0).toFixed(2)} s`;
+    if (isReplay) this.text.textContent = `${seconds(state.tick)} of ${seconds(newest)} s`;
+    else
+      this.text.textContent = back > 1e-6 ? `−${back.toFixed(2)} s` : `${(scalar("time") || 0).toFixed(2)} s`;
     slider.setAttribute("aria-valuetext", this.text.textContent);
   }
 

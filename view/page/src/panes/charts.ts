@@ -1,12 +1,13 @@
 import uPlot from "uplot";
 import type { Past } from "../past";
-import type { Frame, Hello } from "../protocol";
+import { page, period, scalar } from "../page";
 import { axis, Chart, css, padded, vertical } from "./plots";
 import { isEstimate, strips, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
 const max_ticks = 500; // ticks in the histogram
 const bins = 36; // bins of the histogram
+const none = new Float64Array(); // of a step that is not known
 
 /** A strip chart with its columns of values. */
 interface Plotted {
@@ -30,11 +31,6 @@ export class Charts {
   private readonly plotted: Plotted[];
   private readonly covariance: Chart;
   private readonly histogram: Chart;
-  private deadline = 25; // ms
-  private latest?: Frame;
-  private hello?: Hello;
-  private shown = 0; // position
-  private period = 0.025; // s between two steps
   private cursor?: number; // s
   private isBuilt = false;
   private drawn = 0; // ms, when the charts were drawn
@@ -70,7 +66,7 @@ export class Charts {
     this.histogram.draw("ms", [[0], [0]], {
       scales: { x: { time: false }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.15)] } },
       series: [{}, { ...bars, paths: uPlot.paths.bars!({ size: [0.9] }) }],
-      hooks: { draw: [(u) => vertical(u, this.deadline, "--bad", [5, 4])] },
+      hooks: { draw: [(u) => vertical(u, scalar("deadline_ms"), "--bad", [5, 4])] },
     });
     this.draw(true);
   }
@@ -119,8 +115,8 @@ export class Charts {
 
   /** Marks the tick that the scene shows, if it is not the newest. */
   private drawShown(u: uPlot) {
-    const time = this.times[this.positions.indexOf(this.shown)];
-    if (time !== undefined && this.shown < this.setting.past.newest) vertical(u, time, "--text", [2, 3]);
+    const time = this.times[this.positions.indexOf(page.position)];
+    if (time !== undefined && page.position < this.setting.past.newest) vertical(u, time, "--text", [2, 3]);
   }
 
   private data(p: Plotted): uPlot.AlignedData {
@@ -133,25 +129,16 @@ export class Charts {
     for (const p of this.plotted) p.columns = p.strip.lines.map(() => []);
   }
 
-  /** Takes the frame that is shown, at a position of the past; `period`: s between two steps. */
-  show(frame: Frame, hello: Hello, position: number, period: number) {
-    this.latest = frame;
-    this.hello = hello;
-    this.shown = position;
-    this.period = period;
-    this.deadline = this.scalar("deadline_ms");
-  }
-
   /** Collects the columns of the window: the newest seconds, or those around the tick that is shown. */
-  private collect(hello: Hello) {
+  private collect() {
     const { past } = this.setting;
-    const length = Math.round(span / this.period);
-    const last = this.shown >= past.newest - length ? past.newest : this.shown + Math.round(length / 2);
+    const length = Math.round(span / period());
+    const last = page.position >= past.newest - length ? past.newest : page.position + Math.round(length / 2);
     this.clear();
-    const index = this.plotted.map((p) => p.strip.lines.map((l) => hello.scalars.indexOf(l.name)));
+    const index = this.plotted.map((p) => p.strip.lines.map((l) => page.hello!.scalars.indexOf(l.name)));
     for (let position = Math.max(past.oldest, last - length); position <= last; ++position) {
       const row = past.at(position);
-      this.times.push(+(position * this.period).toFixed(6));
+      this.times.push(+(position * period()).toFixed(6));
       this.positions.push(position);
       for (const [k, { strip, columns }] of this.plotted.entries())
         for (const [i, line] of strip.lines.entries()) {
@@ -170,15 +157,15 @@ export class Charts {
   draw(now = false) {
     const time = performance.now();
     if (!now && time - this.drawn < Math.max(100, 6 * this.took)) return;
-    if (this.root.offsetParent === null || !this.isBuilt || !this.hello || !this.latest) return;
+    if (this.root.offsetParent === null || !this.isBuilt || !page.hello || !page.frame) return;
     this.drawn = time;
-    this.collect(this.hello);
+    this.collect();
     for (const p of this.plotted) if (!p.chart.box.hidden) p.chart.plot?.setData(this.data(p));
     if (this.cursor !== undefined) this.showCursor(this.cursor);
     this.showValues();
-    const { covariance } = this.latest;
+    const { covariance } = page.frame;
     if (covariance?.length) {
-      const step = this.scalar("prediction_step");
+      const step = scalar("prediction_step");
       const x = Array.from({ length: covariance.length + 1 }, (_, i) => +(i * step).toFixed(4));
       const y = Array.from(covariance, Math.sqrt);
       this.covariance.plot?.setData([x, [...y, y[y.length - 1]]]);
@@ -187,16 +174,12 @@ export class Charts {
     this.took = performance.now() - time;
   }
 
-  private scalar(name: string) {
-    return this.latest!.scalars[this.hello!.scalars.indexOf(name)];
-  }
-
   /** Shows the values at the cursor, else at the tick that is shown. */
   private showValues() {
-    if (!this.hello || !this.latest) return;
-    const position = this.cursor === undefined ? this.shown : Math.round(this.cursor / this.period);
+    if (!page.frame) return;
+    const position = this.cursor === undefined ? page.position : Math.round(this.cursor / period());
     const i = this.positions.indexOf(position);
-    const samples = this.scalar("samples");
+    const samples = scalar("samples");
     for (const { strip, chart, columns } of this.plotted)
       for (const [k, line] of strip.lines.entries()) {
         const v = i < 0 ? null : columns[k][i];
@@ -207,10 +190,9 @@ export class Charts {
 
   private drawHistogram() {
     const { past } = this.setting;
-    const index = this.hello!.scalars.indexOf("tick_ms");
     const times: number[] = [];
     for (let i = past.newest; i >= past.oldest && times.length < max_ticks; --i) {
-      const v = past.at(i)?.[index] ?? NaN;
+      const v = scalar("tick_ms", past.at(i) ?? none);
       if (Number.isFinite(v)) times.push(v);
     }
     this.histogram.box.hidden = !times.length;
@@ -222,14 +204,14 @@ export class Charts {
     for (const v of times) counts[Math.min(bins - 1, Math.floor((v / top) * bins))] += 1;
     this.histogram.plot?.setData([counts.map((_, i) => ((i + 0.5) * top) / bins), counts]);
     const parts = [`median ${quantile(0.5).toFixed(2)}`, `p99 ${quantile(0.99).toFixed(2)}`];
-    const missed = times.filter((v) => v > this.deadline).length;
-    parts.push(`deadline ${this.deadline.toFixed(0)}`, `missed ${missed}`);
+    const missed = times.filter((v) => v > scalar("deadline_ms")).length;
+    parts.push(`deadline ${scalar("deadline_ms").toFixed(0)}`, `missed ${missed}`);
     this.histogram.values[0].textContent = parts.join(" · ");
   }
 
   /** The values of the charts as comma-separated values, with the names of the scalars. */
   csv(): string {
-    if (this.hello) this.collect(this.hello);
+    if (page.hello) this.collect();
     const shown = this.plotted.filter((p) => !p.chart.box.hidden);
     const columns = shown.flatMap((p) => p.strip.lines.map((line, i) => ({ line, values: p.columns[i] })));
     const cell = (v: number | null, scale = 1) => (v === null ? "" : v / scale);

@@ -1,4 +1,5 @@
 import { get, make } from "../dom";
+import { send } from "../page";
 import type { Evaluation, EvaluationLap, State } from "../protocol";
 
 /** A list of an evaluation's laps; a click on a collision shows the two seconds before it. */
@@ -10,10 +11,8 @@ export class EvaluationPane {
   private readonly select = get<HTMLSelectElement>("experiment");
   private readonly only = get<HTMLInputElement>("only-contacts");
 
-  constructor(
-    private readonly send: (command: Record<string, unknown>) => void,
-    private readonly changed: () => void,
-  ) {
+  /** `changed`: the marks are others. */
+  constructor(private readonly changed: () => void) {
     this.select.onchange = () => {
       this.experiment = Number(this.select.value);
       this.render();
@@ -48,7 +47,7 @@ export class EvaluationPane {
   }
 
   go(lap: EvaluationLap, contact: number) {
-    this.send({ do: "lap", experiment: lap.experiment, lap: lap.lap, contact });
+    send({ do: "lap", experiment: lap.experiment, lap: lap.lap, contact });
   }
 
   private render() {

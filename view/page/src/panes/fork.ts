@@ -1,14 +1,13 @@
 import { get } from "../dom";
-import type { Hello, Options, State } from "../protocol";
+import { ask, page } from "../page";
 
 /** Asks what is to drive on from the tick that is shown. */
 export class ForkBox {
-  private options?: Options;
   private readonly box = get<HTMLDialogElement>("fork-box");
   private readonly method = get<HTMLSelectElement>("fork-method");
   private readonly text = get<HTMLInputElement>("fork-options");
 
-  constructor(private readonly ask: (command: Record<string, unknown>) => Promise<void>) {
+  constructor() {
     this.box.querySelector("form")!.addEventListener("submit", (event) => {
       if ((event.submitter as HTMLButtonElement).value !== "go") return;
       event.preventDefault(); // the box stays open, with what was typed, unless the fork succeeds
@@ -17,14 +16,12 @@ export class ForkBox {
     this.method.onchange = () => this.showKeys();
   }
 
-  takeOptions(options: Options) {
-    this.options = options;
-  }
-
-  open(hello: Hello, state: State) {
-    const choices = hello.methods.map((m) => new Option(m === state.method ? `${m} (present)` : m, m));
+  open() {
+    const { methods } = page.hello!;
+    const state = page.state!;
+    const choices = methods.map((m) => new Option(m === state.method ? `${m} (present)` : m, m));
     this.method.replaceChildren(...choices);
-    this.method.value = state.ghost || (hello.methods.find((m) => m !== state.method) ?? state.method);
+    this.method.value = state.ghost || (methods.find((m) => m !== state.method) ?? state.method);
     this.text.value = "";
     this.showKeys();
     this.tell("");
@@ -32,7 +29,7 @@ export class ForkBox {
   }
 
   private showKeys() {
-    const own = this.options?.sections.find((s) => s.name === this.method.value);
+    const own = page.options?.sections.find((s) => s.name === this.method.value);
     const names = own ? `Options of ${own.name}: ${own.options.map((o) => o.name).join(", ")}. ` : "";
     get("fork-keys").textContent = names + "Others as section.option=value.";
   }
@@ -48,7 +45,7 @@ export class ForkBox {
       .split(/\s+(?=[\w.]+=)/)
       .filter(Boolean);
     try {
-      await this.ask({ do: "fork", method: this.method.value, set });
+      await ask({ do: "fork", method: this.method.value, set });
       this.box.close();
     } catch (error) {
       this.tell((error as Error).message);

@@ -1,5 +1,6 @@
 import { get, make } from "../dom";
-import type { OptionDeclaration, Options } from "../protocol";
+import { page, send } from "../page";
+import type { OptionDeclaration } from "../protocol";
 import { copy } from "../toast";
 
 /** Between a slider's travel in [0, 1] and the option's value; logarithmic where the range spans decades. */
@@ -32,28 +33,28 @@ const short = `samples horizon temperature variance guides restart_variance adap
 export class OptionsPane {
   private filter = "";
   private showsAll = false;
-  private last?: Options;
 
-  constructor(private readonly send: (command: Record<string, unknown>) => void) {
+  constructor() {
     const on = (id: string, act: () => void) => (get(id).onclick = act);
     on("undo", () => send({ do: "undo" }));
     on("redo", () => send({ do: "redo" }));
     on("reset", () => send({ do: "reset_options" }));
-    on("copy-yaml", () => this.last && copy(this.last.yaml, "YAML"));
-    on("copy-command", () => this.last && copy(this.last.command_line, "command line"));
+    on("copy-yaml", () => page.options && copy(page.options.yaml, "YAML"));
+    on("copy-command", () => page.options && copy(page.options.command_line, "command line"));
     on("all-options", () => {
       this.showsAll = !this.showsAll;
-      if (this.last) this.show(this.last);
+      this.show();
     });
     const filter = get<HTMLInputElement>("filter");
     filter.oninput = () => {
       this.filter = filter.value.toLowerCase();
-      if (this.last) this.show(this.last);
+      this.show();
     };
   }
 
-  show(options: Options) {
-    this.last = options;
+  show() {
+    const { options } = page;
+    if (!options) return;
     get<HTMLButtonElement>("undo").disabled = options.undo === 0;
     get<HTMLButtonElement>("redo").disabled = options.redo === 0;
     get<HTMLButtonElement>("reset").disabled = options.changed.length === 0;
@@ -99,7 +100,7 @@ export class OptionsPane {
   }
 
   private controls(key: string, o: OptionDeclaration): HTMLElement[] {
-    const set = (value: string) => this.send({ do: "set", key, value });
+    const set = (value: string) => send({ do: "set", key, value });
     if (o.type === "flag") {
       const box = make("input", { type: "checkbox", id: key, checked: o.value === "true" });
       box.onchange = () => set(String(box.checked));

@@ -1,7 +1,8 @@
 import { get } from "../dom";
 import { Caption } from "../modes";
 import type { Camera } from "./camera";
-import type { Frame, Hello } from "../protocol";
+import { page, scalar } from "../page";
+import type { Frame } from "../protocol";
 import type { SceneView } from "./scene";
 
 const margin = 12; // pixels
@@ -14,16 +15,16 @@ export class Lanes {
   constructor(private readonly scene: SceneView) {}
 
   /** Shows what a frame says at a time (s). */
-  show(frame: Frame, hello: Hello, time: number) {
+  show(frame: Frame, time: number) {
     const isShown = this.scene.visible.has("modes");
     const both = this.scene.isSideBySide ? [frame, frame.ghostFrame!] : [frame, undefined];
     both.forEach((each, i) => {
-      const scalar = (name: string) => each!.scalars[hello.scalars.indexOf(name)];
-      const method = each && hello.methods[scalar("method")];
+      const method = each && page.hello!.methods[scalar("method", each.scalars)];
+      const collisions = scalar("contacts", each?.scalars);
       this.captions[i].show(method ?? "", isShown ? each : undefined, time);
       if (each)
         this.titles[i].textContent =
-          `${method} · ${scalar("contacts") === 1 ? "1 collision" : `${scalar("contacts")} collisions`}`;
+          `${method} · ${collisions === 1 ? "1 collision" : `${collisions} collisions`}`;
     });
   }
 

@@ -1,25 +1,23 @@
+import { isReplay as fixed, page, redraw, send } from "../page";
 import type { Body } from "../protocol";
 import type { SceneView } from "./scene";
 
 export type Tool = "disc" | "box" | "car" | "pan";
 
-interface Setting {
-  canvas: HTMLCanvasElement;
-  scene: SceneView;
-  send(command: Record<string, unknown>): void;
-  tool(): Tool;
-  redraw(): void;
-  fixed: boolean; // nothing can be edited
-  /** Whether a click at a place of the map frame (m) meant something else. */
-  clicked(x: number, y: number): boolean;
-}
-
 const slack = 5; // pixels that a click may move
 const gap = 40; // ms between two messages of a drag
 const longPress = 600; // ms that a finger rests on an obstacle to delete it
 
-/** Mouse, pen and fingers on the scene: pan, zoom, pinch, place, drag, delete. */
-export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixed }: Setting) {
+/**
+ * Mouse, pen and fingers on the scene: pan, zoom, pinch, place, drag, delete. `clicked`: whether a click at a
+ * place of the map frame (m) meant something else.
+ */
+export function attachPointer(
+  canvas: HTMLCanvasElement,
+  scene: SceneView,
+  tool: () => Tool,
+  clicked: (x: number, y: number) => boolean,
+) {
   const pointers = new Map<number, { x: number; y: number }>();
   let start: { x: number; y: number } | undefined;
   let moved = false;
@@ -132,7 +130,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   };
   const drop = (x: number, y: number) => {
     const kind = tool();
-    const car = scene.frame?.bodies[0];
+    const car = page.frame?.bodies[0];
     send({
       do: "add",
       kind,

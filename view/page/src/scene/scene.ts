@@ -1,4 +1,5 @@
-import type { Body, Frame, Grid, Hello, Pose, Scene } from "../protocol";
+import { page, scalar } from "../page";
+import type { Body, Frame, Grid, Pose, Scene } from "../protocol";
 import type { Camera } from "./camera";
 import { lookOf, type CandidateLook } from "./candidates";
 import * as draw from "./drawings";
@@ -23,8 +24,6 @@ export class SceneView {
   readonly camera = this.stage.camera;
   term: Term = "total"; // colours the candidates
   theme: Theme;
-  hello?: Hello;
-  frame?: Frame;
   selected = -1; // body
   costRange: [number, number] = [0, 1]; // costs of the candidates' first and last colour
   /** Whether the ghost is to be shown beside the car, in a lane of its own. */
@@ -53,7 +52,7 @@ export class SceneView {
     return this.bounds;
   }
   get isSideBySide() {
-    return this.isSplit && this.frame?.ghostFrame !== undefined;
+    return this.isSplit && page.frame?.ghostFrame !== undefined;
   }
 
   setScene(scene: Scene) {
@@ -107,7 +106,7 @@ export class SceneView {
   /** The body under a point of the map frame; the driven car is 0. */
   bodyAt(x: number, y: number): Body | undefined {
     const slack = 6 / this.camera.zoom;
-    return this.frame?.bodies.findLast((b) => {
+    return page.frame?.bodies.findLast((b) => {
       const [c, s, dx, dy] = [Math.cos(b.yaw), Math.sin(b.yaw), x - b.x, y - b.y];
       const isWithin = (d: number, size: number) => Math.abs(d) <= size / 2 + slack;
       return isWithin(c * dx + s * dy, b.length) && isWithin(c * dy - s * dx, b.width);
@@ -125,8 +124,8 @@ export class SceneView {
     this.painter.begin(this.theme.ground);
     if (this.isSideBySide) this.stage.splitLanes();
     else this.stage.joinLanes();
-    this.drawLane(this.camera, this.frame, this.driven);
-    if (this.isSideBySide) this.drawLane(this.stage.ghostCamera, this.frame?.ghostFrame, this.ghostDriven);
+    this.drawLane(this.camera, page.frame, this.driven);
+    if (this.isSideBySide) this.drawLane(this.stage.ghostCamera, page.frame?.ghostFrame, this.ghostDriven);
   }
 
   private drawLane(camera: Camera, frame: Frame | undefined, driven: number[]) {
@@ -146,8 +145,8 @@ export class SceneView {
       draw.drawCandidates(painter, frame, this.lookOf(frame));
     if (visible.has("spread") && frame.plan) draw.drawSpread(painter, theme, frame.plan);
     if (visible.has("guides") && frame.guides) draw.drawGuides(painter, theme, frame.guides);
-    if (visible.has("scan") && frame.scan && this.hello)
-      draw.drawScan(painter, theme, frame.scan, this.hello.lidar);
+    if (visible.has("scan") && frame.scan && page.hello)
+      draw.drawScan(painter, theme, frame.scan, page.hello.lidar);
     this.drawBodies(frame);
     this.drawMarks();
     if (this.preview) this.drawPreview(this.preview);
@@ -155,22 +154,22 @@ export class SceneView {
       painter.dashed(frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);
     if (visible.has("plan") && frame.plan) draw.drawPlan(painter, theme, frame.plan);
     if (visible.has("ghost") && !this.isSideBySide) this.drawGhost(frame);
-    if (this.best && visible.has("ghost") && frame === this.frame) this.drawOutline(this.best, theme.driven);
+    if (this.best && visible.has("ghost") && frame === page.frame) this.drawOutline(this.best, theme.driven);
     if (this.probe) this.drawOutline(this.probe, theme.selected);
     if (car) {
-      const steer = frame.scalars[this.hello?.scalars.indexOf("steer") ?? -1] ?? 0;
+      const steer = scalar("steer", frame.scalars) || 0;
       const edge = car.touched ? theme.collided : theme.carEdge;
       drawCar(painter, theme, this.size, car, steer, { body: theme.car, edge });
     }
   }
 
   private get size() {
-    return this.hello?.car ?? usualCar;
+    return page.hello?.car ?? usualCar;
   }
 
   private lookOf(frame: Frame): CandidateLook {
     // Both lanes have one scale.
-    const range = frame === this.frame ? undefined : this.costRange;
+    const range = frame === page.frame ? undefined : this.costRange;
     const look = lookOf(frame.candidates!, this.theme, this.term, range);
     this.costRange = look.range;
     return look;
