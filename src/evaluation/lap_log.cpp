@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <numeric>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
@@ -114,7 +116,9 @@ LapLog read_lap_log(const std::filesystem::path& file) {
     if (++log.laps > max_log_laps)
       throw IoError(log.file, 0, "has more than " + std::to_string(max_log_laps) + " laps");
     log.successes += table.count("success", 1);
-    log.collisions += table.count("collision", 100000);
+    log.lap_collisions.push_back(table.count("collision", 100000));
+    log.collisions += static_cast<std::int64_t>(log.lap_collisions.back());
+    if (table.has("seed")) log.seeds.push_back(table.number("seed"));
     if (table.has("timeout")) log.timeouts += table.count("timeout", 1);
     log.ms.push_back(table.number("state_cost") + table.number("collision_cost"));
     if (!timed) continue;
@@ -150,32 +154,67 @@ Agreement LogComparison::agreement() const {
   return Agreement::inside;
 }
 
+namespace {
+
+/// Returns the laps of a log with these seeds, in their order, or nothing unless it has all of them.
+std::optional<LapLog> laps_with_seeds(const LapLog& log, const std::vector<LapRow>& rows) {
+  LapLog laps;
+  for (const LapRow& row : rows) {
+    const auto found = std::find(log.seeds.begin(), log.seeds.end(), static_cast<double>(row.seed));
+    if (found == log.seeds.end()) return {};
+    const auto lap = static_cast<std::size_t>(found - log.seeds.begin());
+    laps.ms.push_back(log.ms[lap]);
+    laps.lap_collisions.push_back(log.lap_collisions[lap]);
+    laps.collisions += static_cast<std::int64_t>(log.lap_collisions[lap]);
+    ++laps.laps;
+  }
+  return laps;
+}
+
+std::vector<double> differences(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> result(a.size());
+  std::transform(a.begin(), a.end(), b.begin(), result.begin(), std::minus<>());
+  return result;
+}
+
+}  // namespace
+
 LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, const LapLog& log) {
-  std::vector<double> measured;
-  std::int64_t contacts = 0;
+  std::vector<double> measured, collisions;
   for (const LapRow& row : rows) {
     measured.push_back(row.mean_sequence_cost());
-    contacts += row.collisions;
+    collisions.push_back(row.collisions);
   }
+  const std::optional<LapLog> pairs = obstacles > 0 ? laps_with_seeds(log, rows) : std::nullopt;
+  const LapLog& theirs = pairs ? *pairs : log;
   LogComparison c;
+  c.paired = pairs.has_value();
+  c.our_laps = static_cast<int>(measured.size());
+  c.laps = theirs.laps;
   c.ms_mean = mean(log.ms);
   c.ms_ci = bootstrap_mean(log.ms);
-  c.ms_ratio = mean(measured) / c.ms_mean;
-  c.our_laps = static_cast<int>(measured.size());
-  c.laps = log.laps;
-  const Interval difference = bootstrap_difference(measured, log.ms);
-  c.ms_ratio_ci = {1 + difference.low / c.ms_mean, 1 + difference.high / c.ms_mean};
+  const double ms = mean(theirs.ms);
+  c.ms_ratio = mean(measured) / ms;
+  const Interval difference =
+      c.paired ? bootstrap_mean(differences(measured, theirs.ms)) : bootstrap_difference(measured, theirs.ms);
+  c.ms_ratio_ci = {1 + difference.low / ms, 1 + difference.high / ms};
   // With few laps the bootstrap misjudges their scatter.
-  const bool enough = std::min(c.our_laps, c.laps) >= LogComparison::enough_laps;
-  c.ms_p = enough ? bootstrap_difference_p(measured, log.ms) : permutation_difference_p(measured, log.ms);
+  if (c.paired)
+    c.ms_p = wilcoxon_p(differences(measured, theirs.ms));
+  else if (std::min(c.our_laps, c.laps) >= LogComparison::enough_laps)
+    c.ms_p = bootstrap_difference_p(measured, theirs.ms);
+  else
+    c.ms_p = permutation_difference_p(measured, theirs.ms);
   if (obstacles > 0) {
-    const std::int64_t measured_chances =
-                           static_cast<std::int64_t>(obstacles) * static_cast<std::int64_t>(rows.size()),
-                       chances = static_cast<std::int64_t>(obstacles) * log.laps;
-    c.collision_rate = static_cast<double>(log.collisions) / static_cast<double>(chances);
-    c.collision_rate_ci = wilson_interval(log.collisions, chances);
-    c.rate_difference_ci = rate_difference_interval(contacts, measured_chances, log.collisions, chances);
-    c.collision_p = fisher_p(contacts, measured_chances, log.collisions, chances);
+    const auto our_collisions =
+        static_cast<std::int64_t>(std::accumulate(collisions.begin(), collisions.end(), 0.0));
+    const std::int64_t our_chances = std::int64_t{obstacles} * c.our_laps,
+                       chances = std::int64_t{obstacles} * c.laps, all = std::int64_t{obstacles} * log.laps;
+    c.collision_rate = static_cast<double>(log.collisions) / static_cast<double>(all);
+    c.collision_rate_ci = wilson_interval(log.collisions, all);
+    c.rate_difference_ci = rate_difference_interval(our_collisions, our_chances, theirs.collisions, chances);
+    c.collision_p = c.paired ? wilcoxon_p(differences(collisions, theirs.lap_collisions))
+                             : fisher_p(our_collisions, our_chances, theirs.collisions, chances);
   }
   return c;
 }

@@ -181,6 +181,33 @@ TEST_F(LapLogFile, IsComparedWithLaps) {
   EXPECT_DOUBLE_EQ(*other.collision_rate, 8.0 / 20);
 }
 
+TEST_F(LapLogFile, LapsWithTheSameSeedsArePaired) {
+  std::string text = "seed,success,collision,state_cost,collision_cost\n";
+  for (int lap = 0; lap < 100; ++lap)
+    text +=
+        std::to_string(10 * lap) + ",1," + std::to_string(lap % 2) + "," + std::to_string(1 + lap) + ",0\n";
+  const LapLog log = read(text);
+  const auto drive = [&](int laps, double more, std::uint64_t seed0) {
+    std::vector<LapRow> ours(static_cast<std::size_t>(laps));
+    for (std::size_t lap = 0; lap < ours.size(); ++lap) {
+      ours[lap].seed = seed0 + 10 * lap;
+      ours[lap].state_cost = 1 + more + static_cast<double>(lap);
+      ours[lap].collisions = static_cast<int>(lap % 2);
+    }
+    return compare_with_log(ours, 5, log);
+  };
+  const LogComparison two = drive(2, 0, 0);  // the laps of the log with these seeds have the same figures
+  EXPECT_TRUE(two.paired);
+  EXPECT_EQ(two.laps, 2);
+  EXPECT_DOUBLE_EQ(two.ms_ratio, 1);
+  EXPECT_DOUBLE_EQ(two.ms_p, 1);
+  EXPECT_DOUBLE_EQ(*two.collision_p, 1);
+  EXPECT_DOUBLE_EQ(two.ms_mean, 50.5) << "the figure of the whole log";
+  EXPECT_NE(two.agreement(), Agreement::outside);
+  EXPECT_LT(drive(30, 0.1, 0).ms_p, 0.001) << "lost in the scatter unless the laps are paired";
+  EXPECT_FALSE(drive(2, 0, 5).paired);
+}
+
 TEST_F(LapLogFile, AgreementDependsOnDifferenceAndNumberOfLaps) {
   std::string text = "success,collision,state_cost,collision_cost\n";
   for (int lap = 0; lap < 30; ++lap) text += "1,0," + std::to_string(2.5 + 0.03 * lap) + ",0\n";

@@ -201,14 +201,15 @@ TEST_F(CommandLine, RejectsOptionsOfAMethodThatIsNotUsed) {
   EXPECT_FALSE(fs::exists(folder_ / "e"));
 }
 
-TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheLogsThatAreNamed) {
+TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheCloneThatAreNamed) {
   refuses("reproduce --course nowhere/berlin --out r", {"--course: ", "nowhere/berlin"}, 2);
-  const std::string command = "reproduce --course " + wren + " --out /proc/none --published logs";
-  refuses(command, {"--published: 'logs' must be a folder"}, 2);
-  fs::create_directories(folder_ / "logs/path_tracking");
-  refuses(command, {"--published: 'logs' must contain logs of the authors"}, 2);
-  std::ofstream(folder_ / "logs/path_tracking/svg_mppi.csv") << "";
+  const std::string command = "reproduce --course " + wren + " --out /proc/none --paper clone";
+  refuses(command, {"--paper: clone: has no folder data/map"}, 2);
+  fs::create_directories(folder_ / "clone/data/map");
+  fs::create_directories(folder_ / "clone/src/eval/log/path_tracking");
   refuses(command, {"slalom: /proc/none"});
+  refuses("reproduce --paper clone --out r --tables table3", {"--tables: 'table3' must be table1"}, 2);
+  refuses("reproduce --claims", {"--claims: needs --paper"}, 2);
 }
 
 TEST_F(CommandLine, ReplayIgnoresNoOption) {

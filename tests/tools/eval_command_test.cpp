@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/evaluation_folder.hpp"
+#include "tools/paper_clone.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -276,21 +277,34 @@ TEST_F(EvalCommand, RemembersTheFolderOfACourseThatHasNoKnownName) {
       nlohmann::json::parse(content(folder_ / "wren.json")).at("settings").contains("course_folder"));
 }
 
-TEST_F(EvalCommand, ReproduceWithoutBerlinNamesWhatIsMissing) {
-  const ProgramRun r =
-      run("reproduce --course " SLALOM_COURSES
-          "/wren --out r --sections baseline --laps-pt 1 --laps-oa 1 --set "
-          "mppi.samples=16 --set svg_mppi.samples=16 --set svg_mppi.gradient_samples=4 --set "
-          "reverse_mppi.samples=4 --set reverse_mppi.iterations=2 --set sv_mpc.samples=4 --evaluation true");
-  ASSERT_EQ(r.status, 0) << r.output;
-  EXPECT_TRUE(contains(r.output, "https://github.com/kohonda/proj-svg_mppi")) << r.output;
-  const auto summary = nlohmann::json::parse(content(folder_ / "r/summary.json"));
+TEST_F(EvalCommand, ReproduceComparesWithTheLogsOfAClone) {
+  testing::write_paper_clone(folder_ / "clone", SLALOM_COURSES "/wren");
+  const std::string small =
+      "--quick --set mppi.samples=16 --set svg_mppi.samples=16 --set svg_mppi.gradient_samples=4 --set "
+      "reverse_mppi.samples=4 --set reverse_mppi.iterations=2 --set sv_mpc.samples=4 --evaluation true "
+      "--laps-pt 1 --laps-oa 1 ";
+  const ProgramRun compared = run("reproduce --paper clone --tables table2 --out r " + small);
+  ASSERT_EQ(compared.status, 0) << compared.output;
+  EXPECT_TRUE(contains(compared.output, "36 of 36 logs")) << compared.output;
+  EXPECT_TRUE(contains(compared.output, "Table II")) << compared.output;
+  auto summary = nlohmann::json::parse(content(folder_ / "r/summary.json"));
+  ASSERT_EQ(summary.at("results").size(), 8u);
+  for (const auto& result : summary.at("results")) {
+    EXPECT_EQ(result.at("published").at("paired_laps"), result.at("scenario") == "oa" ? 1 : 0) << result;
+    EXPECT_EQ(result.at("verdict").get<std::string>().find("not compared"), std::string::npos) << result;
+  }
+  for (const char* file : {"report.html", "figures/table2.svg", "figures/fig2a.png", "figures/fig2b.png"})
+    EXPECT_TRUE(fs::exists(folder_ / "r" / file)) << file;
+
+  const ProgramRun alone = run("reproduce --course " SLALOM_COURSES "/wren --tables table1 --out s " + small);
+  ASSERT_EQ(alone.status, 0) << alone.output;
+  EXPECT_TRUE(contains(alone.output, "https://github.com/kohonda/proj-svg_mppi")) << alone.output;
+  summary = nlohmann::json::parse(content(folder_ / "s/summary.json"));
   EXPECT_EQ(summary.at("results").size(), 14u);
   for (const auto& result : summary.at("results")) {
     EXPECT_TRUE(result.at("published").is_null());
-    EXPECT_EQ(result.at("verdict").get<std::string>().rfind("not compared", 0), 0u);
+    EXPECT_EQ(result.at("verdict"), "not compared");
   }
-  EXPECT_TRUE(fs::exists(folder_ / "r/report.html"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/evaluation/claims.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/racing_benchmark.hpp"
 #include "tools/report/report.hpp"
@@ -16,40 +17,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* fallback_course = "stag";
+constexpr const char* paper_course = "berlin";  // with --paper, unless --course is given
+constexpr const char* other_course = "stag";    // without
 constexpr const char* gap_driver = "follow_the_gap";
 /// The configuration of a planner in the racing benchmark, unless given.
 constexpr const char* racing_configuration = "racing_benchmark";
 
 struct ReproduceArguments {
   EvaluationArguments evaluation;
-  std::string published, benchmark, driver = "svg_mppi", car = vehicle::RacingCar{}.name;
-  std::vector<std::string> sections{"baseline", "ablation", "sweep"};
+  std::string paper, benchmark, driver = "svg_mppi", car = vehicle::RacingCar{}.name;
+  std::vector<std::string> tables;
   double margin = 0.12;  ///< m, in the racing benchmark
   int laps_pt = 30, laps_oa = 100, obstacles = 5;
-  bool quick = false, course_given = false, config_given = false;
+  bool quick = false, claims = false, course_given = false, config_given = false;
 };
 
-/// The course given. The default, Berlin, is not part of this repository; if it is not found, the command
-/// runs on another course.
-std::string course_or_fallback(const ReproduceArguments& arguments, std::FILE* words) {
-  const std::string& course = arguments.evaluation.scenario.course;
-  try {
-    vehicle::find_course(course, vehicle::course_roots(program_folder()));
-    return course;
-  } catch (const IoError& error) {
-    if (arguments.course_given) throw CommandLineError("--course", error.what());
-    std::fprintf(words, "note: the course '%s' was not found; driving on '%s' of this repository instead\n",
-                 course.c_str(), fallback_course);
-    return fallback_course;
-  }
-}
-
-/// The rows of a section beside the authors' results.
-void print_section(const std::string& section, const Evaluated& evaluated,
-                   const std::vector<Reference>& references, std::FILE* out) {
-  std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-9s %-22s %-22s %s\n", section.c_str(), "", "",
-               "laps", "MS (95 %)", "published MS", "released", "collision rate, %", "published", "verdict");
+/// Prints the rows of a table beside the authors' results.
+void print_table(const PaperTable& table, const Evaluated& evaluated,
+                 const std::vector<Reference>& references, std::FILE* out) {
+  std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-9s %-22s %-22s %s\n", table.title, "", "", "laps",
+               "MS (95 %)", "published MS", "released", "collision rate, %", "published", "verdict");
   const auto cell = [](double value, const evaluation::Interval& i, double scale, int digits) {
     char text[80];
     std::snprintf(text, sizeof text, "%.*f (%.*f - %.*f)", digits, scale * value, digits, scale * i.low,
@@ -58,7 +45,7 @@ void print_section(const std::string& section, const Evaluated& evaluated,
   };
   for (const char* scenario : {"pt", "oa"}) {
     for (const PaperRow& row : paper_rows()) {
-      if (row.section != section) continue;
+      if (row.table != table.name) continue;
       for (const auto& r : evaluated.results) {
         const auto index = static_cast<std::size_t>(r.experiment);
         const auto& e = evaluated.evaluation.experiments[index];
@@ -80,49 +67,61 @@ void print_section(const std::string& section, const Evaluated& evaluated,
   }
 }
 
-void add_report_rows(const std::string& section, Report& report) {
+void add_report_rows(const std::string& table, Report& report) {
   for (const PaperRow& row : paper_rows()) {
-    if (row.section != section) continue;
+    if (row.table != table) continue;
     for (const auto& r : report.evaluated.results) {
       const auto& e = report.evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
-      if (drives(e, row)) report.rows.push_back({section, row.name, row.note, r.experiment});
+      if (drives(e, row)) report.rows.push_back({table, row.name, row.note, r.experiment});
     }
   }
 }
 
-void check(const ReproduceArguments& arguments) {
-  for (const std::string& section : arguments.sections) {
-    if (section != "baseline" && section != "ablation" && section != "sweep")
-      throw CommandLineError("--sections", section, "must be baseline, ablation or sweep");
-  }
+/// The table with this name. Throws CommandLineError.
+const PaperTable& find_table(const std::string& name) {
+  for (const PaperTable& table : paper_tables)
+    if (table.name == name) return table;
+  throw CommandLineError("--tables", name, "must be table1, table2 or covariances");
 }
 
 int reproduce(ReproduceArguments arguments) {
-  check(arguments);
+  for (const std::string& table : arguments.tables) find_table(table);
   std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
+  std::string& course = arguments.evaluation.scenario.course;
+  if (!arguments.course_given) course = arguments.paper.empty() ? other_course : paper_course;
+  const PaperFiles files = for_option(
+      "--paper", [&] { return find_paper_files(arguments.paper, fs::path(course).filename().string()); });
+  if (!files.course.empty()) course = files.course.string();
   const auto tenth = [&](int laps) { return arguments.quick ? (laps + 9) / 10 : laps; };
-  arguments.evaluation.scenario.course = course_or_fallback(arguments, words);
-  const auto experiments = paper_experiments(arguments.sections, tenth(arguments.laps_pt),
+  const auto experiments = paper_experiments(arguments.tables, tenth(arguments.laps_pt),
                                              tenth(arguments.laps_oa), arguments.obstacles);
-  const LogFolders folders =
-      find_logs(arguments.published, fs::path(arguments.evaluation.scenario.course).filename().string());
-  for (const std::string& note : folders.notes) std::fprintf(words, "note: %s\n", note.c_str());
+  for (const std::string& note : files.notes) std::fprintf(words, "note: %s\n", note.c_str());
   std::fflush(words);
+  if (arguments.claims) {
+    const Json claims = claims_json(files.logs, {}, {});
+    print_claims(claims, words);
+    if (!arguments.evaluation.json.empty()) write_json(claims, arguments.evaluation.json);
+    return 0;
+  }
   // Reports an unreadable log now, not after hours of driving.
-  find_references(folders, experiments, {});
+  find_references(files.logs, experiments, {});
 
   Evaluated evaluated;
   if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return 1;
-  const auto references = find_references(folders, experiments, evaluated.rows);
+  const auto references = find_references(files.logs, experiments, evaluated.rows);
   auto summary = evaluated.summary();
   for (std::size_t i = 0; i < references.size(); ++i) add_reference(summary["results"][i], references[i]);
-  summary["notes"] = folders.notes;
+  summary["notes"] = files.notes;
+  summary["claims"] = claims_json(files.logs, experiments, evaluated.rows);
   const std::string file = arguments.evaluation.out + "/summary.json";
   write_json(summary, file);
-  Report report{"Reproduction of the paper's simulation section", evaluated, {}, references, folders.notes};
-  for (const std::string& section : arguments.sections) add_report_rows(section, report);
+  Report report{"Reproduction of the paper's simulation section", evaluated, {}, references, files.notes};
+  for (const std::string& table : arguments.tables) add_report_rows(table, report);
   write_report(report, arguments.evaluation.out);
-  for (const std::string& section : arguments.sections) print_section(section, evaluated, references, words);
+  draw_trajectories(evaluated, arguments.evaluation.out + "/figures");
+  for (const std::string& table : arguments.tables)
+    print_table(find_table(table), evaluated, references, words);
+  print_claims(summary["claims"], words);
   std::fprintf(words, "\n%s\n%s/report.html\n", file.c_str(), arguments.evaluation.out.c_str());
   if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);
   return 0;
@@ -174,7 +173,7 @@ void declare_reproduce(Subcommand& command) {
       "benchmark");
   const auto arguments = std::make_shared<ReproduceArguments>();
   auto& scenario = arguments->evaluation.scenario;
-  scenario.course = "berlin";
+  scenario.course = paper_course;
   scenario.config = scenario.evaluation = "published";
   add_evaluation_options(command, arguments->evaluation);
   command.find("--out").required(false);
@@ -197,9 +196,12 @@ void declare_reproduce(Subcommand& command) {
       .option("--car", arguments->car,
               "With --benchmark: car of the raceline: f1tenth, passenger, or a YAML file (docs/courses.md)")
       .show_default();
-  command.option("--published", arguments->published, "Folder of the authors' logs");
-  command
-      .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")
+  command.option(
+      "--paper", arguments->paper,
+      "Clone of the authors' repository, github.com/kohonda/proj-svg_mppi, for its courses and logs; "
+      "without it, the laps are driven on stag, unless --course is given, and compared with nothing");
+  for (const PaperTable& table : paper_tables) arguments->tables.push_back(table.name);
+  command.option("--tables", arguments->tables, "Tables, separated by commas: table1, table2, covariances")
       .comma_separated()
       .show_default();
   command.option("--laps-pt", arguments->laps_pt, "Number of path-tracking laps of each row")
@@ -209,6 +211,8 @@ void declare_reproduce(Subcommand& command) {
       .range(1, 1000000)
       .show_default();
   command.flag("--quick", arguments->quick, "Drive a tenth of the laps");
+  command.flag("--claims", arguments->claims,
+               "Only test the paper's claims on the logs of --paper, without driving");
   command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();
   command.action([arguments, &command] {
     arguments->course_given = command.given("--course");
@@ -216,7 +220,9 @@ void declare_reproduce(Subcommand& command) {
     if (!arguments->benchmark.empty()) return run_racing(*arguments);
     for (const char* flag : {"--driver", "--margin", "--car"})
       if (command.given(flag)) throw CommandLineError(flag, "needs --benchmark");
-    if (arguments->evaluation.out.empty()) throw CommandLineError("--out", "is required");
+    if (arguments->claims && arguments->paper.empty()) throw CommandLineError("--claims", "needs --paper");
+    if (arguments->evaluation.out.empty() && !arguments->claims)
+      throw CommandLineError("--out", "is required");
     return reproduce(*arguments);
   });
 }

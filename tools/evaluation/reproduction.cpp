@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "slalom/core/error.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/command_line/command.hpp"
 #include "tools/evaluation/paper_program.hpp"
 
 namespace slalom::tools {
@@ -73,6 +73,7 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
   };
   return {{"file", fs::path(log.file).filename().string()},
           {"laps", log.laps},
+          {"paired_laps", c.paired ? c.our_laps : 0},
           {"timeouts", log.timeouts},
           {"contacts", log.collisions},
           {"ms_mean", c.ms_mean},
@@ -90,90 +91,82 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
 
 }  // namespace
 
-std::vector<PaperRow> paper_rows() {
-  std::vector<PaperRow> rows;
-  const auto baseline = [&](const char* name, const char* method, const char* log) {
-    rows.push_back({.section = "baseline",
-                    .name = name,
-                    .method = method,
-                    .log_pt = std::string("path_tracking/") + log + ".csv",
-                    .log_oa = std::string("obstacle_avoidance/") + log + ".csv"});
-  };
-  for (const char* variance : {"0.025", "0.05", "0.075", "0.1"}) {
-    const std::string text = variance;
-    baseline(("MPPI, covariance " + text).c_str(), "mppi", ("forward_mppi_cov_" + text).c_str());
-    rows.back().set = {{"mppi.variance", text}};
-    rows.back().released = "mppi_" + text;
-  }
-  rows[1].note =
-      "This row is in the authors' logs but not in the paper's tables. Its logged figures are those of "
-      "covariance 0.1, which was most likely driven. The paper's program and Slalom agree with each other.";
-  rows[3].lockstep = "mppi_cov0.1";
-  baseline("Reverse MPPI", "reverse_mppi", "reverse_mppi");
-  rows.back().released = "reverse_mppi";
-  rows.back().note =
-      "The log is not what one thread computes: the threads of the paper's program race when they sum the "
-      "moments, and contributions are lost (docs/logbook/evaluation.md). One thread of it has the figure of "
-      "Slalom.";
-  baseline("SV-MPC", "sv_mpc", "sv_mpc");
-  rows.back().released = "sv_mpc";
-  rows.back().note =
-      "The log is not what one thread computes: particles diverge until numbers overflow, and contributions "
-      "that the threads of the paper's program lose in a race damp this (docs/logbook/evaluation.md). One "
-      "thread of it has the figure of Slalom.";
-  baseline("SVG-MPPI", "svg_mppi", "svg_mppi");
-  rows.back().released = "svg_mppi";
-  rows.back().lockstep = "svg_mppi";
+const std::vector<PaperRow>& paper_rows() {
+  static const std::vector<PaperRow> rows = [] {
+    std::vector<PaperRow> made;
+    const auto add = [&](PaperRow row, const std::string& log) {
+      row.log_pt = "path_tracking/" + log;
+      row.log_oa = "obstacle_avoidance/" + log;
+      made.push_back(row);
+    };
+    const auto mppi = [&](const char* table, const std::string& name, const std::string& variance) {
+      add({.table = table,
+           .name = name,
+           .method = "mppi",
+           .set = {{"mppi.variance", variance}},
+           .released = "mppi_" + variance},
+          "forward_mppi(cov:" + variance + ").csv");
+    };
+    for (const char* variance : {"0.025", "0.05", "0.075", "0.1"})
+      mppi("table1", std::string("MPPI, covariance ") + variance, variance);
+    made[1].note =
+        "This row is in the authors' logs but not in the paper's tables. Its logged figures are those of "
+        "covariance 0.1, which was most likely driven. The paper's program and Slalom agree with each other.";
+    add({.table = "table1",
+         .name = "Reverse MPPI",
+         .method = "reverse_mppi",
+         .released = "reverse_mppi",
+         .note = "The log is not what one thread computes: the threads of the paper's program race when they "
+                 "sum the moments, and contributions are lost (docs/logbook/evaluation.md). One thread of it "
+                 "has the figure of Slalom."},
+        "reverse_mppi.csv");
+    add({.table = "table1",
+         .name = "SV-MPC",
+         .method = "sv_mpc",
+         .released = "sv_mpc",
+         .note = "The log is not what one thread computes: particles diverge until numbers overflow, and "
+                 "contributions that the threads of the paper's program lose in a race damp this "
+                 "(docs/logbook/evaluation.md). One thread of it has the figure of Slalom."},
+        "sv_mpc.csv");
+    const PaperRow svg{.table = "table1", .name = "SVG-MPPI", .method = "svg_mppi", .released = "svg_mppi"};
+    add(svg, "svg_mppi.csv");
 
-  const std::string nominal = "ablation_wo_nominal_solution/", sweep = "ablation_wo_cov_adaptation/";
-  rows.push_back({.section = "ablation",
-                  .name = "MPPI",
-                  .method = "mppi",
-                  .set = {{"mppi.variance", "0.075"}},
-                  .log_pt = rows[2].log_pt,
-                  .log_oa = rows[2].log_oa,
-                  .released = rows[2].released});
-  const auto fixed = [&](const char* section, const std::string& name, const std::string& variance) {
-    rows.push_back(
-        {.section = section,
-         .name = name,
-         .method = "svg_mppi",
-         // The authors vary one parameter, steer_cov, which is both (docs/published-parameters.md).
-         .set = {{"svg_mppi.adapt_covariance", "false"},
-                 {"svg_mppi.variance", variance},
-                 {"svg_mppi.guide_variance", variance}},
-         .log_pt = sweep + "path_tracking/cov_" + variance + ".csv",
-         .log_oa = sweep + "obstacle_avoidance/cov_" + variance + ".csv",
-         .released = "ns_" + variance});
-  };
-  fixed("ablation", "MPPI + nominal sequence (NS)", "0.075");
-  rows.push_back(
-      {.section = "ablation",
-       .name = "MPPI + adaptive covariance (AC)",
-       .method = "svg_mppi",
-       .set = {{"svg_mppi.use_nominal", "false"}},
-       .log_pt = nominal + "obstacle_avoidance/wo_nominal_solution.csv",
-       .log_oa = nominal + "path_tracking/wo_nominal_solution.csv",
-       .released = "ac",
-       .note = "The paper prints PT 18.18, OA 7.08; the seeds and collisions in the logs show that the "
-               "two are swapped. The comparison uses what was driven."});
-  rows.push_back({.section = "ablation",
-                  .name = "MPPI + NS + AC (SVG-MPPI)",
-                  .method = "svg_mppi",
-                  .log_pt = "path_tracking/svg_mppi.csv",
-                  .log_oa = "obstacle_avoidance/svg_mppi.csv",
-                  .lockstep = "svg_mppi",
-                  .released = "svg_mppi"});
-  for (const char* variance :
-       {"0.001", "0.005", "0.01", "0.015", "0.02", "0.025", "0.03", "0.05", "0.075", "0.1"})
-    fixed("sweep", std::string("fixed ") + variance, variance);
-  rows.push_back({.section = "sweep",
-                  .name = "adaptive",
-                  .method = "svg_mppi",
-                  .log_pt = sweep + "path_tracking/cov_adaptive.csv",
-                  .log_oa = sweep + "obstacle_avoidance/cov_adaptive.csv",
-                  .lockstep = "svg_mppi",
-                  .released = "svg_mppi"});
+    mppi("table2", "MPPI", "0.075");
+    const auto fixed = [&](const char* table, const std::string& name, const std::string& variance) {
+      PaperRow row{.table = table,
+                   .name = name,
+                   .method = "svg_mppi",
+                   // The authors vary one parameter, steer_cov, which is both (docs/published-parameters.md).
+                   .set = {{"svg_mppi.adapt_covariance", "false"},
+                           {"svg_mppi.variance", variance},
+                           {"svg_mppi.guide_variance", variance}},
+                   .released = "ns_" + variance};
+      const std::string folder = "ablation_study/wo_cov_adaptation/", file = "cov:" + variance + ".csv";
+      row.log_pt = folder + "path_tracking/" + file;
+      row.log_oa = folder + "obstacle_avoidance/" + file;
+      made.push_back(row);
+    };
+    fixed("table2", "MPPI + NS", "0.075");
+    made.push_back({.table = "table2",
+                    .name = "MPPI + AC",
+                    .method = "svg_mppi",
+                    .set = {{"svg_mppi.use_nominal", "false"}},
+                    .log_pt = "ablation_study/wo_nominal_solution/obstacle_avoidance/wo_nominal_solution.csv",
+                    .log_oa = "ablation_study/wo_nominal_solution/path_tracking/wo_nominal_solution.csv",
+                    .released = "ac",
+                    .note = "The paper prints PT 18.18, OA 7.08; the seeds and collisions in the logs show "
+                            "that the two are swapped. The comparison uses what was driven."});
+    made.push_back(made[6]);
+    made.back().table = "table2";
+    made.back().name = "MPPI + NS + AC (SVG-MPPI)";
+    for (const char* variance :
+         {"0.001", "0.005", "0.01", "0.015", "0.02", "0.025", "0.03", "0.05", "0.075", "0.1"})
+      fixed("covariances", std::string("fixed ") + variance, variance);
+    made.push_back(made[6]);
+    made.back().table = "covariances";
+    made.back().name = "adaptive";
+    return made;
+  }();
   return rows;
 }
 
@@ -181,14 +174,13 @@ bool drives(const Experiment& experiment, const PaperRow& row) {
   return experiment.method == row.method && experiment.set == row.set;
 }
 
-std::vector<Experiment> paper_experiments(const std::vector<std::string>& sections, int laps_pt, int laps_oa,
+std::vector<Experiment> paper_experiments(const std::vector<std::string>& tables, int laps_pt, int laps_oa,
                                           int obstacles) {
   std::vector<Experiment> experiments;
-  const auto rows = paper_rows();
-  for (const std::string& section : sections) {
+  for (const std::string& table : tables) {
     for (const char* scenario : {"pt", "oa"}) {
-      for (const PaperRow& row : rows) {
-        if (row.section != section) continue;
+      for (const PaperRow& row : paper_rows()) {
+        if (row.table != table) continue;
         const bool there = std::any_of(experiments.begin(), experiments.end(), [&](const Experiment& e) {
           return e.scenario == scenario && drives(e, row);
         });
@@ -204,34 +196,41 @@ std::vector<Experiment> paper_experiments(const std::vector<std::string>& sectio
 
 namespace {
 
-/// A folder that is given must hold at least one of the logs.
-void require_logs(const fs::path& published) {
-  if (!fs::is_directory(published))
-    throw CommandLineError("--published", published.string(), "must be a folder");
+/// Adds to the notes how many logs there are and which are missing. False if there is none.
+bool note_logs(PaperFiles& files) {
+  std::set<std::string> found, missing;
   for (const PaperRow& row : paper_rows())
-    if (fs::is_regular_file(published / row.log_pt) || fs::is_regular_file(published / row.log_oa)) return;
-  throw CommandLineError("--published", published.string(),
-                         std::string("must contain logs of the authors (src/eval/log of ") + authors + ")");
+    for (const std::string& log : {row.log_pt, row.log_oa})
+      (fs::is_regular_file(files.logs / log) ? found : missing).insert(log);
+  std::string note = std::to_string(found.size()) + " of " + std::to_string(found.size() + missing.size()) +
+                     " logs in " + files.logs.string();
+  for (const std::string& log : missing) note += (log == *missing.begin() ? "; missing: " : ", ") + log;
+  files.notes.push_back(note);
+  return !found.empty();
 }
 
 }  // namespace
 
-LogFolders find_logs(const std::string& published, const std::string& course) {
-  LogFolders folders;
-  if (!published.empty()) require_logs(published);
-  const std::string where = std::string("The authors provide map and logs at ") + authors + ".";
-  if (course != logs_course)
-    folders.notes.push_back("The paper's laps were driven on Berlin; these are laps of " + course +
-                            ", so nothing is compared. " + where);
-  if (published.empty()) {
-    folders.notes.push_back(
-        "No logs of the authors were given; --published names their folder (src/eval/log). " + where);
-  } else if (course == logs_course) {
-    folders.published = published;
-    const fs::path beside = fs::weakly_canonical(published).parent_path() / "lockstep";
-    if (fs::is_directory(beside)) folders.lockstep = beside;
+PaperFiles find_paper_files(const fs::path& clone, const std::string& course) {
+  PaperFiles files;
+  const std::string source = std::string("map, path and logs: --paper with a clone of ") + authors;
+  if (clone.empty()) {
+    files.notes.push_back("Nothing is compared. For the authors' " + source);
+    return files;
   }
-  return folders;
+  const fs::path maps = clone / "data/map", path = clone / "data/reference_path" / course;
+  if (!fs::is_directory(maps))
+    throw IoError(clone.string(), 0, std::string("has no folder data/map; must be a clone of ") + authors);
+  if (fs::is_directory(maps / course)) {
+    files.course = maps / course;
+    files.notes.push_back("map " + files.course.string() + ", path " + path.string());
+  }
+  files.logs = clone / "src/eval/log";
+  const bool logged = note_logs(files);
+  if (course != logs_course)
+    files.notes.push_back("Nothing is compared: the logs are of laps on Berlin, these are laps on " + course);
+  if (!logged || course != logs_course) files.logs.clear();
+  return files;
 }
 
 std::string verdict_of(const Reference& r, double collision_rate) {
@@ -241,7 +240,7 @@ std::string verdict_of(const Reference& r, double collision_rate) {
   if (r.published->agreement() == Agreement::inside) {
     text = verdicts::log;
   } else if (r.published->agreement() == Agreement::undecided) {
-    text = verdicts::log + std::string(": no significant difference, but wide intervals; ") + from_log;
+    text = verdicts::undecided + (": " + from_log);
   } else if (!r.released) {
     text = verdicts::not_log + (": " + from_log);
   } else if (r.released->agreement() == Agreement::outside) {
@@ -250,16 +249,12 @@ std::string verdict_of(const Reference& r, double collision_rate) {
   } else {
     text = verdicts::released + (": " + released_text(*r.released)) + "; log: " + from_log;
   }
-  if (r.lockstep)
-    text += std::string("; the paper's program in lockstep: ") +
-            (r.lockstep->agreement() == Agreement::outside ? difference_text(*r.lockstep, collision_rate)
-                                                           : "no significant difference");
   return text;
 }
 
-std::vector<Reference> find_references(const LogFolders& folders, const std::vector<Experiment>& experiments,
+std::vector<Reference> find_references(const fs::path& logs, const std::vector<Experiment>& experiments,
                                        const std::vector<LapRow>& rows) {
-  const auto paper = paper_rows();
+  const auto& paper = paper_rows();
   std::vector<Reference> references;
   for (int i = 0; i < static_cast<int>(experiments.size()); ++i) {
     const Experiment& e = experiments[static_cast<std::size_t>(i)];
@@ -270,18 +265,14 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
     const auto row =
         std::find_if(paper.begin(), paper.end(), [&](const PaperRow& p) { return drives(e, p); });
     if (row != paper.end()) r.note = row->note;
-    const auto look = [&](const fs::path& file, auto& log, auto& comparison) {
-      if (!fs::exists(file)) return;
-      log = read_lap_log(file);
-      comparison = compare_with_log(ours, e.obstacles, *log);
-    };
-    if (row == paper.end() || folders.published.empty()) {
-      r.verdict = verdicts::none + std::string(": the authors have no laps on this course");
+    if (row == paper.end() || logs.empty()) {
+      r.verdict = verdicts::none;
       continue;
     }
-    look(folders.published / row->log(e.scenario), r.log, r.published);
-    if (!folders.lockstep.empty() && !row->lockstep.empty())
-      look(folders.lockstep / (row->lockstep + "_" + e.scenario + ".csv"), r.lockstep_log, r.lockstep);
+    if (const fs::path file = logs / row->log(e.scenario); fs::exists(file)) {
+      r.log = read_lap_log(file);
+      r.published = compare_with_log(ours, e.obstacles, *r.log);
+    }
     if (!r.published) {
       r.verdict = verdicts::none + (": " + row->log(e.scenario)) + " is missing";
       continue;
@@ -302,8 +293,6 @@ void add_reference(Json& result, const Reference& reference) {
       reference.published ? comparison_json(*reference.published, *reference.log) : Json(nullptr);
   result["paper_program"] =
       reference.released ? comparison_json(*reference.released, *reference.released_log) : Json(nullptr);
-  result["lockstep"] =
-      reference.lockstep ? comparison_json(*reference.lockstep, *reference.lockstep_log) : Json(nullptr);
   result["verdict"] = reference.verdict;
   result["note"] = reference.note;
 }

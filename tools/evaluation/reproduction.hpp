@@ -9,30 +9,40 @@
 
 #include "slalom/evaluation/lap_log.hpp"
 
-/// The simulations of Honda et al. (ICRA 2024, section V-B) as experiments, and what the authors
-/// logged.
+/// The simulations of Honda et al. (ICRA 2024, section V-B) as experiments, and what the authors logged.
 namespace slalom::tools {
 
-/// A row of the section's tables: a method with its options, in both scenarios.
+/// A part of the simulation section.
+struct PaperTable {
+  const char* name;    ///< as in --tables
+  const char* figure;  ///< name of its picture
+  const char* title;   ///< as the paper numbers it
+};
+inline constexpr PaperTable paper_tables[] = {
+    {"table1", "fig5", "Table I and Fig. 5: the baselines"},
+    {"table2", "table2", "Table II: nominal sequence (NS) and adaptive covariance (AC)"},
+    {"covariances", "covariances", "Nominal sequence with fixed covariances: in the logs, not in the paper"},
+};
+
+/// A row of a table: a method with its options, in both scenarios.
 struct PaperRow {
-  std::string section = {};  ///< "baseline", "ablation" or "sweep"
-  std::string name = {};     ///< as the paper has it
+  std::string table = {};  ///< name of a PaperTable
+  std::string name = {};   ///< as the paper has it
   std::string method = {};
   std::vector<std::pair<std::string, std::string>> set = {};
-  std::string log_pt = {}, log_oa = {};  ///< below the folder of the authors' logs
-  std::string lockstep = {};  ///< "svg_mppi": svg_mppi_pt.csv, svg_mppi_oa.csv of the lockstep logs
-  std::string released = {};  ///< row of paper_program_laps
-  std::string note = {};      ///< a remark on the authors' figure
+  std::string log_pt = {}, log_oa = {};  ///< files of the authors, below PaperFiles::logs
+  std::string released = {};             ///< row of paper_program_laps
+  std::string note = {};                 ///< a remark on the authors' figure
 
   const std::string& log(const std::string& scenario) const { return scenario == "pt" ? log_pt : log_oa; }
 };
 
 /// All rows. The ablations' two files without a nominal sequence are taken for what they hold: in the
 /// authors' repository, and in table II of the paper, the two scenarios are swapped.
-std::vector<PaperRow> paper_rows();
+const std::vector<PaperRow>& paper_rows();
 
-/// The different experiments of the rows of these sections, section by section.
-std::vector<evaluation::Experiment> paper_experiments(const std::vector<std::string>& sections, int laps_pt,
+/// The different experiments of the rows of these tables, table by table.
+std::vector<evaluation::Experiment> paper_experiments(const std::vector<std::string>& tables, int laps_pt,
                                                       int laps_oa, int obstacles);
 
 /// Whether an experiment is that of a row.
@@ -46,38 +56,39 @@ inline constexpr const char* released = "agrees with the paper's program, not wi
 inline constexpr const char* neither = "disagrees with both";
 /// A significant difference from the log; the paper's program has no laps of the row.
 inline constexpr const char* not_log = "disagrees with the log";
+inline constexpr const char* undecided = "too few laps to decide";
 inline constexpr const char* none = "not compared";
 }  // namespace verdicts
 
-/// Reference results of an experiment: logs of the authors, of the paper's program in this simulator, and of
-/// a lockstep run.
+/// Reference results of an experiment: logs of the authors, and of the paper's program in this simulator.
 struct Reference {
-  std::optional<evaluation::LapLog> log, released_log, lockstep_log;
-  std::optional<evaluation::LogComparison> published, released, lockstep;
+  std::optional<evaluation::LapLog> log, released_log;
+  std::optional<evaluation::LogComparison> published, released;
   std::string verdict;  ///< one of `verdicts`, and figures
   std::string note;     ///< why, where it is known
 };
 
-/// The verdict on `published`, `released` and `lockstep`; `collision_rate` is that of the measured laps.
+/// The verdict on `published` and `released`; `collision_rate` is that of the measured laps.
 std::string verdict_of(const Reference& reference, double collision_rate);
 
-/// Folders of logs, and which logs are missing.
-struct LogFolders {
-  std::filesystem::path published, lockstep;  ///< empty: none
-  std::vector<std::string> notes;             ///< for people: what is missing and where to get it
+/// Files of the authors' repository, https://github.com/kohonda/proj-svg_mppi.
+struct PaperFiles {
+  std::filesystem::path course;    ///< folder of the map; empty: not a course of theirs
+  std::filesystem::path logs;      ///< src/eval/log; empty: nothing to compare with
+  std::vector<std::string> notes;  ///< what was found, what is missing, and what that means
 };
 
-/// Looks for the authors' logs in `published` and for a folder `lockstep` beside it. They can be compared
-/// only with laps of the course on which they were driven. Throws IoError where `published` is not empty and
-/// holds no log.
-LogFolders find_logs(const std::string& published, const std::string& course);
+/// Looks in a clone of that repository for the map and path of `course` and for the logs, which were driven
+/// on Berlin and can be compared only with laps on it. An empty `clone` has neither. Throws IoError if it is
+/// not a clone.
+PaperFiles find_paper_files(const std::filesystem::path& clone, const std::string& course);
 
 /// One per experiment. Throws IoError on a log that is there but cannot be read.
-std::vector<Reference> find_references(const LogFolders& folders,
+std::vector<Reference> find_references(const std::filesystem::path& logs,
                                        const std::vector<evaluation::Experiment>& experiments,
                                        const std::vector<evaluation::LapRow>& rows);
 
-/// `published`, `paper_program`, `lockstep`, `verdict` and `note` of an entry of a summary's results.
+/// `published`, `paper_program`, `verdict` and `note` of an entry of a summary's results.
 void add_reference(nlohmann::ordered_json& result, const Reference& reference);
 
 }  // namespace slalom::tools

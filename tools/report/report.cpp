@@ -41,9 +41,8 @@ std::string pill(const std::string& kind) {
 }
 
 const char* heading(const std::string& section) {
-  if (section == "baseline") return "Comparison with the baselines";
-  if (section == "ablation") return "Ablation: nominal sequence and adaptive covariance";
-  if (section == "sweep") return "Nominal sequence with fixed covariances";
+  for (const PaperTable& table : paper_tables)
+    if (table.name == section) return table.title;
   return "Methods";
 }
 

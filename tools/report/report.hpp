@@ -48,6 +48,11 @@ struct ReportFigure {
 /// `folder`.
 std::vector<ReportFigure> report_charts(const Report& report, const std::filesystem::path& folder);
 
+/// Drives and draws Fig. 2 of the paper in the simulator: the same lap with MPPI (covariance 0.075) and with
+/// SVG-MPPI, fig2a.png without obstacles and fig2b.png among obstacles. It is the first lap in which MPPI
+/// hits an obstacle, or else the first. Draws nothing if the evaluation lacks one of the methods.
+void draw_trajectories(const Evaluated& evaluated, const std::filesystem::path& folder);
+
 /// Writes report.html, and figures/ beside it. Throws IoError.
 void write_report(const Report& report, const std::filesystem::path& folder);
 

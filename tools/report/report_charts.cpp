@@ -132,6 +132,12 @@ RowChart time_chart(const Report& report, const std::string& section) {
   return chart;
 }
 
+std::string figure_name(const std::string& section) {
+  for (const PaperTable& table : paper_tables)
+    if (table.name == section) return table.figure;
+  return section;
+}
+
 }  // namespace
 
 std::vector<ReportFigure> report_charts(const Report& report, const std::filesystem::path& folder) {
@@ -143,7 +149,7 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
   for (const std::string& section : sections) {
     figures.push_back(saved(
         draw_chart(section_chart(report, section)),
-        {section, section, "",
+        {figure_name(section), section, "",
          "Every lap counts. Boxes: quartiles and median, whiskers to 1.5 times the box, laps beyond them as "
          "points, the mean as a diamond; the axes of costs are logarithmic. Bars: collision rate with its "
          "95 % Wilson interval."},

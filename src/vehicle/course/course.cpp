@@ -139,6 +139,14 @@ double complete(std::vector<Waypoint>& points) {
   return longest;
 }
 
+/// Returns the folder of a course's waypoints: that of its map, except for a folder map/NAME with a folder
+/// reference_path/NAME beside `map`.
+fs::path path_folder(const fs::path& folder) {
+  const fs::path map = fs::weakly_canonical(folder), maps = map.parent_path();
+  const fs::path path = maps.parent_path() / "reference_path" / map.filename();
+  return maps.filename() == "map" && fs::is_directory(path) ? path : folder;
+}
+
 void load_path(Course& course, const fs::path& folder) {
   detail::CsvForm form = detail::CsvForm::other;
   const fs::path file = find_waypoints(folder, form, course.notes);
@@ -166,11 +174,12 @@ void complete_course(Course& course, std::optional<bool> closed) {
 
 Course load_course(const fs::path& folder, const maps::MapReading& reading) {
   if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is not a folder");
+  const fs::path paths = path_folder(folder);
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
   course.map = maps::load_ros_map(find_map(folder, course.notes), reading);
-  load_path(course, folder);
-  if (const fs::path points = folder / obstacle_file; fs::exists(points))
+  load_path(course, paths);
+  if (const fs::path points = paths / obstacle_file; fs::exists(points))
     course.obstacle_path = detail::read_points(points);
   const fs::path file = folder / course_file;
   const detail::CourseFile said = fs::exists(file) ? detail::read_course_file(file) : detail::CourseFile{};

@@ -32,6 +32,9 @@ struct Waypoint {
 /// `opp_ref_path.csv`, if present, has no header; its columns 0 and 1 are the points where obstacles may
 /// stand. `course.yaml`, if present, may give `name`, `description`, `command`, `start` {x, y, yaw},
 /// `timeout` (s), `closed`.
+///
+/// The program of Honda et al. (ICRA 2024) has its files in two folders: a map in `map/NAME`, the CSV files in
+/// `reference_path/NAME`. There, `map/NAME` is the folder of the course.
 struct Course {
   std::string name;         ///< the name
   std::string description;  ///< one sentence
