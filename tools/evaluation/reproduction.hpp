@@ -65,7 +65,7 @@ struct Reference {
   std::optional<evaluation::LapLog> log, released_log;
   std::optional<evaluation::LogComparison> published, released;
   std::string verdict;  ///< one of `verdicts`, and figures
-  std::string note;     ///< why, where it is known
+  std::string note;     ///< reason of a difference, if known
 };
 
 /// The verdict on `published` and `released`; `collision_rate` is that of the measured laps.
@@ -75,7 +75,7 @@ std::string verdict_of(const Reference& reference, double collision_rate);
 struct PaperFiles {
   std::filesystem::path course;    ///< folder of the map; empty: not a course of theirs
   std::filesystem::path logs;      ///< src/eval/log; empty: nothing to compare with
-  std::vector<std::string> notes;  ///< what was found, what is missing, and what that means
+  std::vector<std::string> notes;  ///< sentences on files found and missing
 };
 
 /// Looks in a clone of that repository for the map and path of `course` and for the logs, which were driven

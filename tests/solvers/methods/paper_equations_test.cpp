@@ -1,0 +1,190 @@
+// The equations of SVG-MPPI (Honda et al., ICRA 2024) against results that are known: integrals by
+// quadrature, and quadratic costs, for which all distributions are Gaussian. docs/paper.md lists the
+// equations.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "slalom/solvers/svg_mppi_options.hpp"
+#include "solvers/problems.hpp"
+
+namespace slalom {
+namespace {
+
+using Function = std::function<double(double)>;
+
+/// The integral of f over [-8, 8] by the midpoint rule.
+double integral(const Function& f) {
+  constexpr int slices = 16000;
+  double sum = 0;
+  for (int i = 0; i < slices; ++i) sum += f(-8 + 16 * (i + 0.5) / slices);
+  return sum * 16 / slices;
+}
+
+double normal(double x, double mean, double variance) {
+  return std::exp(-0.5 * (x - mean) * (x - mean) / variance) / std::sqrt(2 * 3.14159265358979324 * variance);
+}
+
+/// A cost of one input with two ways, at about -1 and 1, of which the second is better.
+double two_ways(double v) {
+  return 2 * (v * v - 1) * (v * v - 1) - 0.2 * v;
+}
+
+/// A solver of one step and one input, as the paper prints it, but for what a test changes.
+SvgMppiOptions printed() {
+  SvgMppiOptions options;
+  options.horizon = 1;
+  options.samples = 200000;
+  options.temperature = options.guides.gradient_temperature = 0.7;
+  options.guides.count = 1;
+  options.guides.restart = false;
+  options.guides.sample_around = SampleCentre::solution;
+  options.guides.gradient_samples = 60000;
+  options.guides.gradient_variance = 0.09;
+  options.guides.step = 0.03;
+  options.variance_min = 0;
+  options.variance_max = 100;
+  options.shift_warm_start = false;
+  options.seed = 3;
+  return options;
+}
+
+auto evaluator_of(double (*cost)(double)) {
+  return testing::FunctionEvaluator(1, [cost](const SequenceBatch& batch, int k) {
+    return std::pair(cost(static_cast<double>(batch.data(0)[k])), false);
+  });
+}
+
+/// Equations (7) and (8): the solution is the mean of q* ~ exp(-S / lambda) N(nominal, Sigma), although the
+/// samples are drawn around the last solution.
+TEST(PaperEquations, WeightsOfEquation8GiveTheMeanOfTheOptimalDistribution) {
+  SvgMppiOptions options = printed();
+  options.adapt_covariance = false;
+  options.variance = 0.4;
+  options.guides.iterations = 4;
+  const auto evaluator = evaluator_of(two_ways);
+  const auto solver = make_solver(options, 1);
+  double last = 0, distance = 0;
+  for (int solve = 0; solve < 4; ++solve) {
+    const SolveResult& result = solver->solve(evaluator, {});
+    const double nominal = static_cast<double>(result.nominal[0]), lambda = options.temperature;
+    const Function q = [&](double v) { return std::exp(-two_ways(v) / lambda) * normal(v, nominal, 0.4); };
+    EXPECT_NEAR(result.inputs[0], integral([&](double v) { return v * q(v); }) / integral(q), 0.01) << solve;
+    distance = std::max(distance, std::abs(nominal - last));
+    last = static_cast<double>(result.inputs[0]);
+  }
+  EXPECT_GT(distance, 0.2) << "the control term of (8) must not vanish";
+}
+
+/// Equation (10) as printed says KL(Q || Q*) = -E[log q*/q] <= -log E[q*/q]. By Jensen's inequality it is the
+/// other way round; the right side is 0 for every Q, so no gradient of it leads anywhere.
+TEST(PaperEquations, Equation10IsALowerBoundOfTheReverseDivergence) {
+  const Function optimal = [](double v) { return 0.5 * normal(v, -1, 0.0625) + 0.5 * normal(v, 1, 0.0625); };
+  for (const auto& [mean, variance] : {std::pair(0.0, 0.25), {0.0, 1.0}, {1.0, 0.0625}, {0.5, 0.09}}) {
+    const auto expectation = [mean = mean, variance = variance](const Function& f) {
+      return integral([&](double v) { return normal(v, mean, variance) * f(v); });
+    };
+    const Function ratio = [&, mean = mean, variance = variance](double v) {
+      return optimal(v) / std::max(normal(v, mean, variance), 1e-300);
+    };
+    const double divergence = -expectation([&](double v) { return std::log(std::max(ratio(v), 1e-300)); });
+    EXPECT_NEAR(-std::log(integral(optimal)), 0, 1e-6);
+    EXPECT_GT(divergence, 0.1) << mean;
+    // With exp(-S / lambda) in place of q*/q, as in (11), the bound is also a lower one.
+    EXPECT_GT(-expectation([&](double v) { return std::log(optimal(v)); }), -std::log(expectation(optimal)));
+  }
+}
+
+/// Equation (11) for S = 1/2 a (v - c)^2: log E[exp(-S / lambda)] has the gradient (c - theta) / (Sigma_g +
+/// lambda / a).
+TEST(PaperEquations, SurrogateGradientOfAQuadraticCost) {
+  SvgMppiOptions options = printed();
+  options.guides.variance = 1e-8;  // the guide begins at 0
+  options.guides.iterations = 20;
+  const auto evaluator = evaluator_of([](double v) { return 0.5 * 3 * (v - 1.5) * (v - 1.5); });
+  const auto solver = make_solver(options, 1);
+  const SolveResult& result = solver->solve(evaluator, {});
+  const double factor = 1 - 0.03 / (0.09 + 0.7 / 3);
+  EXPECT_NEAR(result.nominal[0], 1.5 * (1 - std::pow(factor, 20)), 0.01);
+}
+
+/// Equation (11) for any cost: a step goes the fraction epsilon / Sigma_g of the way to the mean of exp(-S /
+/// lambda) N(theta, Sigma_g). This is the solution of the forward divergence for that prior, not of the
+/// reverse one.
+TEST(PaperEquations, StepOfAGuideIsADampedForwardStep) {
+  SvgMppiOptions options = printed();
+  options.guides.variance = 1e-8;
+  options.guides.iterations = 3;
+  const auto evaluator = evaluator_of(two_ways);
+  const auto solver = make_solver(options, 1);
+  const SolveResult& result = solver->solve(evaluator, {});
+  double theta = 0;
+  for (int l = 0; l < 3; ++l) {
+    const Function p = [&](double v) { return std::exp(-two_ways(v) / 0.7) * normal(v, theta, 0.09); };
+    theta += 0.03 / 0.09 * (integral([&](double v) { return v * p(v); }) / integral(p) - theta);
+  }
+  EXPECT_NEAR(result.nominal[0], theta, 0.005);
+}
+
+/// Equation (12): the nominal sequence is the guide with the least cost.
+TEST(PaperEquations, NominalSequenceIsTheBestGuide) {
+  SvgMppiOptions options = printed();
+  options.guides.count = 8;
+  options.guides.gradient_samples = 50;
+  options.seed = 2;
+  const auto solver = make_solver(options, 1);
+  const SolveResult& result = solver->solve(evaluator_of(two_ways), {});
+  ASSERT_EQ(result.guides.sequences, 8);
+  double least = 1e9, first = 0;
+  for (int k = 0; k < 8; ++k) {
+    const double guide = static_cast<double>(result.guides.values[static_cast<std::size_t>(k)]);
+    if (two_ways(guide) < two_ways(least)) least = guide;
+    first = k == 0 ? guide : first;
+  }
+  EXPECT_FLOAT_EQ(result.nominal[0], static_cast<float>(least));
+  EXPECT_NE(static_cast<float>(first), result.nominal[0])
+      << "a seed for which the first guide is not the best";
+}
+
+/// Equation (13) for S = 1/2 a (v - c)^2: exp(-S / lambda) has the variance lambda / a, and q* of equation
+/// (5) has 1 / (a / lambda + 1 / Sigma). As printed, the square root of that is the "variance".
+TEST(PaperEquations, FitRecoversTheVarianceOfAGaussian) {
+  const auto evaluator = evaluator_of([](double v) { return 0.5 * 3 * (v - 1.5) * (v - 1.5); });
+  const auto fitted = [&](auto change) {
+    SvgMppiOptions options = printed();
+    options.guides.variance = 0.5;
+    options.guides.gradient_samples = 500;
+    options.guides.iterations = 12;
+    change(options);
+    return static_cast<double>(make_solver(options, 1)->solve(evaluator, {}).variances[0]);
+  };
+  const double variance = 0.7 / 3, optimal = 1 / (1 / variance + 1 / 0.5);
+  EXPECT_NEAR(fitted([](SvgMppiOptions& o) {
+                o.published.fit_target = FitTarget::state_cost;
+                o.published.fit_temperature = 0.7;
+              }),
+              variance, 0.01 * variance);
+  const auto printed_target = [](SvgMppiOptions& o) { o.published.fit_target = FitTarget::optimal_density; };
+  EXPECT_NEAR(fitted(printed_target), optimal, 0.01 * optimal);
+  EXPECT_NEAR(fitted([&](SvgMppiOptions& o) {
+                printed_target(o);
+                o.published.fit_standard_deviation = true;
+              }),
+              std::sqrt(optimal), 0.01 * std::sqrt(optimal));
+  EXPECT_EQ(fitted([&](SvgMppiOptions& o) {
+              printed_target(o);
+              o.guides.iterations = 2;
+            }),
+            100)
+      << "two points do not determine a parabola";
+  EXPECT_EQ(fitted([&](SvgMppiOptions& o) {
+              printed_target(o);
+              o.guides.step = 0;
+            }),
+            100)
+      << "a guide that does not move determines nothing";
+}
+
+}  // namespace
+}  // namespace slalom
