@@ -5,145 +5,125 @@
 
 #include <stdexcept>
 
-#include "logic/path_follower.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
 namespace slalom::nodes {
 namespace {
 
-using testing::ScopedFolder;
-
-/// A file with these lines in the section of the controller.
-std::string with_lines(const ScopedFolder& folder, const std::string& lines) {
-  return folder.write("params.yaml",
-                      "controller_server:\n"
-                      "  ros__parameters:\n"
-                      "    controller_frequency: 20.0\n"
-                      "    FollowPath:\n"
-                      "      plugin: \"nav2_mppi_controller::MPPIController\"\n" +
-                          lines);
+/// Imports a file with these lines in the section of the controller, from line 6 on.
+MppiImport import(const std::string& lines) {
+  const testing::ScopedFolder folder;
+  return import_mppi(folder.write("params.yaml",
+                                  "controller_server:\n"
+                                  "  ros__parameters:\n"
+                                  "    controller_frequency: 20.0\n"
+                                  "    FollowPath:\n"
+                                  "      plugin: \"nav2_mppi_controller::MPPIController\"\n" +
+                                      lines));
 }
 
-ImportedSection import(const std::string& lines) {
-  const ScopedFolder folder;
-  const std::vector<ImportedSection> sections = import_mppi(with_lines(folder, lines));
-  EXPECT_EQ(sections.size(), 1U);
-  return sections.at(0);
-}
-
-const ImportedKey& find(const ImportedSection& section, const std::string& key) {
-  for (const ImportedKey& each : section.keys)
-    if (each.key == key) return each;
-  throw std::runtime_error("no word of " + key);
-}
-std::string fate(const ImportedSection& section, const std::string& key) {
-  return name(find(section, key).fate);
-}
-bool has_line(const ImportedSection& section, const std::string& line) {
-  return ("\n" + section.yaml).find("\n" + line + "\n") != std::string::npos;
+void expect_words(const std::string& text, const std::vector<const char*>& words) {
+  for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " in\n" << text;
 }
 
 TEST(MppiImport, TakesWhatMeansTheSame) {
-  const ImportedSection section = import(
-      "      time_steps: 40\n"
-      "      model_dt: 0.1\n"
-      "      vx_max: 1\n"
-      "      vx_min: -0.2\n"
-      "      motion_model: \"Ackermann\"\n"
-      "      visualize: True\n"
-      "      AckermannConstraints:\n"
-      "        min_turning_r: 0.4\n");
-  EXPECT_EQ(section.name, "FollowPath");
-  EXPECT_EQ(section.line, 4);
-  for (const char* key : {"time_steps", "model_dt", "vx_max", "vx_min", "motion_model", "visualize",
-                          "AckermannConstraints.min_turning_r"})
-    EXPECT_EQ(fate(section, key), "taken") << key;
-  EXPECT_EQ(find(section, "model_dt").line, 7);
-  EXPECT_EQ(find(section, "AckermannConstraints.min_turning_r").line, 13);
-  EXPECT_TRUE(has_line(section, "FollowPath:")) << section.yaml;
-  EXPECT_TRUE(has_line(section, "  plugin: \"slalom_nav2::Controller\"")) << section.yaml;
-  EXPECT_TRUE(has_line(section, "  time_steps: 40")) << section.yaml;
-  EXPECT_TRUE(has_line(section, "  vx_max: 1.0")) << "ROS takes no integer for a number\n" << section.yaml;
-  EXPECT_TRUE(has_line(section, "  vx_min: -0.2")) << section.yaml;
-  EXPECT_TRUE(has_line(section, "  visualize: true")) << section.yaml;
-  EXPECT_TRUE(has_line(section, "  AckermannConstraints:\n    min_turning_r: 0.4")) << section.yaml;
+  const MppiImport imported = import(R"(
+      time_steps: 40
+      model_dt: 0.1
+      batch_size: 500
+      vx_max: 1
+      vx_min: -0.2
+      vy_max: 0.3
+      wz_max: 1.5
+      az_max: 3.0
+      vx_std: 0.2
+      vy_std: 0.1
+      wz_std: 0.3
+      motion_model: "Ackermann"
+      open_loop: False
+      visualize: True
+      transform_tolerance: 0.2
+      AckermannConstraints:
+        min_turning_r: 0.4
+)");
+  expect_words(imported.report,
+               {"params.yaml:7: FollowPath.time_steps: 40: taken\n",
+                "params.yaml:18: FollowPath.motion_model: Ackermann: taken\n",
+                "params.yaml:23: FollowPath.AckermannConstraints.min_turning_r: 0.4: taken\n"});
+  std::size_t taken = 0;
+  for (std::size_t at = 0; (at = imported.report.find(": taken\n", at)) != std::string::npos; ++at) ++taken;
+  EXPECT_EQ(taken, 16U) << imported.report;
+  expect_words(imported.yaml, {"\nFollowPath:\n  plugin: \"slalom_nav2::Controller\"\n",
+                               "\n  time_steps: 40\n", "\n  vx_min: -0.2\n", "\n  visualize: true\n",
+                               "\n  AckermannConstraints:\n    min_turning_r: 0.4\n"});
+  expect_words(imported.yaml, {"\n  vx_max: 1.0\n"});  // ROS takes no integer for a number
 }
 
 TEST(MppiImport, ChangesWhatHasAnotherScaleOrName) {
-  const ImportedSection section = import(
-      "      temperature: 0.6\n"
-      "      GoalAngleCritic:\n"
-      "        threshold_to_consider: 0.8\n"
-      "        cost_weight: 3.0\n");
-  EXPECT_EQ(fate(section, "temperature"), "changed");
-  EXPECT_EQ(find(section, "temperature").result, "temperature: 0.06");
-  EXPECT_FALSE(find(section, "temperature").why.empty());
-  EXPECT_TRUE(has_line(section, "  temperature: 0.06")) << section.yaml;
-  EXPECT_EQ(fate(section, "plugin"), "changed");
-  EXPECT_EQ(fate(section, "GoalAngleCritic.threshold_to_consider"), "changed");
-  EXPECT_EQ(find(section, "GoalAngleCritic.threshold_to_consider").result, "costs.goal_reach: 0.8");
-  EXPECT_TRUE(has_line(section, "  costs:\n    goal_reach: 0.8")) << section.yaml;
-  EXPECT_EQ(fate(section, "GoalAngleCritic.cost_weight"), "dropped");
+  const MppiImport imported = import(R"(
+      temperature: 0.6
+      GoalAngleCritic:
+        threshold_to_consider: 0.8
+        cost_weight: 3.0
+)");
+  expect_words(
+      imported.report,
+      {"FollowPath.plugin: nav2_mppi_controller::MPPIController: changed to plugin: slalom_nav2",
+       "FollowPath.temperature: 0.6: changed to temperature: 0.06 (costs have another scale;",
+       "threshold_to_consider: 0.8: changed to costs.goal_reach: 0.8 (the name here)",
+       "GoalAngleCritic.cost_weight: 3.0: dropped (the cost has another scale: costs.goal_heading)"});
+  expect_words(imported.yaml, {"\n  temperature: 0.06\n", "\n  costs:\n    goal_reach: 0.8\n"});
 }
 
 TEST(MppiImport, TakesTheLeastAcceleration) {
-  const ImportedSection least = import("      ax_max: 3.0\n      ax_min: -2.0\n      ay_max: 1.0\n");
-  EXPECT_EQ(fate(least, "ax_min"), "changed");
-  EXPECT_EQ(find(least, "ax_min").result, "ax_max: 2");
-  EXPECT_EQ(fate(least, "ax_max"), "dropped");
-  EXPECT_EQ(fate(least, "ay_max"), "dropped") << "the base cannot drive sideways";
-  EXPECT_TRUE(has_line(least, "  ax_max: 2.0")) << least.yaml;
-  const ImportedSection omni =
-      import("      ax_max: 3.0\n      ay_max: 1.0\n      motion_model: Omni\n      ay_min: -4.0\n");
-  EXPECT_TRUE(has_line(omni, "  ax_max: 1.0")) << omni.yaml;
-  const ImportedSection alone = import("      ax_max: 3.0\n      ax_min: -3.0\n");
-  EXPECT_EQ(fate(alone, "ax_max"), "taken");
+  const MppiImport least = import("      ax_max: 3.0\n      ax_min: -2.0\n      ay_max: 1.0\n");
+  expect_words(least.report, {"ax_max: 3.0: dropped", "ax_min: -2.0: changed to ax_max: 2 (one limit",
+                              "ay_max: 1.0: dropped"});  // the base cannot drive sideways
+  expect_words(least.yaml, {"\n  ax_max: 2.0\n"});
+  expect_words(
+      import("      ax_max: 3.0\n      ay_max: 1.0\n      motion_model: Omni\n      ay_min: -4.0\n").yaml,
+      {"\n  ax_max: 1.0\n"});
+  expect_words(import("      ax_max: 3.0\n      ax_min: -3.0\n").report, {"ax_max: 3.0: taken"});
 }
 
 TEST(MppiImport, NamesWhatItDropsAndWhatItDoesNotKnow) {
-  const ImportedSection section = import(
-      "      gamma: 0.015\n"
-      "      critics: [\n"
-      "        \"ConstraintCritic\", \"CostCritic\"]\n"
-      "      CostCritic:\n"
-      "        cost_weight: 3.81\n"
-      "      vx_maxx: 0.5\n"
-      "      favourite_colour: blue\n");
-  EXPECT_EQ(fate(section, "gamma"), "dropped");
-  EXPECT_NE(find(section, "gamma").why, "");
-  EXPECT_EQ(fate(section, "critics"), "dropped");
-  EXPECT_EQ(find(section, "critics").value, "a list");
-  EXPECT_EQ(fate(section, "CostCritic.cost_weight"), "dropped");
-  EXPECT_EQ(fate(section, "vx_maxx"), "unknown");
-  EXPECT_NE(find(section, "vx_maxx").why.find("'vx_max'"), std::string::npos) << find(section, "vx_maxx").why;
-  EXPECT_EQ(fate(section, "favourite_colour"), "unknown");
-  EXPECT_EQ(section.yaml.find("gamma"), std::string::npos);
-  EXPECT_EQ(section.keys.size(), 6U) << "with that of the plugin";
+  const MppiImport imported = import(R"(
+      gamma: 0.015
+      critics: [
+        "ConstraintCritic", "CostCritic"]
+      CostCritic:
+        cost_weight: 3.81
+      vx_maxx: 0.5
+      favourite_colour: blue
+)");
+  expect_words(imported.report,
+               {"gamma: 0.015: dropped (the weights have no control cost", "critics: a list: dropped (",
+                "CostCritic.cost_weight: 3.81: dropped (",
+                "vx_maxx: 0.5: unknown (no parameter of nav2's MPPI controller, did you mean 'vx_max'?)\n",
+                "favourite_colour: blue: unknown (no parameter of nav2's MPPI controller)\n"});
+  EXPECT_EQ(imported.yaml.find("gamma"), std::string::npos);
 }
 
 TEST(MppiImport, FindsEverySectionUnderAnyNamespace) {
-  const ScopedFolder folder;
+  const testing::ScopedFolder folder;
   const std::string section = "{plugin: \"nav2_mppi_controller::MPPIController\", vx_max: 0.4}\n";
-  const auto found = import_mppi(folder.write(
+  const MppiImport found = import_mppi(folder.write(
       "params.yaml",
       "/robot:\n  controller_server:\n    ros__parameters:\n      Fast: " + section +
           "      Other: {plugin: \"dwb_core::DWBLocalPlanner\", vx_max: 0.4}\n      Slow: " + section));
-  ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0].name, "Fast");
-  EXPECT_EQ(found[1].name, "Slow");
+  expect_words(found.yaml, {"\nFast:\n", "\nSlow:\n"});
+  EXPECT_EQ(found.yaml.find("Other"), std::string::npos);
 }
 
 TEST(MppiImport, RefusesBadInputWithFileLineKeyAndRule) {
-  const ScopedFolder folder;
-  const auto refuses = [&](const std::string& lines, const std::vector<const char*>& words) {
-    expect_error_with<std::runtime_error>(words, [&] { import_mppi(with_lines(folder, lines)); });
+  const auto refuses = [](const std::string& lines, const std::vector<const char*>& words) {
+    expect_error_with<std::runtime_error>(words, [&] { import(lines); });
   };
   refuses("      time_steps: fast\n",
           {"params.yaml:6:", "FollowPath.time_steps", "'fast' must be an integer"});
   refuses("      model_dt: 0.05\n      batch_size: 0\n",
           {"params.yaml:7:", "FollowPath.batch_size", "'0' must be in [1, 4194304]"});
-  refuses("      vx_min: 0.3\n", {"params.yaml:6:", "FollowPath.vx_min", "must be in [-20, 0]"});
   refuses("      motion_model: Boat\n", {"params.yaml:6:", "motion_model", "must be one of DiffDrive"});
   refuses("      temperature: warm\n", {"params.yaml:6:", "temperature", "'warm' must be a number"});
   refuses("      temperature: -1\n", {"params.yaml:6:", "temperature", "must be at least 0"});
@@ -152,6 +132,7 @@ TEST(MppiImport, RefusesBadInputWithFileLineKeyAndRule) {
   refuses("      AckermannConstraints:\n        min_turning_r: -1\n",
           {"params.yaml:7:", "AckermannConstraints.min_turning_r", "must be in"});
   refuses("      vx_max: [1\n", {"params.yaml"});
+  const testing::ScopedFolder folder;
   expect_error_with<std::runtime_error>({"params.yaml", "nav2_mppi_controller::MPPIController"}, [&] {
     import_mppi(folder.write("params.yaml", "controller_server:\n  ros__parameters: {a: 1}\n"));
   });

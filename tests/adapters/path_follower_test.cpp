@@ -178,7 +178,7 @@ TEST(PathFollower, KeepsToSpeedLimitsInPercentAndInMetresPerSecond) {
 }
 
 TEST(PathFollower, StandsOnlyWhereTheGoalCheckerIsContent) {
-  const auto status_at = [](const maps::Pose& pose, const GoalTolerance& tolerance) {
+  const auto status_at = [](const maps::Pose& pose, const std::optional<GoalTolerance>& tolerance) {
     Drive drive;
     drive.input.pose = pose;
     drive.input.tolerance = tolerance;
@@ -186,11 +186,11 @@ TEST(PathFollower, StandsOnlyWhereTheGoalCheckerIsContent) {
     return drive.step().status;
   };
   EXPECT_EQ(status_at({2.92, 2, 0}, {}), "goal_reached") << "goal_distance is 0.1 m";
-  EXPECT_EQ(status_at({2.92, 2, 0}, {0.25, 0.25, true}), "goal_reached");
-  EXPECT_EQ(status_at({2.92, 2, 0}, {0.05, 0.25, true}), "following");
-  EXPECT_EQ(status_at({2.8, 2, 0}, {0.25, 0.25, true}), "following") << "it aims for the goal itself";
-  EXPECT_EQ(status_at({2.95, 2, 1}, {0.25, 0.25, true}), "following");
-  EXPECT_EQ(status_at({2.95, 2, 1}, {0.25, 0, true}), "goal_reached") << "the heading does not matter";
+  EXPECT_EQ(status_at({2.92, 2, 0}, GoalTolerance{0.25, 0.25}), "goal_reached");
+  EXPECT_EQ(status_at({2.92, 2, 0}, GoalTolerance{0.05, 0.25}), "following");
+  EXPECT_EQ(status_at({2.8, 2, 0}, GoalTolerance{0.25, 0.25}), "following") << "it aims for the goal itself";
+  EXPECT_EQ(status_at({2.95, 2, 1}, GoalTolerance{0.25, 0.25}), "following");
+  EXPECT_EQ(status_at({2.95, 2, 1}, GoalTolerance{0.25, 0}), "goal_reached") << "the heading does not matter";
 }
 
 TEST(PathFollower, RefusesWithoutAPlan) {

@@ -1,5 +1,5 @@
 // A quadruped that lies on its back, a side or its belly, simulated by MuJoCo: it turns over and stands up.
-//   slalom_mujoco_quadruped quadruped.xml [seeds [heights.csv]]
+//   slalom_mujoco_quadruped quadruped.xml [seeds]
 
 #include <cmath>
 #include <numbers>
@@ -50,10 +50,9 @@ void lay_down(World& world, slalom::RandomStream& random) {
 }
 
 int main(int argc, char** argv) {
-  if (argc < 2) return std::puts("usage: slalom_mujoco_quadruped quadruped.xml [seeds [heights.csv]]"), 2;
+  if (argc < 2) return std::puts("usage: slalom_mujoco_quadruped quadruped.xml [seeds]"), 2;
   constexpr int physics_steps = 2;
   const slalom::mujoco::Model model(argv[1]);
-  std::FILE* const heights = argc > 3 ? std::fopen(argv[3], "w") : nullptr;
   Summary summary;
   for (std::uint64_t seed = 0; seed < seeds_of(argc, argv, "5"); ++seed) {
     slalom::Controller controller{
@@ -71,12 +70,8 @@ int main(int argc, char** argv) {
     bool stands = true;  // in the last half second of 3
     drive(controller, world, physics_steps, 3, summary, [&](const mjData& data) {
       if (data.time > 2.5) stands = stands && height(data) > 0.25 && uprightness(data) > 0.85;
-      if (heights)
-        std::fprintf(heights, "%d,%.2f,%.4f,%.4f\n", static_cast<int>(seed), data.time, height(data),
-                     uprightness(data));
     });
     summary.succeeded += stands;
   }
-  if (heights) std::fclose(heights);
   return summary.report("the quadruped stands");
 }

@@ -1,42 +1,20 @@
-"""The simulator with the interface of Gymnasium, which need not be installed."""
+"""The simulator with the interface of Gymnasium. Where gymnasium is not installed, it has no spaces."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._driving import Course, World
 
-Base: Any = object
 try:
     import gymnasium  # type: ignore[import]
-
-    Base = gymnasium.Env
-    Box = gymnasium.spaces.Box
 except ImportError:
-
-    class Box:  # type: ignore[no-redef]
-        """An interval for each entry of an array: the part of gymnasium.spaces.Box that is used here."""
-
-        def __init__(self, low: ArrayLike, high: ArrayLike, shape: Sequence[int] | None = None,
-                     dtype: Any = np.float32) -> None:
-            self.shape = tuple(shape) if shape is not None else np.shape(low)
-            self.dtype = np.dtype(dtype)
-            self.low = np.broadcast_to(np.asarray(low, dtype), self.shape)
-            self.high = np.broadcast_to(np.asarray(high, dtype), self.shape)
-            self._random = np.random.default_rng(0)
-
-        def sample(self) -> NDArray[Any]:
-            return self._random.uniform(self.low, self.high).astype(self.dtype)
-
-        def contains(self, x: ArrayLike) -> bool:
-            return np.shape(x) == self.shape and bool(np.all(x >= self.low) and np.all(x <= self.high))
-
-        def seed(self, seed: int | None = None) -> None:
-            self._random = np.random.default_rng(seed)
+    gymnasium = None
+Base: Any = gymnasium.Env if gymnasium else object
 
 
 class RacingEnv(Base):  # type: ignore[misc]
@@ -59,11 +37,12 @@ class RacingEnv(Base):  # type: ignore[misc]
         self.timeout = timeout
         self._steps = steps
         self._seed = 0
-        limit = np.array([max_steer, max_speed], np.float32)
-        self.action_space = Box(np.array([-max_steer, 0], np.float32), limit)
-        low = np.concatenate([np.zeros(beams), [-50, -50, -1.6]]).astype(np.float32)
-        high = np.concatenate([np.full(beams, 100), [50, 50, 1.6]]).astype(np.float32)
-        self.observation_space = Box(low, high)
+        self._limits = np.array([[-max_steer, 0], [max_steer, max_speed]], np.float32)
+        if gymnasium:
+            low, high = (np.append(np.full(beams, ranges), rest).astype(np.float32)
+                         for ranges, rest in ((0, [-50, -50, -1.6]), (100, [50, 50, 1.6])))
+            self.action_space = gymnasium.spaces.Box(*self._limits)
+            self.observation_space = gymnasium.spaces.Box(low, high)
 
     def _observe(self) -> tuple[NDArray[np.float32], dict[str, Any]]:
         seen = self.world.observe()
@@ -75,7 +54,7 @@ class RacingEnv(Base):  # type: ignore[misc]
     def reset(self, *, seed: int | None = None,
               options: dict[str, Any] | None = None) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Returns the first observation and info. `options` may have "start" and "parked" (poses x, y, yaw)."""
-        if Base is not object:
+        if gymnasium:
             super().reset(seed=seed)
         options = options or {}
         self._seed = self._seed + 1 if seed is None else seed
@@ -89,7 +68,7 @@ class RacingEnv(Base):  # type: ignore[misc]
         action = np.asarray(action, float)
         if action.shape != (2,):
             raise ValueError(f"action: has shape {action.shape}, must be (2,)")
-        command = np.clip(action, self.action_space.low, self.action_space.high)
+        command = np.clip(action, *self._limits)
         for _ in range(self._steps):
             self.world.step([tuple(command)])
             contact = self.world.observe()["contact"]

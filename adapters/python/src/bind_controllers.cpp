@@ -18,22 +18,12 @@ void check_proposals(const Solver& solver, const Sequences& proposals) {
   const py::ssize_t first = proposals.ndim() - 2;
   if ((first != 0 && first != 1) || proposals.shape(first) != solver.horizon() ||
       proposals.shape(first + 1) != solver.inputs()) {
-    std::string shape;
-    for (py::ssize_t i = 0; i < proposals.ndim(); ++i)
-      shape += (i > 0 ? ", " : "") + std::to_string(proposals.shape(i));
     const std::string one = std::to_string(solver.horizon()) + ", " + std::to_string(solver.inputs());
-    throw std::invalid_argument("proposals: have the shape (" + shape + "), must have (sequences, " + one +
-                                ") or (" + one + ")");
+    throw std::invalid_argument("proposals: have the shape " + shape_text(proposals) +
+                                ", must have (sequences, " + one + ") or (" + one + ")");
   }
   for (py::ssize_t i = 0; i < proposals.size(); ++i)
     if (!std::isfinite(proposals.data()[i])) throw std::invalid_argument("proposals: must be finite");
-}
-
-py::dict options_of(const Controller& controller) {
-  py::dict all;
-  for (const OptionEntry& entry : list_options(controller.options()))
-    all[entry.declaration.name] = to_python(entry.value);
-  return all;
 }
 
 std::unique_ptr<Controller> make_controller(const std::string& method, const AnyProblem& problem,
@@ -43,10 +33,16 @@ std::unique_ptr<Controller> make_controller(const std::string& method, const Any
   return std::make_unique<Controller>(problem, options);
 }
 
-/// Returns the state of a pickled controller: method, problem and options.
+/// Returns method, problem and options, from which `from_state` makes a new controller. Throws
+/// std::runtime_error if the controller has been used.
 py::object state_of(const py::object& self) {
   const auto& controller = self.cast<const Controller&>();
-  return py::make_tuple(controller.solver().name(), self.attr("problem"), options_of(controller));
+  if (!controller.is_new())
+    throw std::runtime_error(
+        "controller: has been used, and its state cannot be pickled: pickle it before its first solve, or "
+        "copy "
+        "it with copy.copy");
+  return py::make_tuple(controller.solver().name(), self.attr("problem"), values_of(controller.options()));
 }
 /// Makes a controller from the state of a pickled one, or as a copy of another one.
 std::unique_ptr<Controller> from_state(const py::object& state) {
@@ -66,14 +62,9 @@ py::object copy(const py::object& self) {
 /// The class of a method: svg_mppi -> SvgMppi.
 std::string class_name(std::string_view method) {
   std::string name;
-  bool upper = true;
-  for (const char c : method) {
-    if (c == '_') {
-      upper = true;
-    } else {
-      name += upper ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
-      upper = false;
-    }
+  for (std::size_t i = 0; i < method.size(); ++i) {
+    const bool upper = i == 0 || method[i - 1] == '_';
+    if (method[i] != '_') name += upper ? static_cast<char>(std::toupper(method[i])) : method[i];
   }
   return name;
 }
@@ -133,14 +124,14 @@ void bind_controllers(py::module_& module) {
            "By default it is the input that the last plan had for that time.")
       .def("prepare", &Controller::prepare,
            "Draws the noise of the next solve in advance, outside its deadline.")
-      .def_property_readonly("problem", &Controller::problem, py::return_value_policy::reference_internal,
-                             "the controller's copy of its problem; its parameters may change between solves")
       .def_property_readonly(
-          "method", [](const Controller& c) { return std::string(c.solver().name()); },
-          "the name of the method")
-      .def_property_readonly(
-          "horizon", [](const Controller& c) { return c.solver().horizon(); }, "steps")
-      .def_property_readonly("options", &options_of, "the options in use, by name");
+          "problem", &Controller::problem, py::return_value_policy::reference_internal,
+          "the controller's copy of its problem; its parameters may change between solves");
+  const auto read = reader(base);
+  read("method", "the name of the method",
+       [](const Controller& c) { return std::string(c.solver().name()); });
+  read("horizon", "steps", [](const Controller& c) { return c.solver().horizon(); });
+  read("options", "the options in use, by name", [](const Controller& c) { return values_of(c.options()); });
   for (const char* method : solver_names()) bind_method(module, base, method);
   module.def(
       "methods",

@@ -9,16 +9,6 @@ namespace {
 
 using evaluation::Environment;
 
-/// An option's value as a configuration file has it.
-std::string text_of(const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
-    return py::str(value).cast<std::string>();
-  std::string text;
-  for (const py::handle& each : value) text.append(text.empty() ? "[" : ", ").append(text_of(each));
-  return text.empty() ? "[]" : text + "]";
-}
-
 /// `config`, a name or a file, or the classes' defaults where it is empty; then `{"section.option": value}`
 /// or the options of the method itself.
 vehicle::Configuration configure(const std::string& method, const std::string& config,
@@ -45,20 +35,13 @@ evaluation::LapSettings take_world_options(py::dict& options) {
 }
 
 py::dict lap_dict(const evaluation::LapResult& lap) {
-  py::dict all;
-  all["seed"] = lap.seed;
-  all["finished"] = lap.finished;
-  all["timeout"] = lap.timeout;
-  all["contacts"] = lap.collisions;
-  all["time"] = lap.time;
-  all["steps"] = lap.steps;
-  all["state_cost"] = lap.state_cost;
-  all["collision_cost"] = lap.collision_cost;
-  all["mean_sequence_cost"] = lap.mean_sequence_cost;
-  all["mean_speed"] = lap.mean_speed;
-  all["min_clearance"] = lap.min_clearance;
-  all["solve_ms"] = py::array_t<float>(static_cast<py::ssize_t>(lap.solve_ms.size()), lap.solve_ms.data());
-  return all;
+  const auto solves = static_cast<py::ssize_t>(lap.solve_ms.size());
+  return py::dict("seed"_a = lap.seed, "finished"_a = lap.finished, "timeout"_a = lap.timeout,
+                  "contacts"_a = lap.collisions, "time"_a = lap.time, "steps"_a = lap.steps,
+                  "state_cost"_a = lap.state_cost, "collision_cost"_a = lap.collision_cost,
+                  "mean_sequence_cost"_a = lap.mean_sequence_cost, "mean_speed"_a = lap.mean_speed,
+                  "min_clearance"_a = lap.min_clearance,
+                  "solve_ms"_a = py::array_t<float>(solves, lap.solve_ms.data()));
 }
 
 void bind_planner(py::module_& module) {
@@ -73,8 +56,7 @@ void bind_planner(py::module_& module) {
            py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(), py::kw_only(),
            py::arg("config") = "",
            "`config`: 'default', 'published' or a file; otherwise the defaults of the classes. `options`: "
-           "{'samples': "
-           "2000, 'planner.max_speed': 4, 'vehicle....': ...}")
+           "{'samples': 2000, 'planner.max_speed': 4, 'vehicle....': ...}")
       .def(
           "update",
           [](vehicle::Planner& self,
@@ -91,22 +73,12 @@ void bind_planner(py::module_& module) {
               const py::gil_scoped_release unlock;
               output = &self.update({scan, {to_pose(pose), speed}});
             }
-            py::array_t<double> predicted(
-                {static_cast<py::ssize_t>(output->predicted.size()), py::ssize_t{4}});
-            auto rows = predicted.mutable_unchecked<2>();
-            for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
-              const auto& state = output->predicted[static_cast<std::size_t>(i)];
-              rows(i, 0) = state.pose.x, rows(i, 1) = state.pose.y;
-              rows(i, 2) = state.pose.yaw, rows(i, 3) = state.speed;
-            }
-            py::dict all;
-            all["status"] = vehicle::name(output->status);
-            all["steer"] = output->command.steer;
-            all["speed"] = output->command.speed;
-            all["predicted"] = predicted;
-            all["tick_time"] = output->tick_time;
-            all["corrections"] = output->corrections;
-            return all;
+            const auto predicted = rows_of(output->predicted, [](const auto& state) {
+              return std::array{state.pose.x, state.pose.y, state.pose.yaw, state.speed};
+            });
+            return py::dict("status"_a = vehicle::name(output->status), "steer"_a = output->command.steer,
+                            "speed"_a = output->command.speed, "predicted"_a = predicted,
+                            "tick_time"_a = output->tick_time, "corrections"_a = output->corrections);
           },
           py::arg("ranges"), py::kw_only(), py::arg("angle_min"), py::arg("angle_increment"),
           py::arg("range_min") = 0.0, py::arg("range_max"), py::arg("pose"), py::arg("speed"),
@@ -131,8 +103,7 @@ void bind_planner(py::module_& module) {
       py::arg("course"), py::arg("method") = "svg_mppi", py::kw_only(), py::arg("seed") = 0,
       py::arg("obstacles") = 0, py::arg("options") = py::dict(), py::arg("config") = "",
       "Drives one lap in lockstep and returns its results, as `slalom eval` does. `options` may also have "
-      "those "
-      "of the world, for instance {'world.friction': 0.7}.");
+      "those of the world, for instance {'world.friction': 0.7}.");
 }
 
 }  // namespace

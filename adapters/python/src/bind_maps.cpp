@@ -16,6 +16,8 @@ constexpr const char* placement =
     "`resolution` is the size of a cell, m; `origin` the pose (x, y, yaw) of the grid's lower left corner in "
     "the map frame, as in a map of ROS map_server; by default (0, 0, 0).";
 
+constexpr const char* lower_left_corner = "x, y (m), yaw (rad) of the lower left corner";
+
 /// The argument `origin`, by default the origin of the map frame.
 py::arg_v level() {
   return {"origin", std::vector<double>{0, 0, 0}, "..."};
@@ -89,55 +91,39 @@ py::object result(Array&& array) {
   return array.ndim() == 0 ? py::object(array[py::tuple()]) : py::object(array);
 }
 
-/// Calls `apply` with x and y as contiguous arrays of one shape: in float32 if both are, else in double.
-template <class Apply>
-py::object with_positions(const py::object& x_values, const py::object& y_values, Apply&& apply) {
-  const py::array x = to_array(x_values), y = to_array(y_values);
-  const auto run = [&]<class Real>(Real) -> py::object {
-    using Array = py::array_t<Real, py::array::c_style | py::array::forcecast>;
-    const Array xs = Array::ensure(x), ys = Array::ensure(y);
-    if (!xs || !ys) throw py::error_already_set();
-    const std::vector<py::ssize_t> shape(xs.shape(), xs.shape() + xs.ndim());
-    if (xs.ndim() != ys.ndim() || !std::equal(shape.begin(), shape.end(), ys.shape()))
-      throw py::value_error("x, y: must have the same shape");
-    return apply(xs, ys, shape);
-  };
-  const bool single = py::isinstance<py::array_t<float>>(x) && py::isinstance<py::array_t<float>>(y);
-  return single ? run(float{}) : run(double{});
-}
-
 template <class Real>
-void look_up(const Field& field, const Real* x, const Real* y, std::size_t count, Real* value, Real* dx,
-             Real* dy) {
+py::object look_up(const Field& field, const py::array& x, const py::array& y, bool gradient) {
+  using Array = py::array_t<Real, py::array::c_style | py::array::forcecast>;
+  const Array xs = Array::ensure(x), ys = Array::ensure(y);
+  if (!xs || !ys) throw py::error_already_set();
+  const std::vector<py::ssize_t> shape(xs.shape(), xs.shape() + xs.ndim());
+  if (xs.ndim() != ys.ndim() || !std::equal(shape.begin(), shape.end(), ys.shape()))
+    throw py::value_error("x, y: must have the same shape");
+  const auto count = static_cast<std::size_t>(xs.size());
+  const std::vector<py::ssize_t> shape_of_gradient = gradient ? shape : std::vector<py::ssize_t>{0};
+  Array values(shape), dx(shape_of_gradient), dy(shape_of_gradient);
+  Real *const value = values.mutable_data(), *const to_dx = gradient ? dx.mutable_data() : nullptr,
+              *const to_dy = gradient ? dy.mutable_data() : nullptr;
   if constexpr (std::is_same_v<Real, float>) {
-    field.evaluate(x, y, count, value, dx, dy);
+    field.evaluate(xs.data(), ys.data(), count, value, to_dx, to_dy);
   } else {
     for (std::size_t i = 0; i < count; ++i) {
-      const auto at = field.value_and_gradient(x[i], y[i]);
+      const auto at = field.value_and_gradient(xs.data()[i], ys.data()[i]);
       value[i] = at.value;
-      if (dx) dx[i] = at.dx, dy[i] = at.dy;
+      if (gradient) to_dx[i] = at.dx, to_dy[i] = at.dy;
     }
   }
+  if (!gradient) return result(values);
+  return py::make_tuple(result(values), result(dx), result(dy));
 }
 
-py::object value(const Field& field, const py::object& x, const py::object& y) {
-  return with_positions(x, y, [&]<class Array>(const Array& xs, const Array& ys, const auto& shape) {
-    using Real = typename Array::value_type;
-    Array values(shape);
-    look_up<Real>(field, xs.data(), ys.data(), static_cast<std::size_t>(xs.size()), values.mutable_data(),
-                  nullptr, nullptr);
-    return result(values);
-  });
-}
-
-py::object value_and_gradient(const Field& field, const py::object& x, const py::object& y) {
-  return with_positions(x, y, [&]<class Array>(const Array& xs, const Array& ys, const auto& shape) {
-    using Real = typename Array::value_type;
-    Array values(shape), dx(shape), dy(shape);
-    look_up<Real>(field, xs.data(), ys.data(), static_cast<std::size_t>(xs.size()), values.mutable_data(),
-                  dx.mutable_data(), dy.mutable_data());
-    return py::object(py::make_tuple(result(values), result(dx), result(dy)));
-  });
+/// The value at positions, and with `gradient` its derivatives, in float32 if both arrays are, else in
+/// double.
+template <bool gradient>
+py::object look_up(const Field& field, const py::object& x_values, const py::object& y_values) {
+  const py::array x = to_array(x_values), y = to_array(y_values);
+  const bool single = py::isinstance<py::array_t<float>>(x) && py::isinstance<py::array_t<float>>(y);
+  return single ? look_up<float>(field, x, y, gradient) : look_up<double>(field, x, y, gradient);
 }
 
 OccupancyGrid make_grid(const py::object& given, double resolution, const std::vector<double>& origin) {
@@ -180,31 +166,28 @@ void bind_field(py::module_& module) {
                                 "the nearest point of their edge.\n\n"
                                 "samples: [row, column], row 0 at the smallest y. ") +
                             placement;
-  py::class_<Field>(module, "Field", words.c_str())
-      .def(py::init(&make_field), py::arg("samples"), py::arg("resolution"), level())
+  py::class_<Field> field(module, "Field", words.c_str());
+  field.def(py::init(&make_field), py::arg("samples"), py::arg("resolution"), level())
       .def_static("from_function", &field_from_function, py::arg("function"), py::arg("width"),
                   py::arg("height"), py::arg("resolution"), level(),
                   "The field of function(x[height, width], y[height, width]), which is called once with the "
                   "centres of all cells, m.")
-      .def("value", &value, py::arg("x"), py::arg("y"),
+      .def("value", &look_up<false>, py::arg("x"), py::arg("y"),
            "The value at positions of the map frame (m): arrays of one shape. float32 in, float32 out.")
-      .def("value_and_gradient", &value_and_gradient, py::arg("x"), py::arg("y"),
+      .def("value_and_gradient", &look_up<true>, py::arg("x"), py::arg("y"),
            "A tuple: the value at positions of the map frame, and its derivatives by x and y.")
       .def("relative_to", &Field::relative_to, py::arg("x"), py::arg("y"),
            "The same field for positions relative to a point of the map frame, m.")
-      .def_property_readonly(
-          "shape", [](const Field& f) { return py::make_tuple(f.geometry().height, f.geometry().width); },
-          "rows and columns of samples")
-      .def_property_readonly(
-          "resolution", [](const Field& f) { return f.geometry().resolution; }, "m per cell")
-      .def_property_readonly(
-          "origin", [](const Field& f) { return to_tuple(f.geometry().origin); },
-          "x, y (m), yaw (rad) of the lower left corner")
       .def("__repr__", [](const Field& f) {
         const FieldGeometry& g = f.geometry();
         return "<slalom.Field " + std::to_string(g.height) + " x " + std::to_string(g.width) + " of " +
                py::str(py::float_(g.resolution)).cast<std::string>() + " m>";
       });
+  const auto read = reader(field);
+  read("shape", "rows and columns of samples",
+       [](const Field& f) { return py::make_tuple(f.geometry().height, f.geometry().width); });
+  read("resolution", "m per cell", [](const Field& f) { return f.geometry().resolution; });
+  read("origin", lower_left_corner, [](const Field& f) { return to_tuple(f.geometry().origin); });
 }
 
 }  // namespace
@@ -216,15 +199,12 @@ void bind_maps(py::module_& module) {
                                 "not), or numbers as in nav_msgs/OccupancyGrid: 0 is free, 100 occupied, "
                                 "anything else unknown. ") +
                             placement;
-  py::class_<OccupancyGrid>(module, "OccupancyGrid", words.c_str())
-      .def(py::init(&make_grid), py::arg("cells"), py::arg("resolution"), level())
-      .def_property_readonly("cells", &cells_of,
-                             "int8 [row, column], a copy: 0 free, 100 occupied, -1 unknown")
-      .def_property_readonly(
-          "resolution", [](const OccupancyGrid& g) { return g.resolution; }, "m per cell")
-      .def_property_readonly(
-          "origin", [](const OccupancyGrid& g) { return to_tuple(g.origin); },
-          "x, y (m), yaw (rad) of the lower left corner");
+  py::class_<OccupancyGrid> bound(module, "OccupancyGrid", words.c_str());
+  bound.def(py::init(&make_grid), py::arg("cells"), py::arg("resolution"), level());
+  const auto read = reader(bound);
+  read("cells", "int8 [row, column], a copy: 0 free, 100 occupied, -1 unknown", &cells_of);
+  read("resolution", "m per cell", [](const OccupancyGrid& g) { return g.resolution; });
+  read("origin", lower_left_corner, [](const OccupancyGrid& g) { return to_tuple(g.origin); });
   bind_field(module);
   module.def(
       "load_ros_map", [](const std::string& file) { return maps::load_ros_map(file); }, py::arg("file"),

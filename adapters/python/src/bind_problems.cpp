@@ -23,8 +23,7 @@ py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char*
   bound.def(py::init([name](const py::kwargs& keywords) {
     P problem;
     set_from_keywords(problem, keywords, name);
-    validate_options(problem, name);
-    return std::make_unique<Bound>(problem, name);
+    return std::make_unique<Bound>(problem);
   }));
   for (const OptionEntry& entry : list_options(P{})) {
     const std::string key = entry.declaration.name;
@@ -38,10 +37,7 @@ py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char*
           return value;
         },
         [key, name](Bound& self, const py::object& value) {
-          P changed = self.problem();
-          set_from_keywords(changed, py::kwargs(py::dict(py::arg(key.c_str()) = value)), name);
-          validate_options(changed, name);
-          self.problem() = changed;
+          set_from_keywords(self.problem(), py::kwargs(py::dict(py::arg(key.c_str()) = value)), name);
         },
         entry.declaration.help);
   }
@@ -143,29 +139,30 @@ void bind_problems(py::module_& module) {
                        double dt, const Limits& input_min, const Limits& input_max,
                        const Limits& input_rate_max, py::object sampler) {
              return std::make_unique<CallableProblem>(
-                 std::move(dynamics), std::move(cost), std::move(terminal_cost), states, inputs,
-                 CallableParts{dt, to_values(input_min), to_values(input_max), to_values(input_rate_max),
-                               std::move(sampler)});
+                 CallableParts{dynamics, cost, terminal_cost, states, inputs, dt, to_values(input_min),
+                               to_values(input_max), to_values(input_rate_max), sampler});
            }),
            py::arg("dynamics"), py::arg("cost"), py::arg("terminal_cost") = py::none(), py::kw_only(),
            py::arg("states"), py::arg("inputs"), py::arg("dt") = 0.0, py::arg("input_min") = py::none(),
            py::arg("input_max") = py::none(), py::arg("input_rate_max") = py::none(),
            py::arg("sampler") = py::none())
-      .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt, "s, duration of a step; 0: unknown")
-      .def_property_readonly("dynamics", &CallableProblem::dynamics, "the callable")
-      .def_property_readonly("cost", &CallableProblem::cost, "the callable")
-      .def_property_readonly("terminal_cost", &CallableProblem::terminal_cost, "the callable, or None")
-      .def_property_readonly(
-          "sampler", [](const CallableProblem& p) { return p.parts().sampler; }, "the callable, or None")
-      .def_property_readonly(
-          "input_min", [](const CallableProblem& p) { return to_limits(p.parts().input_min); },
-          "as given: a number, one for each input, or None")
-      .def_property_readonly(
-          "input_max", [](const CallableProblem& p) { return to_limits(p.parts().input_max); },
-          "as given: a number, one for each input, or None")
-      .def_property_readonly(
-          "input_rate_max", [](const CallableProblem& p) { return to_limits(p.parts().input_rate_max); },
-          "per s, as given: a number, one for each input, or None");
+      .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
+                    "s, duration of a step; 0: unknown");
+  const auto read = reader(problem);
+  const auto callable = [&](const char* name, py::object CallableParts::*part, const char* help) {
+    read(name, help, [part](const CallableProblem& p) { return p.parts().*part; });
+  };
+  callable("dynamics", &CallableParts::dynamics, "the callable");
+  callable("cost", &CallableParts::cost, "the callable");
+  callable("terminal_cost", &CallableParts::terminal_cost, "the callable, or None");
+  callable("sampler", &CallableParts::sampler, "the callable, or None");
+  const auto limits = [&](const char* name, std::vector<double> CallableParts::*field, const char* help) {
+    read(name, help, [field](const CallableProblem& p) { return to_limits(p.parts().*field); });
+  };
+  limits("input_min", &CallableParts::input_min, "as given: a number, one for each input, or None");
+  limits("input_max", &CallableParts::input_max, "as given: a number, one for each input, or None");
+  limits("input_rate_max", &CallableParts::input_rate_max,
+         "per s, as given: a number, one for each input, or None");
   bind_arm(module);
   bind_problem<problems::Pendulum>(
       module, "Pendulum",

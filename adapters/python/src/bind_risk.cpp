@@ -21,7 +21,6 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
     for (const auto& variant : variants_) copies.push_back(variant->clone());
     return std::make_unique<RiskProblem>(std::move(copies), randomize_, options_);
   }
-  std::string name() const override { return "RiskEvaluator"; }
   int states() const noexcept override { return problem().states(); }
   int inputs() const noexcept override { return problem().inputs(); }
   const BatchEvaluator& evaluator() const noexcept override { return *this; }
@@ -33,8 +32,8 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
   }
   double input_min(int input) const override { return problem().input_min(input); }
   double input_max(int input) const override { return problem().input_max(input); }
-  bool hold_rates(std::span<const double> previous, std::span<double> u) const override {
-    return problem().hold_rates(previous, u);
+  void hold_rates(std::span<const double> previous, std::span<double> u) const override {
+    problem().hold_rates(previous, u);
   }
   void set_state(std::span<const double> state) override {
     for (const auto& variant : variants_) variant->set_state(state);
@@ -138,7 +137,7 @@ std::unique_ptr<RiskProblem> make_risk(const AnyProblem& problem, const py::obje
                                        const std::string& measure, double tail, double aversion,
                                        std::uint64_t seed) {
   RiskOptions options{variants, {}, tail, aversion, seed};
-  set_field(options.measure, "RiskEvaluator.measure", py::str(measure));
+  set_from_keywords(options, py::kwargs(py::dict("risk_measure"_a = measure)), "RiskEvaluator");
   validate_options(options, "RiskEvaluator");
   return std::make_unique<RiskProblem>(make_variants(problem, randomize, options), randomize, options);
 }
@@ -159,7 +158,8 @@ void bind_risk(py::module_& module) {
       "randomize(random) -> problem: makes another one, with random numbers drawn from the RandomStream\n"
       "variants: 1 ... 32; an odd number deviates to all sides alike, since the random numbers come in "
       "mirrored pairs\n"
-      "measure: what of the costs in them counts: 'mean', 'worst', 'cvar' (mean of the worst share `tail`) "
+      "measure: which measure of their costs counts: 'mean', 'worst', 'cvar' (mean of the worst share "
+      "`tail`) "
       "or 'exponential' (weight `aversion` of high costs)\n\n"
       "The variants are made once, so all samples of all solves meet the same ones. A sequence collides if "
       "it collides in any.")
@@ -176,13 +176,9 @@ void bind_risk(py::module_& module) {
           "options",
           [](const RiskProblem& r) {
             const RiskOptions& o = r.options();
-            py::dict all;
-            all["variants"] = o.variants;
-            all["measure"] = enum_names(o.measure)[static_cast<int>(o.measure)];
-            all["tail"] = o.tail;
-            all["aversion"] = o.aversion;
-            all["seed"] = o.seed;
-            return all;
+            return py::dict("variants"_a = o.variants,
+                            "measure"_a = enum_names(o.measure)[static_cast<int>(o.measure)],
+                            "tail"_a = o.tail, "aversion"_a = o.aversion, "seed"_a = o.seed);
           },
           "the options by name");
 }

@@ -27,34 +27,20 @@ std::shared_ptr<const Environment> load(const std::string& course, const std::st
                                       evaluation::protocol_named(evaluation), folders);
 }
 
-template <class T>
-py::array view(const T* data, std::vector<py::ssize_t> shape, const py::object& owner) {
-  py::array array(py::dtype::of<T>(), shape, data, owner);
-  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return array;
-}
-
 py::dict observe(const py::object& self, std::size_t car) {
   const auto& world = self.cast<const sim::World&>();
   if (car >= world.cars()) throw py::index_error("car: must be less than the number of cars");
   const sim::Observation seen = world.observe(car);
-  py::dict all;
-  all["pose"] = to_tuple(seen.pose);
-  all["speed"] = seen.speed;
-  all["steer"] = seen.steer;
-  all["yaw_rate"] = seen.yaw_rate;
-  all["slip"] = seen.slip;
-  all["time"] = seen.time;
-  all["scan_time"] = seen.scan_time;
-  all["sensor"] = to_tuple(seen.sensor);
-  all["ranges"] = view(seen.scan.ranges.data(), {static_cast<py::ssize_t>(seen.scan.ranges.size())}, self);
-  all["angle_min"] = seen.scan.angle_min;
-  all["angle_increment"] = seen.scan.angle_increment;
-  all["range_min"] = seen.scan.range_min;
-  all["range_max"] = seen.scan.range_max;
-  all["contact"] = seen.collides();
-  all["wall"] = seen.wall;
-  all["colliding"] = py::cast(std::vector<int>(seen.colliding.begin(), seen.colliding.end()));
+  const maps::LaserScanView& scan = seen.scan;
+  const py::array ranges(py::dtype::of<float>(), {static_cast<py::ssize_t>(scan.ranges.size())},
+                         scan.ranges.data(), self);
+  py::dict all("pose"_a = to_tuple(seen.pose), "speed"_a = seen.speed, "steer"_a = seen.steer,
+               "yaw_rate"_a = seen.yaw_rate, "slip"_a = seen.slip, "time"_a = seen.time,
+               "scan_time"_a = seen.scan_time, "sensor"_a = to_tuple(seen.sensor),
+               "ranges"_a = read_only(ranges), "angle_min"_a = scan.angle_min,
+               "angle_increment"_a = scan.angle_increment, "range_min"_a = scan.range_min,
+               "range_max"_a = scan.range_max, "contact"_a = seen.collides(), "wall"_a = seen.wall,
+               "colliding"_a = std::vector<int>(seen.colliding.begin(), seen.colliding.end()));
   if (const auto* laps = world.laps(car)) {
     all["laps"] = laps->laps();
     all["progress"] = laps->progress();
@@ -64,30 +50,20 @@ py::dict observe(const py::object& self, std::size_t car) {
 }
 
 void bind_course(py::module_& module) {
-  py::class_<Environment, std::shared_ptr<Environment>>(module, "Course", "A course prepared for driving.")
-      .def(py::init([](const std::string& course, const std::string& evaluation) {
-             return std::const_pointer_cast<Environment>(load(course, evaluation));
-           }),
-           py::arg("course"), py::arg("evaluation") = "true",
-           "`course`: a name or a folder. `evaluation`: 'true' or 'published'.")
-      .def_property_readonly(
-          "name", [](const Environment& a) { return a.course.name; }, "of the course")
-      .def_property_readonly(
-          "length", [](const Environment& a) { return a.course.length; }, "m")
-      .def_property_readonly(
-          "start", [](const Environment& a) { return to_tuple(a.start); }, "x, y (m), yaw (rad)")
-      .def_property_readonly(
-          "waypoints",
-          [](const Environment& a) {
-            py::array_t<double> all({static_cast<py::ssize_t>(a.path.size()), py::ssize_t{4}});
-            auto rows = all.mutable_unchecked<2>();
-            for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
-              const auto& p = a.course.waypoints[static_cast<std::size_t>(i)];
-              rows(i, 0) = p.x, rows(i, 1) = p.y, rows(i, 2) = p.yaw, rows(i, 3) = p.speed;
-            }
-            return all;
-          },
-          "float64 [n, 4]: x, y (m), yaw (rad), speed (m/s)");
+  py::class_<Environment, std::shared_ptr<Environment>> course(module, "Course",
+                                                               "A course prepared for driving.");
+  course.def(py::init([](const std::string& name, const std::string& evaluation) {
+               return std::const_pointer_cast<Environment>(load(name, evaluation));
+             }),
+             py::arg("course"), py::arg("evaluation") = "true",
+             "`course`: a name or a folder. `evaluation`: 'true' or 'published'.");
+  const auto read = reader(course);
+  read("name", "of the course", [](const Environment& e) { return e.course.name; });
+  read("length", "m", [](const Environment& e) { return e.course.length; });
+  read("start", "x, y (m), yaw (rad)", [](const Environment& e) { return to_tuple(e.start); });
+  read("waypoints", "float64 [n, 4]: x, y (m), yaw (rad), speed (m/s)", [](const Environment& e) {
+    return rows_of(e.course.waypoints, [](const auto& w) { return std::array{w.x, w.y, w.yaw, w.speed}; });
+  });
 }
 
 /// Options of the course's evaluation, but for the time step and the LiDAR of Python's default.
@@ -100,30 +76,12 @@ sim::WorldOptions default_options(const Environment& environment) {
   return options;
 }
 
-void bind_bodies(py::class_<sim::World>& world) {
-  using Pose = std::array<double, 3>;
-  world
-      .def(
-          "add_parked_car", [](sim::World& w, const Pose& pose) { return w.add_parked_car(to_pose(pose)); },
-          py::arg("pose"), "Places a car that does not move at (x, y, yaw). Returns the number of the body.")
-      .def(
-          "add_box",
-          [](sim::World& w, const Pose& pose, double length, double width) {
-            return w.add_box({to_pose(pose), length, width});
-          },
-          py::arg("pose"), py::arg("length"), py::arg("width"),
-          "Places a box, m, whose middle is at (x, y, yaw). Returns the number of the body.")
-      .def(
-          "add_disc",
-          [](sim::World& w, double x, double y, double radius) {
-            return w.add_disc({{x, y}, radius});
-          },
-          py::arg("x"), py::arg("y"), py::arg("radius"), "Places a disc, m. Returns the number of the body.")
-      .def(
-          "move_body", [](sim::World& w, int body, const Pose& pose) { w.move_body(body, to_pose(pose)); },
-          py::arg("body"), py::arg("pose"), "Moves a parked car, box or disc to (x, y, yaw).")
-      .def("remove_body", &sim::World::remove_body, py::arg("body"),
-           "Takes a parked car, box or disc away; the numbers of later bodies fall by one.");
+using Poses = std::vector<std::array<double, 3>>;
+
+std::vector<maps::Pose> to_poses(const Poses& poses) {
+  std::vector<maps::Pose> all;
+  for (const auto& pose : poses) all.push_back(to_pose(pose));
+  return all;
 }
 
 void bind_simulated_world(py::module_& module) {
@@ -141,14 +99,10 @@ void bind_simulated_world(py::module_& module) {
            py::arg("course"))
       .def(
           "reset",
-          [](sim::World& self, std::uint64_t seed, const std::vector<std::array<double, 3>>& cars,
-             const std::vector<std::array<double, 3>>& parked) {
-            std::vector<maps::Pose> starts, others;
-            for (const auto& pose : cars) starts.push_back(to_pose(pose));
-            for (const auto& pose : parked) others.push_back(to_pose(pose));
-            self.reset(seed, starts, others);
+          [](sim::World& self, std::uint64_t seed, const Poses& cars, const Poses& parked) {
+            self.reset(seed, to_poses(cars), to_poses(parked));
           },
-          py::arg("seed"), py::arg("cars"), py::arg("parked") = std::vector<std::array<double, 3>>{},
+          py::arg("seed"), py::arg("cars"), py::arg("parked") = Poses{},
           "Restarts with driven cars at rest at `cars` and parked cars at `parked`, each (x, y, yaw).")
       .def(
           "step",
@@ -168,22 +122,12 @@ void bind_simulated_world(py::module_& module) {
           py::arg("commands"), py::arg("steps") = 1,
           "Moves by `steps` time steps; a command is (steering angle rad, speed m/s).")
       .def("observe", observe, py::arg("car") = 0,
-           "The measurements of a car, by name; `ranges` is a view that the next step overwrites.")
-      .def_property_readonly("time", &sim::World::time, "s since the reset")
-      .def_property_readonly(
-          "cars", [](const sim::World& w) { return w.cars(); }, "number of cars that drive")
-      .def_property_readonly(
-          "options",
-          [](const sim::World& w) {
-            py::dict all;
-            for (const OptionEntry& entry : list_options(w.options()))
-              all[entry.declaration.name] = to_python(entry.value);
-            return all;
-          },
-          "the options in use, by name")
-      .def_property_readonly(
-          "time_step", [](const sim::World& w) { return w.options().time_step; }, "s");
-  bind_bodies(world);
+           "The measurements of a car, by name; `ranges` is a view that the next step overwrites.");
+  const auto read = reader(world);
+  read("time", "s since the reset", &sim::World::time);
+  read("cars", "number of cars that drive", [](const sim::World& w) { return w.cars(); });
+  read("options", "the options in use, by name", [](const sim::World& w) { return values_of(w.options()); });
+  read("time_step", "s", [](const sim::World& w) { return w.options().time_step; });
 }
 
 }  // namespace

@@ -9,16 +9,6 @@ namespace slalom::python {
 
 namespace {
 
-std::string shape_text(const py::array& array) {
-  std::string text = "(";
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) text += (i ? ", " : "") + std::to_string(array.shape(i));
-  return text + ")";
-}
-
-void make_read_only(py::array& array) {
-  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-}
-
 template <class From, class Real>
 void add_values(const py::array& values, py::ssize_t count, Real* sums) {
   const char* from = static_cast<const char*>(values.data());
@@ -32,27 +22,24 @@ void add_values(const py::array& values, py::ssize_t count, Real* sums) {
 
 }  // namespace
 
-CallableProblem::CallableProblem(py::object dynamics, py::object cost, py::object terminal_cost, int states,
-                                 int inputs, CallableParts parts)
-    : dynamics_(std::move(dynamics)),
-      cost_(std::move(cost)),
-      terminal_cost_(std::move(terminal_cost)),
-      states_(states),
-      inputs_(inputs),
-      parts_(std::move(parts)),
-      state_(static_cast<std::size_t>(std::max(states, 0))),
-      previous_(static_cast<std::size_t>(std::max(inputs, 0))) {
+CallableProblem::CallableProblem(CallableParts parts)
+    : parts_(std::move(parts)),
+      state_(static_cast<std::size_t>(std::max(parts_.states, 0))),
+      previous_(static_cast<std::size_t>(std::max(parts_.inputs, 0))) {
   const auto require = [](bool holds, const std::string& what) {
     if (!holds) throw std::invalid_argument("Problem." + what);
   };
-  require(PyCallable_Check(dynamics_.ptr()), "dynamics: must be callable");
-  require(PyCallable_Check(cost_.ptr()), "cost: must be callable");
-  require(terminal_cost_.is_none() || PyCallable_Check(terminal_cost_.ptr()),
-          "terminal_cost: must be callable or None");
+  const auto require_callable = [&](const py::object& part, const std::string& name, bool optional) {
+    require(PyCallable_Check(part.ptr()) || (optional && part.is_none()),
+            name + ": must be callable" + (optional ? " or None" : ""));
+  };
+  require_callable(parts_.dynamics, "dynamics", false);
+  require_callable(parts_.cost, "cost", false);
+  require_callable(parts_.terminal_cost, "terminal_cost", true);
+  require_callable(parts_.sampler, "sampler", true);
+  const int states = parts_.states, inputs = parts_.inputs;
   require(states >= 1 && states <= 10000, "states: " + std::to_string(states) + " must be in [1, 10000]");
   require(inputs >= 1 && inputs <= 10000, "inputs: " + std::to_string(inputs) + " must be in [1, 10000]");
-  require(parts_.sampler.is_none() || PyCallable_Check(parts_.sampler.ptr()),
-          "sampler: must be callable or None");
   const auto require_count = [&](const std::vector<double>& values, const std::string& what) {
     require(values.size() <= 1 || static_cast<int>(values.size()) == inputs,
             what + ": has " + std::to_string(values.size()) + " values, must have 1 or " +
@@ -84,15 +71,14 @@ double CallableProblem::input_max(int input) const {
 void CallableProblem::set_previous_input(std::span<const double> u) {
   std::transform(u.begin(), u.end(), previous_.begin(), [](double v) { return static_cast<float>(v); });
 }
-bool CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const {
-  if (parts_.input_rate_max.empty()) return false;
-  const auto nu = static_cast<std::size_t>(inputs_);
+void CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const {
+  if (parts_.input_rate_max.empty()) return;
+  const auto nu = static_cast<std::size_t>(parts_.inputs);
   for (std::size_t i = 0; i < u.size(); ++i) {
     const double before = i < nu ? previous[i] : u[i - nu];
     const double reach = entry(parts_.input_rate_max, static_cast<int>(i % nu), 0) * parts_.dt;
     u[i] = std::clamp(u[i], before - reach, before + reach);
   }
-  return true;
 }
 
 void CallableProblem::set_dt(double dt) {
@@ -105,7 +91,7 @@ void CallableProblem::set_dt(double dt) {
 }
 
 std::unique_ptr<AnyProblem> CallableProblem::clone() const {
-  return std::make_unique<CallableProblem>(dynamics_, cost_, terminal_cost_, states_, inputs_, parts_);
+  return std::make_unique<CallableProblem>(parts_);
 }
 
 void CallableProblem::set_state(std::span<const double> state) {
@@ -123,12 +109,12 @@ void CallableProblem::finish() {
 }
 
 py::array CallableProblem::next(const py::array& x, const py::array& u) const {
-  const py::object result = dynamics_(x, u);
+  const py::object result = parts_.dynamics(x, u);
   if (!py::isinstance<py::array>(result))
     throw py::type_error("Problem.dynamics: returned " + py::repr(py::type::of(result)).cast<std::string>() +
                          ", must be an array");
   auto array = py::reinterpret_borrow<py::array>(result);
-  if (array.ndim() != 2 || array.shape(0) != x.shape(0) || array.shape(1) != states_)
+  if (array.ndim() != 2 || array.shape(0) != x.shape(0) || array.shape(1) != parts_.states)
     throw py::value_error("Problem.dynamics: returned shape " + shape_text(array) + ", must be " +
                           shape_text(x));
   return array;
@@ -188,7 +174,7 @@ void CallableProblem::add_values_of(const char* what, const py::object& values, 
 void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, int count,
                                 std::vector<float>& held) const {
   float* before = held.data();
-  for (int i = 0; i < inputs_; ++i) {
+  for (int i = 0; i < parts_.inputs; ++i) {
     const float reach = static_cast<float>(entry(parts_.input_rate_max, i, 0) * parts_.dt);
     const float* wanted = batch.row(k, i) + first;
     for (int s = 0; s < count; ++s, ++before)
@@ -227,7 +213,8 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
                                std::uint8_t* collided) const {
   // Columns lie together in memory, as the inputs do, so that the callables work on contiguous columns.
   constexpr py::ssize_t width = sizeof(float);
-  py::array x(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{states_}}, {width, width * count});
+  py::array x(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{parts_.states}},
+              {width, width * count});
   float* values = static_cast<float*>(x.mutable_data());
   for (const float value : state_) values = std::fill_n(values, count, value);
   std::fill_n(costs, count, 0.0f);
@@ -239,13 +226,14 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
   for (int k = 0; k < batch.steps(); ++k) {
     if (holds) hold_step(batch, k, first, count, held);
     const float* const from = holds ? held.data() : batch.row(k, 0) + first;
-    py::array u(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{inputs_}},
+    py::array u(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{parts_.inputs}},
                 {width, width * (holds ? count : batch.stride())}, from, owner_);
-    make_read_only(u);
-    add_cost("cost", cost_(x, u), count, costs, collided);
+    read_only(u);
+    add_cost("cost", parts_.cost(x, u), count, costs, collided);
     x = next(x, u);
   }
-  if (!terminal_cost_.is_none()) add_cost("terminal_cost", terminal_cost_(x), count, costs, collided);
+  if (!parts_.terminal_cost.is_none())
+    add_cost("terminal_cost", parts_.terminal_cost(x), count, costs, collided);
 }
 
 void CallableProblem::evaluate(const SequenceBatch& batch, int first, int count, float* costs,
@@ -263,31 +251,32 @@ void CallableProblem::evaluate(const SequenceBatch& batch, int first, int count,
   std::fill_n(collided + first, count, std::uint8_t{0});
 }
 
+namespace {
+/// Values as the only row of an array.
+py::array_t<double> row(std::span<const double> values) {
+  return py::array_t<double>({py::ssize_t{1}, static_cast<py::ssize_t>(values.size())}, values.data());
+}
+}  // namespace
+
 std::vector<double> CallableProblem::step(std::span<const double> state, std::span<const double> input) {
-  const py::array_t<double> x({py::ssize_t{1}, py::ssize_t{states_}}, state.data());
-  const py::array_t<double> u({py::ssize_t{1}, py::ssize_t{inputs_}}, input.data());
-  const auto result = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(next(x, u));
-  return {result.data(), result.data() + states_};
+  const auto result =
+      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(next(row(state), row(input)));
+  return {result.data(), result.data() + parts_.states};
 }
 
 Prediction CallableProblem::predict(std::span<const double> state, std::span<const double> inputs) {
-  Prediction result;
-  result.states.assign(state.begin(), state.end());
-  const auto nx = static_cast<std::size_t>(states_), nu = static_cast<std::size_t>(inputs_);
-  const std::size_t steps = inputs.size() / nu;
-  std::uint8_t collided = 0;
   std::vector<double> now(state.begin(), state.end());
-  for (std::size_t k = 0; k < steps; ++k) {
-    const py::array_t<double> x({py::ssize_t{1}, py::ssize_t{states_}}, now.data());
-    const py::array_t<double> u({py::ssize_t{1}, py::ssize_t{inputs_}}, &inputs[k * nu]);
-    add_cost("cost", cost_(x, u), 1, &result.cost, &collided, &result);
-    now = step(now, inputs.subspan(k * nu, nu));
-    result.states.insert(result.states.end(), now.begin(), now.begin() + static_cast<std::ptrdiff_t>(nx));
+  Prediction result{now, 0, false, {}};
+  std::uint8_t collided = 0;
+  const auto nu = static_cast<std::size_t>(parts_.inputs);
+  for (; !inputs.empty(); inputs = inputs.subspan(nu)) {
+    const auto input = inputs.first(nu);
+    add_cost("cost", parts_.cost(row(now), row(input)), 1, &result.cost, &collided, &result);
+    now = step(now, input);
+    result.states.insert(result.states.end(), now.begin(), now.end());
   }
-  if (!terminal_cost_.is_none()) {
-    const py::array_t<double> x({py::ssize_t{1}, py::ssize_t{states_}}, now.data());
-    add_cost("terminal_cost", terminal_cost_(x), 1, &result.cost, &collided, &result);
-  }
+  if (!parts_.terminal_cost.is_none())
+    add_cost("terminal_cost", parts_.terminal_cost(row(now)), 1, &result.cost, &collided, &result);
   result.collided = collided != 0;
   return result;
 }

@@ -3,12 +3,16 @@
 #include <exception>
 #include <mutex>
 
+#include "keywords.hpp"
 #include "problem.hpp"
 
 namespace slalom::python {
 
-/// The optional parts of a problem of callables.
+/// The parts of a problem of callables.
 struct CallableParts {
+  py::object dynamics, cost;
+  py::object terminal_cost;  ///< callable or None
+  int states = 0, inputs = 0;
   double dt = 0;                                             ///< s, duration of a step; 0: unknown
   std::vector<double> input_min, input_max, input_rate_max;  ///< one value, one per input, or none
   py::object sampler;                                        ///< callable or None
@@ -19,19 +23,18 @@ struct CallableParts {
 /// (cost, collided). The inputs are views of the solver's memory, and the result of dynamics is not copied.
 class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
-  CallableProblem(py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
-                  CallableParts parts);
+  /// Throws std::invalid_argument with the rule that a part breaks.
+  explicit CallableProblem(CallableParts parts);
 
   std::unique_ptr<AnyProblem> clone() const override;
-  std::string name() const override { return "Problem"; }
-  int states() const noexcept override { return states_; }
-  int inputs() const noexcept override { return inputs_; }
+  int states() const noexcept override { return parts_.states; }
+  int inputs() const noexcept override { return parts_.inputs; }
   const BatchEvaluator& evaluator() const noexcept override { return *this; }
   double time_step() const noexcept override { return parts_.dt; }
   const Sampler* sampler() const noexcept override { return parts_.sampler.is_none() ? nullptr : this; }
   double input_min(int input) const override;
   double input_max(int input) const override;
-  bool hold_rates(std::span<const double> previous, std::span<double> u) const override;
+  void hold_rates(std::span<const double> previous, std::span<double> u) const override;
   void set_previous_input(std::span<const double> u) override;
   bool whole_batches() const noexcept override { return true; }
   void set_state(std::span<const double> state) override;
@@ -44,9 +47,6 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                 std::uint8_t* collided) const noexcept override;
 
-  const py::object& dynamics() const noexcept { return dynamics_; }
-  const py::object& cost() const noexcept { return cost_; }
-  const py::object& terminal_cost() const noexcept { return terminal_cost_; }
   const CallableParts& parts() const noexcept { return parts_; }
   double dt() const noexcept { return parts_.dt; }
   void set_dt(double dt);
@@ -63,8 +63,6 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void add_cost(const char* what, const py::object& result, py::ssize_t count, Real* costs,
                 std::uint8_t* collided, Prediction* prediction = nullptr) const;
 
-  py::object dynamics_, cost_, terminal_cost_;
-  int states_, inputs_;
   CallableParts parts_;
   std::vector<float> state_, previous_;
   py::handle owner_;                  ///< during a solve

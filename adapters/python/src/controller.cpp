@@ -106,6 +106,7 @@ void Controller::set_previous_input(std::vector<double> input) {
       throw std::invalid_argument("input: " + std::to_string(value) + " must be finite");
   const Busy busy(usage_);
   for (std::size_t i = 0; i < input.size(); ++i) previous_[i] = bounds_.nearest(i, input[i]);
+  is_new_ = false;
   previous_known_ = true;
 }
 
@@ -115,6 +116,7 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
                                 std::to_string(problem_->states()));
   const Busy busy(usage_);
   ++solves_;
+  is_new_ = false;
   corrections_ = 0;
   if (!std::all_of(state.begin(), state.end(), [](double v) { return std::isfinite(v); })) {
     status_ = Status::non_finite_state;
@@ -149,6 +151,7 @@ std::unique_ptr<Controller> Controller::copy() {
 void Controller::reset(std::uint64_t seed) {
   const Busy busy(usage_);
   ++solves_;
+  is_new_ = false;
   solver_->reset(seed);
   rest();
 }

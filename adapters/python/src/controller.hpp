@@ -37,6 +37,8 @@ class Controller {
   int corrections() const noexcept { return corrections_; }
   /// The number of solves, which tells whether a plan is the last one.
   std::uint64_t solves() const noexcept { return solves_; }
+  /// Whether it is in the state after its construction.
+  bool is_new() const noexcept { return is_new_; }
   /// The plan's inputs in double, [step][input].
   std::vector<double>& inputs() noexcept { return inputs_; }
   /// The states and the cost of the plan, computed on the first call.
@@ -63,6 +65,7 @@ class Controller {
   Status status_ = Status::ok;
   int corrections_ = 0;
   std::uint64_t solves_ = 0;
+  bool is_new_ = true;
   std::vector<double> state_, inputs_, previous_;
   bool previous_known_ = true;  ///< whether `previous_` has been set for the next solve
   std::optional<Prediction> prediction_;

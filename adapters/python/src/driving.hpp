@@ -1,7 +1,5 @@
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <array>
 #include <filesystem>
 
@@ -24,6 +22,16 @@ inline py::tuple to_tuple(const maps::Pose& pose) {
 }
 inline maps::Pose to_pose(const std::array<double, 3>& pose) {
   return {pose[0], pose[1], pose[2]};
+}
+
+/// An array [item][4] of the four numbers that `numbers` returns for each item.
+template <class Items, class Numbers>
+py::array_t<double> rows_of(const Items& items, Numbers&& numbers) {
+  py::array_t<double> all({static_cast<py::ssize_t>(items.size()), py::ssize_t{4}});
+  double* to = all.mutable_data();
+  for (const auto& item : items)
+    for (const double number : numbers(item)) *to++ = number;
+  return all;
 }
 
 void bind_driving(py::module_& module);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -11,66 +12,54 @@
 namespace slalom::python {
 
 namespace py = pybind11;
+using namespace pybind11::literals;
 
-template <class Field>
-const char* type_words(const Field&) {
-  if constexpr (std::is_same_v<Field, bool>) {
-    return "True or False";
-  } else if constexpr (std::is_enum_v<Field> || std::is_same_v<Field, Choice>) {
-    return "one of its choices";
-  } else if constexpr (std::is_same_v<Field, PerInput>) {
-    return "a number, or one for each input";
-  } else if constexpr (std::is_same_v<Field, double>) {
-    return "a number";
-  } else {
-    return "a whole number";
-  }
+/// Returns a function that adds a property which cannot be set: name, help, getter.
+template <class Class>
+auto reader(Class& bound) {
+  return [&bound](const char* name, const char* help, auto get) {
+    bound.def_property_readonly(name, get, help);
+  };
 }
 
-/// Sets a field from a Python value. Throws TypeError for values of another type, ValueError for an
-/// unknown choice.
-template <class Field>
-void set_field(Field& field, const std::string& name, py::handle value) {
-  try {
-    if constexpr (std::is_same_v<Field, bool>) {
-      if (!py::isinstance<py::bool_>(value)) throw py::cast_error();
-      field = value.cast<bool>();
-    } else if constexpr (std::is_enum_v<Field>) {
-      Choice choice(field);
-      choice.set(detail::parse_choice(value.cast<std::string>(), choice.names()));
-    } else if constexpr (std::is_same_v<Field, Choice>) {
-      field.set(detail::parse_choice(value.cast<std::string>(), field.names()));
-    } else if constexpr (std::is_same_v<Field, PerInput>) {
-      if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value)) {
-        field = PerInput(value.cast<double>());
-      } else {
-        field = PerInput(value.cast<std::vector<double>>());
-      }
-    } else {
-      field = value.cast<Field>();
-    }
-  } catch (const std::invalid_argument& error) {
-    throw py::value_error(name + ": " + error.what());
-  } catch (const py::cast_error&) {
-    throw py::type_error(name + ": " + py::repr(value).cast<std::string>() + " must be " + type_words(field));
-  }
+/// The shape of an array, as Python writes it but for a single number: (3), (3, 2).
+inline std::string shape_text(const py::array& array) {
+  std::string text = "(";
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) text += (i ? ", " : "") + std::to_string(array.shape(i));
+  return text + ")";
 }
 
-/// Sets the options that are given. `where` precedes their names in errors.
+/// Marks an array as one that must not be written.
+inline py::array read_only(py::array array) {
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+/// An option's value as a configuration file has it.
+inline std::string text_of(const py::handle& value) {
+  PyObject* const object = value.ptr();
+  if (py::isinstance<py::bool_>(value)) return to_text(value.cast<bool>());
+  if (PyNumber_Check(object) && !PyIndex_Check(object)) return to_text(value.cast<double>());
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
+    return py::str(value).cast<std::string>();
+  std::string text;
+  for (const py::handle& each : value) text.append(text.empty() ? "[" : ", ").append(text_of(each));
+  return text.empty() ? "[]" : text + "]";
+}
+
+/// Sets the options that are given. Throws ValueError with `where`, the name, the value and its rule, or
+/// TypeError if there is no option of a name.
 template <class Options>
 void set_from_keywords(Options& options, const py::kwargs& keywords, const std::string& where) {
-  for (const auto& keyword : keywords) {
-    const std::string name = keyword.first.template cast<std::string>();
-    const py::handle value = keyword.second;
+  for (const auto& [key, value] : keywords) {
+    const std::string name = key.template cast<std::string>();
+    try {
+      if (set_option(options, name, text_of(value))) continue;
+    } catch (const std::invalid_argument& error) {
+      throw py::value_error(where + "." + name + ": " + error.what());
+    }
     std::vector<std::string> names;
-    bool found = false;
-    visit_options(options, [&](auto& field, const Declaration& declaration) {
-      names.emplace_back(declaration.name);
-      if (name != declaration.name) return;
-      found = true;
-      set_field(field, where + "." + name, value);
-    });
-    if (found) continue;
+    for (const OptionEntry& entry : list_options(options)) names.emplace_back(entry.declaration.name);
     const std::string nearest = nearest_name(name, names);
     throw py::type_error(where + ": unknown option '" + name + "'" +
                          (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
@@ -94,18 +83,18 @@ py::list describe_options(const Options& options) {
   py::list all;
   for (const OptionEntry& entry : list_options(options)) {
     const Declaration& d = entry.declaration;
-    py::dict one;
-    one["name"] = d.name;
-    one["type"] = type_name(entry);
-    one["default"] = to_python(entry.value);
-    one["symbol"] = d.symbol;
-    one["unit"] = d.unit;
-    one["min"] = d.min;
-    one["max"] = d.max;
-    one["choices"] = entry.choices;
-    one["help"] = d.help;
-    all.append(one);
+    all.append(py::dict("name"_a = d.name, "type"_a = type_name(entry), "default"_a = to_python(entry.value),
+                        "symbol"_a = d.symbol, "unit"_a = d.unit, "min"_a = d.min, "max"_a = d.max,
+                        "choices"_a = entry.choices, "help"_a = d.help));
   }
+  return all;
+}
+
+/// The values of the options by name.
+template <class Options>
+py::dict values_of(const Options& options) {
+  py::dict all;
+  for (const OptionEntry& entry : list_options(options)) all[entry.declaration.name] = to_python(entry.value);
   return all;
 }
 

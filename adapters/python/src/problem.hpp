@@ -41,7 +41,6 @@ class AnyProblem {
  public:
   virtual ~AnyProblem() = default;
   virtual std::unique_ptr<AnyProblem> clone() const = 0;
-  virtual std::string name() const = 0;
   virtual int states() const noexcept = 0;
   virtual int inputs() const noexcept = 0;
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
@@ -54,11 +53,8 @@ class AnyProblem {
   /// Bounds of the problem for an input; infinite if it has none.
   virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
   virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
-  /// Limits the rates of u [step][input], where `previous` was applied before. Returns whether the problem
-  /// limits rates.
-  virtual bool hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {
-    return false;
-  }
+  /// Limits the rates of u [step][input], where `previous` was applied before, if the problem limits rates.
+  virtual void hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {}
   /// Sets the input applied before the next rollouts, for a problem that limits rates.
   virtual void set_previous_input(std::span<const double>) {}
   /// To be called before and after a solve. The argument is the Python object that owns the solver's memory.
@@ -73,10 +69,9 @@ class BuiltIn final : public AnyProblem {
   using State = slalom::detail::StateOf<P, double>;
   static constexpr int state_count = slalom::detail::state_size<P>;
 
-  BuiltIn(P problem, std::string name) : evaluator_(std::move(problem)), name_(std::move(name)) {}
+  explicit BuiltIn(P problem) : evaluator_(std::move(problem)) {}
 
   std::unique_ptr<AnyProblem> clone() const override { return std::make_unique<BuiltIn>(*this); }
-  std::string name() const override { return name_; }
   int states() const noexcept override { return state_count; }
   int inputs() const noexcept override { return P::inputs; }
   const BatchEvaluator& evaluator() const noexcept override { return evaluator_; }
@@ -106,15 +101,13 @@ class BuiltIn final : public AnyProblem {
 
   double input_min(int input) const override { return slalom::detail::min_input(problem(), input); }
   double input_max(int input) const override { return slalom::detail::largest_input(problem(), input); }
-  bool hold_rates(std::span<const double> previous, std::span<double> u) const override {
+  void hold_rates([[maybe_unused]] std::span<const double> previous,
+                  [[maybe_unused]] std::span<double> u) const override {
     if constexpr (slalom::detail::limits_rates<P>) {
       std::vector<Input<double, P::inputs>> sequence(u.size() / P::inputs);
       std::memcpy(sequence.data(), u.data(), u.size_bytes());
       hold_input_rates(problem(), to_input(previous), sequence.data(), static_cast<int>(sequence.size()));
       std::memcpy(u.data(), sequence.data(), u.size_bytes());
-      return true;
-    } else {
-      return AnyProblem::hold_rates(previous, u);
     }
   }
   void set_previous_input([[maybe_unused]] std::span<const double> u) override {
@@ -134,7 +127,6 @@ class BuiltIn final : public AnyProblem {
   }
 
   GradientEvaluator<P> evaluator_;
-  std::string name_;
 };
 
 }  // namespace slalom::python

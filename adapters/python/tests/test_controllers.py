@@ -40,23 +40,21 @@ def test_every_option_is_a_keyword_with_its_default():
             assert option["name"] in cls.__doc__
 
 
-def test_mistakes_name_the_option_the_value_and_the_rule():
-    with pytest.raises(ValueError, match=r"mppi.samples: 0 must be in \[1, "):
-        slalom.Mppi(slalom.Pendulum(), samples=0)
-    with pytest.raises(TypeError, match="unknown option 'sample'; did you mean 'samples'"):
-        slalom.Mppi(slalom.Pendulum(), sample=10)
-    with pytest.raises(TypeError, match="mppi.samples: 'many' must be a whole number"):
-        slalom.Mppi(slalom.Pendulum(), samples="many")
-    with pytest.raises(TypeError, match="mppi.samples: 1.5 must be a whole number"):
-        slalom.Mppi(slalom.Pendulum(), samples=1.5)
-    with pytest.raises(ValueError, match="svg_mppi.guide_weight"):
-        slalom.SvgMppi(slalom.Pendulum(), guide_weight="nothing")
-    with pytest.raises(ValueError, match="input_min"):
-        slalom.Mppi(slalom.Pendulum(), input_min=[1, 2])
-    with pytest.raises(ValueError, match="Pendulum.dt"):
-        slalom.Pendulum(dt=-1)
-    with pytest.raises(ValueError, match="state: has 3 values, must have 2"):
-        slalom.Mppi(slalom.Pendulum()).solve([0, 0, 0])
+@pytest.mark.parametrize("make, error, text", [
+    (lambda: slalom.Mppi(slalom.Pendulum(), samples=0), ValueError, r"mppi.samples: '0' must be in \[1, "),
+    (lambda: slalom.Mppi(slalom.Pendulum(), sample=10), TypeError, "unknown option 'sample'; did you mean 'samples'"),
+    (lambda: slalom.Mppi(slalom.Pendulum(), samples="many"), ValueError, "mppi.samples: 'many' must be an integer"),
+    (lambda: slalom.Mppi(slalom.Pendulum(), samples=1.5), ValueError, "mppi.samples: '1.5' must be an integer"),
+    (lambda: slalom.SvgMppi(slalom.Pendulum(), guide_weight="nothing"), ValueError, "svg_mppi.guide_weight"),
+    (lambda: slalom.Mppi(slalom.Pendulum(), input_min=[1, 2]), ValueError, "input_min"),
+    (lambda: slalom.Pendulum(dt=-1), ValueError, "Pendulum.dt"),
+    (lambda: slalom.Mppi(slalom.Pendulum()).solve([0, 0, 0]), ValueError, "state: has 3 values, must have 2"),
+    (lambda: linear(dynamics=3), ValueError, "dynamics: must be callable"),
+    (lambda: linear(states=0), ValueError, "states: 0 must be in"),
+])
+def test_mistakes_name_the_option_the_value_and_the_rule(make, error, text):
+    with pytest.raises(error, match=text):
+        make()
 
 
 def test_results_are_views_of_the_controller():
@@ -129,13 +127,6 @@ def test_what_a_callable_throws_is_thrown_by_solve(changes, error, text, threads
     for _ in range(2):
         with pytest.raises(error, match=text):
             controller.solve([0, 0])
-
-
-def test_an_invalid_problem_is_rejected():
-    with pytest.raises(ValueError, match="dynamics: must be callable"):
-        linear(dynamics=3)
-    with pytest.raises(ValueError, match="states: 0 must be in"):
-        linear(states=0)
 
 
 def test_solving_lets_other_threads_run():

@@ -11,7 +11,7 @@ def test_the_environment_drives_and_repeats():
     for _ in range(2):
         env = RacingEnv("wren", beams=54)
         observation, info = env.reset(seed=3)
-        assert env.observation_space.contains(observation) and observation.dtype == np.float32
+        assert observation.shape == (54 + 3,) and observation.dtype == np.float32
         total = 0.0
         for _ in range(40):
             observation, reward, terminated, truncated, info = env.step([0.0, 1.0])
@@ -36,16 +36,33 @@ def test_a_contact_ends_the_episode():
         env.step([0.0])
 
 
+KINEMATIC = {"horizon": 14, "samples": 1000, "temperature": 3, "input_min": -0.4189, "input_max": 0.4189,
+             "guide_step": 0.005, "guide_variance": 0.01, "gradient_variance": 0.01, "gradient_temperature": 3,
+             "variance_min": 0.001, "variance_max": 0.1}
+
+
 def test_a_lap_is_driven_and_counted():
     course = slalom.Course("wren")
     assert course.waypoints.shape[1] == 4 and course.length > 10
-    options = {"horizon": 14, "samples": 1000, "temperature": 3, "input_min": -0.4189, "input_max": 0.4189,
-               "guide_step": 0.005, "guide_variance": 0.01, "gradient_variance": 0.01, "gradient_temperature": 3,
-               "variance_min": 0.001, "variance_max": 0.1}
-    lap = slalom.drive_lap(course, "svg_mppi", seed=1, options=options)
+    lap, same = (slalom.drive_lap(course, "svg_mppi", seed=1, options=KINEMATIC) for _ in range(2))
     assert lap["finished"] and lap["contacts"] == 0 and len(lap["solve_ms"]) == lap["steps"]
-    same = slalom.drive_lap(course, "svg_mppi", seed=1, options=options)
     assert same["time"] == lap["time"] and same["mean_sequence_cost"] == lap["mean_sequence_cost"]
+
+
+def test_a_planner_drives_by_scan_and_odometry():
+    course = slalom.Course("wren")
+    planner, world = slalom.Planner(course, "svg_mppi", KINEMATIC), slalom.World(course)
+    world.reset(1, [course.start])
+    for _ in range(120):
+        seen = world.observe()
+        x, y, yaw = seen["pose"]
+        rear = (x - 0.17145 * np.cos(yaw), y - 0.17145 * np.sin(yaw), yaw)
+        scan = {name: seen[name] for name in ("angle_min", "angle_increment", "range_max")}
+        command = planner.update(seen["ranges"], **scan, pose=rear, speed=seen["speed"])
+        assert command["status"] == "ok" and command["predicted"].shape[1] == 4
+        world.step([(command["steer"], command["speed"])], steps=5)
+        assert not world.observe()["contact"]
+    assert world.observe()["progress"] > 2
 
 
 def test_a_configuration_drives_a_lap():
@@ -127,36 +144,6 @@ def test_a_world_has_the_car_that_its_options_describe():
     x, y, yaw = short["pose"]
     assert short["sensor"] == pytest.approx((x + 0.10355 * np.cos(yaw), y + 0.10355 * np.sin(yaw), yaw))
     assert short["scan_time"] == pytest.approx(short["time"])
-
-
-def test_bodies_are_placed_moved_and_taken_away():
-    course = slalom.Course("wren")
-    world = slalom.World(course, beams=1, noise=0)
-    world.reset(0, [course.start])
-    x, y, yaw = course.start
-
-    def seen():
-        world.step([(0.0, 0.0)])
-        return float(world.observe()["ranges"][0])
-
-    def ahead(way):
-        return x + way * np.cos(yaw), y + way * np.sin(yaw), yaw
-
-    free = seen()
-    box = world.add_box(ahead(1.5), 0.2, 0.2)
-    assert world.cars == 1 and box == 1 and seen() == pytest.approx(1.5 - 0.1 - 0.10355, abs=0.01)
-    assert not world.observe()["colliding"]
-    world.move_body(box, ahead(0.3))
-    seen()
-    assert world.observe()["colliding"] == [box]
-    world.move_body(box, ahead(1.0))
-    assert seen() == pytest.approx(1.0 - 0.1 - 0.10355, abs=0.01)
-    world.remove_body(box)
-    assert seen() == pytest.approx(free, abs=1e-6)
-    world.add_disc(*ahead(1.2)[:2], 0.3)
-    assert seen() == pytest.approx(0.9 - 0.10355, abs=0.01)
-    with pytest.raises(ValueError):
-        world.add_box(ahead(1), 0, 1)
 
 
 def test_a_lap_is_driven_in_a_changed_world():

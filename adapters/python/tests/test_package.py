@@ -66,6 +66,8 @@ def test_problems_and_controllers_are_pickled(problem):
     same = pickle.loads(pickle.dumps(controller))
     assert type(same) is slalom.SvgMppi and same.options == controller.options
     assert np.array_equal(same.solve(state).inputs, controller.solve(state).inputs)
+    with pytest.raises(RuntimeError, match="copy.copy"):
+        pickle.dumps(controller)
     general = pickle.loads(pickle.dumps(slalom.Controller("mppi", problem, samples=10)))
     assert type(general) is slalom.Controller and general.options["samples"] == 10
 

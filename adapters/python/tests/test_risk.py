@@ -86,7 +86,7 @@ def test_it_prints_and_is_pickled():
     (dict(randomize=lambda random: 1), TypeError, "randomize: returned <class 'int'>, must be a problem"),
     (dict(randomize=cart), ValueError, "4 states and 1 inputs, must have 1 and 1"),
     (dict(variants=0), ValueError, "risk_variants: 0 must be in"),
-    (dict(measure="luck"), ValueError, "RiskEvaluator.measure: 'luck'"),
+    (dict(measure="luck"), ValueError, "RiskEvaluator.risk_measure: 'luck'"),
 ])
 def test_mistakes_are_named(arguments, error, text):
     with pytest.raises(error, match=text):

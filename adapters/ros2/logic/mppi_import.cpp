@@ -8,11 +8,12 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
 #include "logic/follower_settings.hpp"
-#include "logic/mppi_keys.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/yaml_text.hpp"
@@ -20,77 +21,143 @@
 namespace slalom::nodes {
 namespace {
 
-using Fate = ImportedKey::Fate;
-
 constexpr const char* mppi = "nav2_mppi_controller::MPPIController";
 
-/// A key of a section, and its value in the file.
+/// The parameters that mean the same here, under the same name.
+constexpr std::array taken{"motion_model",
+                           "time_steps",
+                           "model_dt",
+                           "batch_size",
+                           "vx_max",
+                           "vx_min",
+                           "vy_max",
+                           "wz_max",
+                           "az_max",
+                           "vx_std",
+                           "vy_std",
+                           "wz_std",
+                           "open_loop",
+                           "visualize",
+                           "transform_tolerance",
+                           "AckermannConstraints.min_turning_r"};
+
+/// A parameter that has no meaning here, and the reason; with a dot at its end, a section of such parameters.
+struct Dropped {
+  const char* key;
+  const char* why;
+};
+constexpr std::array dropped{
+    Dropped{"ax_max", "one limit holds in all directions: ax_max, the least of these"},
+    Dropped{"ax_min", "one limit holds in all directions: ax_max, the least of these"},
+    Dropped{"ay_max", "one limit holds in all directions: ax_max, the least of these for an Omni base"},
+    Dropped{"ay_min", "one limit holds in all directions: ax_max, the least of these for an Omni base"},
+    Dropped{"iteration_count", "there is one solve in a period; svg_mppi.guide_iterations moves its guides"},
+    Dropped{"gamma", "the weights have no control cost; svg_mppi.control_cost_discount would add it"},
+    Dropped{"retry_attempt_limit", "patience is the time that there may be no way"},
+    Dropped{"regenerate_noises", "the noise is drawn anew in every solve"},
+    Dropped{"prune_distance", "the path counts as far as the robot can drive in a plan"},
+    Dropped{"max_robot_pose_search_dist", "the nearest pose is searched in the next 3 m of the path"},
+    Dropped{"enforce_path_inversion", "plans may reverse wherever that costs less"},
+    Dropped{"inversion_xy_tolerance", "plans may reverse wherever that costs less"},
+    Dropped{"inversion_yaw_tolerance", "plans may reverse wherever that costs less"},
+    Dropped{"critics", "the terms of the cost are fixed; their weights are in costs"},
+    Dropped{"TrajectoryVisualizer.", "visualize publishes the plan, not the samples"},
+    Dropped{"ConstraintCritic.", "samples keep to the limits of speed and acceleration"},
+    Dropped{"CostCritic.", "distances to obstacles count, not costs of cells: costs.clearance"},
+    Dropped{"ObstaclesCritic.", "distances to obstacles count, not costs of cells: costs.clearance"},
+    Dropped{"GoalCritic.", "costs.progress and costs.final_progress draw the robot to the goal"},
+    Dropped{"GoalAngleCritic.", "the cost has another scale: costs.goal_heading"},
+    Dropped{"PathAlignCritic.", "the cost has another scale: costs.path"},
+    Dropped{"PathFollowCritic.", "the cost has another scale: costs.progress"},
+    Dropped{"PathAngleCritic.", "the cost has another scale: costs.heading"},
+    Dropped{"PreferForwardCritic.", "the cost has another scale: costs.reverse"},
+    Dropped{"TwirlingCritic.", "the cost has another scale: costs.turning"},
+    Dropped{"VelocityDeadbandCritic.", "there is no term for slow motion"},
+};
+
+/// The fate of a key that is not taken.
+std::string fate_of(const std::string& key) {
+  std::vector<std::string> names(taken.begin(), taken.end());
+  names.insert(names.end(), {"temperature", "plugin"});
+  for (const Dropped& each : dropped) {
+    std::string name = each.key;
+    const bool is_section = name.back() == '.';
+    if (is_section ? key.starts_with(name) : key == name) return std::string("dropped (") + each.why + ")";
+    if (is_section) name.pop_back();
+    names.push_back(std::move(name));
+  }
+  const std::string nearest = nearest_name(key, names);
+  return "unknown (no parameter of nav2's MPPI controller" +
+         (nearest.empty() ? "" : ", did you mean '" + nearest + "'?") + ")";
+}
+
+/// A key of a section, with dots between sections, and its value in the file.
 struct Given {
   std::string key;
-  int line;
+  int line;  ///< from 1
   YAML::Node value;
 };
 
 /// The import of one section.
-class Import {
+class Section {
  public:
-  Import(std::string file, std::string section, int line, const YAML::Node& node) : file_(std::move(file)) {
-    result_.name = std::move(section);
-    result_.line = line;
+  Section(std::string file, std::string name, int line, const YAML::Node& node)
+      : file_(std::move(file)), name_(std::move(name)), line_(line) {
     flatten(node, "");
   }
 
-  ImportedSection run() {
-    take_accelerations();
+  void import(MppiImport& to) {
+    const Given* const acceleration = least_acceleration();
     for (const Given& given : given_) {
-      if (done_.count(given.key) > 0) continue;
-      if (given.key == "plugin") {
-        report(given, Fate::changed, "plugin: slalom_nav2::Controller", "");
-      } else if (given.key == "temperature") {
-        take_temperature(given);
-      } else if (given.key == "GoalAngleCritic.threshold_to_consider") {
-        take(given, "costs.goal_reach", text_of(given));
-      } else if (mppi_keys::is_taken(given.key)) {
-        take(given, given.key, text_of(given));
-      } else if (const char* const why = mppi_keys::why_dropped(given.key)) {
-        report(given, Fate::dropped, "", why);
-      } else {
-        report_unknown(given);
-      }
+      std::string fate;
+      if (&given == acceleration)
+        fate = take(given, "ax_max",
+                    given.key == "ax_max" ? text_of(given) : to_text(std::abs(number_of(given))),
+                    "one limit holds in all directions, the least");
+      else if (given.key == "plugin")
+        fate = "changed to plugin: slalom_nav2::Controller";
+      else if (given.key == "temperature")
+        fate = take(given, "temperature", temperature(given),
+                    "costs have another scale; its ratio to the default is kept");
+      else if (given.key == "GoalAngleCritic.threshold_to_consider")
+        fate = take(given, "costs.goal_reach", text_of(given), "the name here");
+      else if (std::find(taken.begin(), taken.end(), given.key) != taken.end())
+        fate = take(given, given.key, text_of(given), "");
+      else
+        fate = fate_of(given.key);
+      const std::string value = given.value.IsScalar()     ? given.value.Scalar()
+                                : given.value.IsSequence() ? "a list"
+                                                           : "nothing";
+      to.report += file_ + ":" + std::to_string(given.line) + ": " + name_ + "." + given.key + ": " + value +
+                   ": " + fate + "\n";
     }
-    std::stable_sort(result_.keys.begin(), result_.keys.end(),
-                     [](const ImportedKey& a, const ImportedKey& b) { return a.line < b.line; });
-    write_yaml();
-    return result_;
+    to.yaml += yaml();
   }
 
  private:
   void flatten(const YAML::Node& map, const std::string& prefix) {
     for (const auto& entry : map) {
       const int line = entry.first.Mark().line + 1;
-      if (!entry.first.IsScalar()) throw IoError(file_, line, "a key in " + result_.name + " must be a name");
-      const std::string key = prefix + entry.first.Scalar();
-      if (std::any_of(given_.begin(), given_.end(), [&](const Given& each) { return each.key == key; }))
-        refuse(line, key, "duplicate key");
-      if (entry.second.IsMap()) {
-        flatten(entry.second, key + ".");
-      } else {
-        given_.push_back({key, line, entry.second});
-      }
+      if (!entry.first.IsScalar()) throw IoError(file_, line, "a key in " + name_ + " must be a name");
+      const Given given{prefix + entry.first.Scalar(), line, entry.second};
+      if (find(given.key)) refuse(given, "duplicate key");
+      if (entry.second.IsMap())
+        flatten(entry.second, given.key + ".");
+      else
+        given_.push_back(given);
     }
   }
 
-  [[noreturn]] void refuse(int line, const std::string& key, const std::string& rule) const {
-    throw IoError(file_, line, "key " + result_.name + "." + key + ": " + rule);
+  [[noreturn]] void refuse(const Given& given, const std::string& rule) const {
+    throw IoError(file_, given.line, "key " + name_ + "." + given.key + ": " + rule);
   }
-
   const Given* find(const std::string& key) const {
     const auto found =
         std::find_if(given_.begin(), given_.end(), [&](const Given& each) { return each.key == key; });
     return found == given_.end() ? nullptr : &*found;
   }
   std::string text_of(const Given& given) const {
-    if (!given.value.IsScalar()) refuse(given.line, given.key, "must be one value");
+    if (!given.value.IsScalar()) refuse(given, "must be one value");
     const std::string& text = given.value.Scalar();
     // YAML allows these; options are written in small letters.
     if (text == "True" || text == "TRUE") return "true";
@@ -100,138 +167,97 @@ class Import {
   double number_of(const Given& given) const {
     const std::string text = text_of(given);
     const std::optional<double> number = maps::finite_number(text);
-    if (!number) refuse(given.line, given.key, "'" + text + "' must be a number");
+    if (!number) refuse(given, "'" + text + "' must be a number");
     return *number;
   }
 
-  void report(const Given& given, Fate fate, const std::string& result, const std::string& why) {
-    const YAML::Node& value = given.value;
-    result_.keys.push_back({given.line, given.key,
-                            value.IsScalar()     ? value.Scalar()
-                            : value.IsSequence() ? "a list"
-                                                 : "nothing",
-                            fate, result, why});
-  }
-  void report_unknown(const Given& given) {
-    const std::string nearest = nearest_name(given.key, mppi_keys::all());
-    report(given, Fate::unknown, "",
-           "no parameter of nav2's MPPI controller" +
-               (nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
-  }
-
-  /// Sets an option from a key, to its text or to another text that follows from it.
-  void take(const Given& given, const std::string& option, const std::string& text,
-            const std::string& why = "") {
+  /// Sets an option to a text that follows from a key. Returns the fate of the key.
+  std::string take(const Given& given, const std::string& option, const std::string& text,
+                   const std::string& why) {
     try {
       settings_.set(option, text);
     } catch (const std::invalid_argument& error) {
-      const std::string what = error.what();
-      const std::string with_name = option + ": ";
-      refuse(given.line, given.key, what.rfind(with_name, 0) == 0 ? what.substr(with_name.size()) : what);
+      const std::string what = error.what(), with_name = option + ": ";
+      refuse(given, what.starts_with(with_name) ? what.substr(with_name.size()) : what);
     }
-    taken_.push_back(option);
-    const bool same = option == given.key && text == text_of(given);
-    report(given, same ? Fate::taken : Fate::changed, same ? "" : option + ": " + text,
-           same          ? ""
-           : why.empty() ? "the name here"
-                         : why);
-    done_.insert(given.key);
+    set_.insert(option);
+    if (option == given.key && text == text_of(given)) return "taken";
+    return "changed to " + option + ": " + text + " (" + why + ")";
   }
 
-  /// Sets the limit of the acceleration. One limit holds in all directions, so the least one is taken.
-  void take_accelerations() {
-    std::vector<const char*> keys{"ax_max", "ax_min"};
-    if (const Given* const model = find("motion_model"); model && text_of(*model) == "Omni")
-      keys.insert(keys.end(), {"ay_max", "ay_min"});
+  /// The key with the limit of the acceleration; null if there is none. One limit holds in all directions, so
+  /// it is the least one.
+  const Given* least_acceleration() const {
+    const Given* const model = find("motion_model");
+    const bool omni = model && text_of(*model) == "Omni";
     const Given* least = nullptr;
-    for (const char* key : keys)
-      if (const Given* const given = find(key))
-        if (!least || std::abs(number_of(*given)) < std::abs(number_of(*least))) least = given;
-    if (!least) return;
-    const char* const why = "one limit holds in all directions, the least";
-    const bool as_given = least->key == "ax_max";
-    take(*least, "ax_max", as_given ? text_of(*least) : to_text(std::abs(number_of(*least))), why);
+    for (const char* key : {"ax_max", "ax_min", "ay_max", "ay_min"}) {
+      const Given* const given = key[1] == 'x' || omni ? find(key) : nullptr;
+      if (given && (!least || std::abs(number_of(*given)) < std::abs(number_of(*least)))) least = given;
+    }
+    return least;
   }
 
-  /// Sets the temperature. Costs have another scale here, so the ratio to the default is kept.
-  void take_temperature(const Given& given) {
+  /// The temperature here. Costs have another scale, so the ratio to the default is kept.
+  std::string temperature(const Given& given) const {
     const double number = number_of(given);
-    if (number < 0) refuse(given.line, given.key, "'" + text_of(given) + "' must be at least 0");
+    if (number < 0) refuse(given, "'" + text_of(given) + "' must be at least 0");
     constexpr double usual = 0.3, least = 1e-6;
     const SolverOptions solver = settings_.solver(1);
-    const double* const here = solver.find<double>("temperature");
-    // Ten digits: a product of decimal numbers should read as one.
     std::ostringstream text;
-    text.precision(10);
-    text << std::max((here ? *here : usual) * number / usual, least);
-    take(given, "temperature", text.str(), "costs have another scale; its ratio to the default is kept");
+    text.precision(10);  // a product of decimal numbers should read as one
+    text << std::max(*solver.find<double>("temperature") * number / usual, least);
+    return text.str();
   }
 
-  void write_yaml() {
+  std::string yaml() const {
     std::ostringstream yaml;
-    yaml << "# From " << file_ << ":" << result_.line << ". What is not here has Slalom's default.\n"
-         << result_.name << ":\n  plugin: \"slalom_nav2::Controller\"\n";
+    yaml << "# From " << file_ << ":" << line_ << ". What is not here has Slalom's default.\n"
+         << name_ << ":\n  plugin: \"slalom_nav2::Controller\"\n";
     std::map<std::string, std::string> nested;  // by section
     for (const auto& [name, entry] : settings_.list()) {
-      if (std::find(taken_.begin(), taken_.end(), name) == taken_.end()) continue;
+      if (set_.count(name) == 0) continue;
       std::string value = to_text(entry.value);
       // ROS takes no integer for a number.
       if (std::holds_alternative<double>(entry.value) && value.find_first_of(".ein") == std::string::npos)
         value += ".0";
       const auto dot = name.find('.');
-      if (dot == std::string::npos) {
+      if (dot == std::string::npos)
         yaml << "  " << name << ": " << value << "\n";
-      } else {
+      else
         nested[name.substr(0, dot)] += "    " + name.substr(dot + 1) + ": " + value + "\n";
-      }
     }
     for (const auto& [section, lines] : nested) yaml << "  " << section << ":\n" << lines;
-    result_.yaml = yaml.str();
+    return yaml.str();
   }
 
-  std::string file_;
-  ImportedSection result_;
-  std::vector<Given> given_;
+  std::string file_, name_;
+  int line_;
+  std::vector<Given> given_;  ///< in the order of the file
   FollowerSettings settings_{"svg_mppi"};
-  std::vector<std::string> taken_;  ///< options that are set
-  std::set<std::string> done_;      ///< keys that are reported
+  std::set<std::string> set_;  ///< options that are set
 };
 
-void find_sections(const std::string& file, const YAML::Node& map, std::vector<ImportedSection>& found) {
+void import_sections(const std::string& file, const YAML::Node& map, MppiImport& to) {
   if (!map.IsMap()) return;
   for (const auto& entry : map) {
     if (!entry.first.IsScalar() || !entry.second.IsMap()) continue;
     const YAML::Node plugin = entry.second["plugin"];
-    if (plugin && plugin.IsScalar() && plugin.Scalar() == mppi) {
-      found.push_back(Import(file, entry.first.Scalar(), entry.first.Mark().line + 1, entry.second).run());
-    } else {
-      find_sections(file, entry.second, found);
-    }
+    if (plugin && plugin.IsScalar() && plugin.Scalar() == mppi)
+      Section(file, entry.first.Scalar(), entry.first.Mark().line + 1, entry.second).import(to);
+    else
+      import_sections(file, entry.second, to);
   }
 }
 
 }  // namespace
 
-const char* name(ImportedKey::Fate fate) {
-  switch (fate) {
-    case Fate::taken:
-      return "taken";
-    case Fate::changed:
-      return "changed";
-    case Fate::dropped:
-      return "dropped";
-    case Fate::unknown:
-      break;
-  }
-  return "unknown";
-}
-
-std::vector<ImportedSection> import_mppi(const std::string& file) {
-  std::vector<ImportedSection> sections;
-  find_sections(file, YAML::Load(maps::yaml_text(file)), sections);
-  if (sections.empty())
+MppiImport import_mppi(const std::string& file) {
+  MppiImport imported;
+  import_sections(file, YAML::Load(maps::yaml_text(file)), imported);
+  if (imported.yaml.empty())
     throw IoError(file, 0, std::string("must have a section with plugin: \"") + mppi + "\"");
-  return sections;
+  return imported;
 }
 
 }  // namespace slalom::nodes

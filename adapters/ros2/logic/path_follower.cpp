@@ -142,17 +142,14 @@ void PathFollower::find_share() {
 }
 
 /// The goal checker decides when the goal is reached; the navigator must not stand before.
-void PathFollower::make_navigator(const GoalTolerance& told) {
-  const auto equal = [](const GoalTolerance& a, const GoalTolerance& b) {
-    return a.known == b.known && a.distance == b.distance && a.angle == b.angle;
-  };
-  if (navigator_ && equal(told, tolerance_)) return;
+void PathFollower::make_navigator(const std::optional<GoalTolerance>& told) {
+  if (navigator_ && told == tolerance_) return;
   nav::NavigatorOptions options = settings_.navigator(share_);
   constexpr double least = 0.001, every_heading = 4;  // least and largest values that the navigator takes
-  if (told.known && told.distance > 0)
-    options.goal_distance = std::clamp(told.distance, least, options.goal_distance);
-  if (told.known)
-    options.goal_angle = told.angle > 0 ? std::clamp(told.angle, least, options.goal_angle) : every_heading;
+  if (told && told->distance > 0)
+    options.goal_distance = std::clamp(told->distance, least, options.goal_distance);
+  if (told)
+    options.goal_angle = told->angle > 0 ? std::clamp(told->angle, least, options.goal_angle) : every_heading;
   navigator_.emplace(*footprint_, options, settings_.solver(share_), *costmap_);
   tolerance_ = told;
   plan_.forget_placement();

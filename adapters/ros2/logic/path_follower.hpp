@@ -27,16 +27,17 @@ struct CostGrid {
 struct GoalTolerance {
   double distance = 0;  ///< m
   double angle = 0;     ///< rad; 0: the heading does not matter
-  bool known = false;   ///< whether a goal checker told these; otherwise the options decide
+
+  bool operator==(const GoalTolerance&) const = default;
 };
 
 /// The input of an update. All poses are in the frame of the costmap.
 struct FollowerInput {
-  maps::Pose pose;                ///< pose of the robot
-  navigation::Velocity velocity;  ///< measured velocity of the robot
-  double time = 0;                ///< s, of a clock
-  maps::Pose plan_frame;          ///< pose of the frame of the plan
-  GoalTolerance tolerance;
+  maps::Pose pose;                         ///< pose of the robot
+  navigation::Velocity velocity;           ///< measured velocity of the robot
+  double time = 0;                         ///< s, of a clock
+  maps::Pose plan_frame;                   ///< pose of the frame of the plan
+  std::optional<GoalTolerance> tolerance;  ///< none: the options decide
 };
 
 /// The answer of an update.
@@ -95,7 +96,7 @@ class PathFollower {
   const std::vector<maps::Pose>& path() const { return path_; }
 
  private:
-  void make_navigator(const GoalTolerance& told);
+  void make_navigator(const std::optional<GoalTolerance>& told);
   double elapsed_until(double time);
   FollowerAnswer answer(const FollowerInput& input);
   FollowerAnswer judge(const navigation::NavigationResult& result, double elapsed);
@@ -108,7 +109,7 @@ class PathFollower {
   maps::OccupancyGrid grid_;
   std::optional<navigation::Costmap> costmap_;
   std::optional<navigation::Navigator> navigator_;  ///< none: the next update makes it
-  GoalTolerance tolerance_;                         ///< tolerance of that navigator
+  std::optional<GoalTolerance> tolerance_;          ///< tolerance of that navigator
   FollowerPlan plan_;
   double limit_ = 0;  ///< m/s or percent; 0: none
   bool limit_is_percentage_ = false;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slalom/evaluation/result_folder.hpp"
+#include "slalom/evaluation/statistics.hpp"
 
 namespace slalom::nodes {
 namespace {
@@ -294,9 +295,9 @@ Report PlannerCore::report() {
   r.add("values corrected", second_.corrections);
   r.add("slowest update, ms", 1e3 * second_.slowest);
   r.add("deadline, ms", 1e3 * configuration_.planner.control_period);
-  if (latency_.count() > 0) {
-    r.add("latency from scan to command, p50, ms", 1e3 * latency_.percentile(0.5));
-    r.add("latency from scan to command, p99, ms", 1e3 * latency_.percentile(0.99));
+  if (!latency_.values().empty()) {
+    r.add("latency from scan to command, p50, ms", 1e3 * evaluation::percentile(latency_.values(), 0.5));
+    r.add("latency from scan to command, p99, ms", 1e3 * evaluation::percentile(latency_.values(), 0.99));
   }
   if (laps_) r.add("laps", laps());
   if (known_.friction > 0) {

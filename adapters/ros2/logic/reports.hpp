@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -30,8 +31,7 @@ struct Report {
   }
 };
 
-/// The latest 400 values of a quantity (ten seconds at 40 Hz) and their percentiles. Adding one does not
-/// allocate.
+/// The latest 400 values of a quantity (ten seconds at 40 Hz). Adding one does not allocate.
 class RecentValues {
  public:
   void add(double value) {
@@ -39,20 +39,8 @@ class RecentValues {
     next_ = (next_ + 1) % values_.size();
     count_ = std::min(count_ + 1, values_.size());
   }
-  std::size_t count() const { return count_; }
-
-  /// The least value that at least the fraction `share` (0 .. 1) of the values does not exceed; 0 if there is
-  /// none.
-  double percentile(double share) const {
-    if (count_ == 0) return 0;
-    std::array<double, 400> sorted = values_;
-    const double rank = std::clamp(share, 0.0, 1.0) * static_cast<double>(count_);
-    const auto whole = static_cast<std::size_t>(rank);
-    const std::size_t above = whole + (static_cast<double>(whole) < rank ? 1 : 0);
-    const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(above, 1) - 1);
-    std::nth_element(sorted.begin(), nth, sorted.begin() + static_cast<std::ptrdiff_t>(count_));
-    return *nth;
-  }
+  /// The values in any order.
+  std::span<const double> values() const { return std::span(values_).first(count_); }
 
  private:
   std::array<double, 400> values_{};

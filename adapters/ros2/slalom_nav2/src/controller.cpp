@@ -23,12 +23,12 @@ using slalom::nodes::GoalTolerance;
 double tolerance(double told) {
   return std::isfinite(told) && told > 0 && told < 1e6 ? told : 0;
 }
-GoalTolerance tolerance_of(nav2_core::GoalChecker* checker) {
+std::optional<GoalTolerance> tolerance_of(nav2_core::GoalChecker* checker) {
   geometry_msgs::msg::Pose pose;
   geometry_msgs::msg::Twist velocity;
   if (checker == nullptr || !checker->getTolerances(pose, velocity)) return {};
-  return {tolerance(std::min(pose.position.x, pose.position.y)),
-          tolerance(slalom_ros::yaw_of(pose.orientation)), true};
+  return GoalTolerance{tolerance(std::min(pose.position.x, pose.position.y)),
+                       tolerance(slalom_ros::yaw_of(pose.orientation))};
 }
 
 nav_msgs::msg::Path message_of(const std::vector<Pose>& poses, const std::string& frame,

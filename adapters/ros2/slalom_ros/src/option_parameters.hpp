@@ -1,7 +1,8 @@
 #pragma once
 
 #include <functional>
-#include <map>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,8 @@ namespace slalom_ros {
 
 namespace nodes = slalom::nodes;
 
-/// Declared options of Slalom as parameters of a node, with type, range and description, that can change
-/// while the node runs. A change that breaks a rule is refused with that rule. Ranges are checked by rclcpp,
-/// whose answer does not state them; so from Iron on the rule is also written to the log.
+/// Declared options of Slalom as parameters of a node, with type, description and rule, that can change while
+/// the node runs. A change that breaks a rule is refused with that rule.
 class OptionParameters {
  public:
   using List = std::function<std::vector<nodes::NamedOption>()>;
@@ -33,18 +33,16 @@ class OptionParameters {
   void refresh();
 
  private:
-  void declare(const nodes::NamedOption& option);
   void check_names() const;
   rcl_interfaces::msg::SetParametersResult set(const std::vector<rclcpp::Parameter>& parameters);
-  void log_broken_ranges(const std::vector<rclcpp::Parameter>& parameters) const;
 
   rclcpp_lifecycle::LifecycleNode& node_;
   List list_;
   Change change_;
   std::string prefix_;
-  std::map<std::string, nodes::NamedOption> options_;  ///< by the names of the parameters
+  std::set<std::string> names_;  ///< names of the parameters
   bool refreshing_ = false;
-  std::shared_ptr<void> before_set_, on_set_;  ///< the registrations of the callbacks
+  std::shared_ptr<void> on_set_;  ///< the registration of `set`
 };
 
 }  // namespace slalom_ros

@@ -2,8 +2,9 @@
 // transforms, the parked cars, and the true state as `ground_truth`, `laps` and `contacts` (number of
 // collisions). Like a real car it must brake without a finite command for a while, or when two nodes command
 // it.
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 #include <map>
 #include <optional>
 
@@ -75,8 +76,9 @@ class WorldNode : public ManagedNode {
     subscribe<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
         [this](const AckermannDriveStamped& m, const rclcpp::MessageInfo& info) {
+          const auto& sender = info.get_rmw_message_info().publisher_gid.data;
           hear({static_cast<double>(m.drive.steering_angle), static_cast<double>(m.drive.speed)},
-               sender_of(info.get_rmw_message_info().publisher_gid));
+               std::string(std::begin(sender), std::end(sender)));
         },
         from_middleware());
   }
@@ -108,17 +110,6 @@ class WorldNode : public ManagedNode {
   }
 
  private:
-  /// A name of the publisher of a command.
-  static std::string sender_of(const rmw_gid_t& publisher) {
-    std::string name;
-    char digits[3];
-    for (const unsigned char byte : publisher.data) {
-      std::snprintf(digits, sizeof digits, "%02x", byte);
-      name += digits;
-    }
-    return name;
-  }
-
   void hear(const slalom::Command& command, const std::string& sender) {
     if (!std::isfinite(command.steer) || !std::isfinite(command.speed))
       return log_("a command is not finite");
@@ -128,16 +119,12 @@ class WorldNode : public ManagedNode {
 
   /// Whether exactly one node commands the car.
   bool is_commanded() {
-    std::string names;
-    int speaking = 0;
-    for (const auto& [name, time] : heard_) {
-      if (clocks_.steady() - time > command_timeout_) continue;
-      ++speaking;
-      names += " " + name;
-    }
+    const auto speaking = std::count_if(heard_.begin(), heard_.end(), [this](const auto& sender) {
+      return clocks_.steady() - sender.second <= command_timeout_;
+    });
     if (speaking == 1) return true;
     why_ = speaking == 0 ? "no command" : "commanded by more than one";
-    if (speaking > 1) log_("braking: commanded by more than one:" + names);
+    if (speaking > 1) log_("braking: " + why_);
     return false;
   }
 

@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/options.hpp"
 #include "slalom/core/problem.hpp"
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/mujoco/model.hpp"
-#include "slalom/mujoco/rollout_options.hpp"
 #include "slalom/mujoco/simulation.hpp"
-#include "slalom/mujoco/state.hpp"
 
 namespace slalom::mujoco {
 
@@ -40,6 +39,50 @@ concept Task = requires(const T& task, const mjModel& model, const mjData& data)
   task.stage_cost(model, data);
   task.terminal_cost(model, data);
 };
+
+/// The state of a MuJoCo model with as many positions (nq), velocities (nv) and activations (na): together
+/// with the inputs it determines the next states.
+template <int Positions, int Velocities, int Activations = 0>
+struct State {
+  static constexpr int size = Positions + Velocities + Activations;  ///< values beside the time
+
+  double time = 0;           ///< s
+  double values[size] = {};  ///< qpos, then qvel, then act, in the units of the model
+
+  double* positions() noexcept { return values; }                                         ///< qpos [nq]
+  const double* positions() const noexcept { return values; }                             ///< qpos [nq]
+  double* velocities() noexcept { return values + Positions; }                            ///< qvel [nv]
+  const double* velocities() const noexcept { return values + Positions; }                ///< qvel [nv]
+  double* activations() noexcept { return values + Positions + Velocities; }              ///< act [na]
+  const double* activations() const noexcept { return values + Positions + Velocities; }  ///< act [na]
+
+  /// The state that a simulation of MuJoCo is in.
+  static State of(const mjData& data) noexcept {
+    State state;
+    state.time = data.time;
+    mju_copy(state.positions(), data.qpos, Positions);
+    mju_copy(state.velocities(), data.qvel, Velocities);
+    mju_copy(state.activations(), data.act, Activations);
+    return state;
+  }
+};
+
+/// Options of the rollouts of a model. `visit_options` below describes the fields.
+struct RolloutOptions {
+  int physics_steps = 1;
+  int threads = 1;
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, RolloutOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.physics_steps,
+        {"physics_steps", "",
+         "time steps of the model in a step of the control sequence, with the same inputs", 1, 10000});
+  visit(o.threads,
+        {"threads", "", "threads that simulate, each with its own mjData; the costs do not depend on it", 1,
+         1024});
+}
 
 /// The number of control sequences that were simulated, and of those among them that led to a simulation that
 /// is not valid.

@@ -21,14 +21,6 @@ class Model {
   /// The file that it was loaded from.
   const std::string& file() const noexcept { return file_; }
 
-  /// The index of a named element, for instance id(mjOBJ_BODY, "torso"). Throws std::invalid_argument, which
-  /// names the file and the element, if there is none.
-  int id(mjtObj type, const std::string& name) const;
-  /// The index at which the positions of a joint start.
-  int position_of(const std::string& joint) const { return model_->jnt_qposadr[id(mjOBJ_JOINT, joint)]; }
-  /// The index at which the velocities of a joint start.
-  int velocity_of(const std::string& joint) const { return model_->jnt_dofadr[id(mjOBJ_JOINT, joint)]; }
-
  private:
   std::string file_;
   std::shared_ptr<const mjModel> model_;
