@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, Iterable, Tuple
 _PARTS = ("dynamics", "cost", "terminal_cost", "states", "inputs", "dt", "input_min", "input_max", "input_rate_max",
           "sampler")
 
-Arguments = Tuple[Tuple[Any, ...], Dict[str, Any]]  # of a constructor, by position and by name
+Arguments = Tuple[Tuple[Any, ...], Dict[str, Any]]  # arguments by position and by name
 
 
 def install(solvers: ModuleType) -> None:

@@ -63,23 +63,6 @@ py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char*
   return bound;
 }
 
-void bind_arm(py::module_& module) {
-  using problems::Arm;
-  const auto distance = [](const BuiltIn<Arm>& self, const std::array<double, Arm::joints>& angles) {
-    Arm::State<double> x;
-    std::copy(angles.begin(), angles.end(), x.angle);
-    return self.problem().distance(self.problem().posture(x));
-  };
-  bind_problem<Arm>(
-      module, "Arm",
-      "An arm with seven joints that reaches past a ball. State: the joints' angles (rad); inputs: "
-      "their rates (rad/s). The problem has bounds on rates and accelerations.")
-      .def("distance", distance, py::arg("state"), "From the hand to the goal, m.")
-      .def_property_readonly(
-          "start", [](const BuiltIn<Arm>&) { return py::array_t<double>(Arm::joints, Arm::start.data()); },
-          "angles from which the ball is in the way, rad");
-}
-
 /// One number, one per input, or none.
 using Limits = std::variant<std::monostate, double, std::vector<double>>;
 
@@ -163,7 +146,16 @@ void bind_problems(py::module_& module) {
   limits("input_max", &CallableParts::input_max, "as given: a number, one for each input, or None");
   limits("input_rate_max", &CallableParts::input_rate_max,
          "per s, as given: a number, one for each input, or None");
-  bind_arm(module);
+  bind_problem<problems::Arm>(
+      module, "Arm",
+      "An arm with seven joints that reaches past a ball. State: the joints' angles (rad); inputs: "
+      "their rates (rad/s). The problem has bounds on rates and accelerations.")
+      .def_property_readonly(
+          "start",
+          [](const py::object&) {
+            return py::array_t<double>(problems::Arm::joints, problems::Arm::start.data());
+          },
+          "angles from which the ball is in the way, rad");
   bind_problem<problems::Pendulum>(
       module, "Pendulum",
       "A pendulum whose motor is too weak to lift it directly. State: angle from upright "

@@ -91,7 +91,7 @@ class TestNode {
 
  protected:
   virtual void step() {}                          ///< each millisecond
-  virtual std::string log() const { return ""; }  ///< what a failure prints
+  virtual std::string log() const { return ""; }  ///< the text that a failure prints
 
  private:
   void spin() {

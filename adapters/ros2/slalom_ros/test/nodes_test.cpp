@@ -1,6 +1,8 @@
-// Parameters, lifecycle, services and speed limit of the nodes, as a client sees them.
+// Simulator, localiser and planner as a client sees them: lifecycle, parameters, services, and laps among
+// parked cars. The nodes are processes, or all composed in one.
 //
-// usage: node_test processes|composed
+// usage: nodes_test processes|composed
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -9,12 +11,19 @@
 #include <lifecycle_msgs/msg/transition.hpp>
 #include <lifecycle_msgs/srv/change_state.hpp>
 #include <lifecycle_msgs/srv/get_state.hpp>
+#include <nav_msgs/msg/occupancy_grid.hpp>
+#include <nav_msgs/msg/odometry.hpp>
+#include <nav_msgs/msg/path.hpp>
 #include <rcl_interfaces/srv/describe_parameters.hpp>
 #include <rcl_interfaces/srv/get_parameters.hpp>
 #include <rcl_interfaces/srv/set_parameters.hpp>
+#include <sensor_msgs/msg/laser_scan.hpp>
+#include <slalom_msgs/msg/planner_metrics.hpp>
 #include <slalom_msgs/srv/drive_laps.hpp>
 #include <slalom_msgs/srv/save.hpp>
+#include <std_msgs/msg/int32.hpp>
 #include <std_srvs/srv/empty.hpp>
+#include <visualization_msgs/msg/marker_array.hpp>
 
 #include "client.hpp"
 #include "nodes.hpp"
@@ -22,22 +31,71 @@
 namespace slalom_ros_test {
 namespace {
 
+using ackermann_msgs::msg::AckermannDriveStamped;
 using lifecycle_msgs::msg::State;
 using lifecycle_msgs::msg::Transition;
 using lifecycle_msgs::srv::ChangeState;
 using lifecycle_msgs::srv::GetState;
+using nav_msgs::msg::Odometry;
 using rcl_interfaces::srv::DescribeParameters;
 using rcl_interfaces::srv::GetParameters;
 using rcl_interfaces::srv::SetParameters;
+using sensor_msgs::msg::LaserScan;
 using slalom_msgs::srv::DriveLaps;
 using slalom_msgs::srv::Save;
+using std_msgs::msg::Int32;
+using visualization_msgs::msg::MarkerArray;
+
+double seconds(const builtin_interfaces::msg::Time& time) {
+  return time.sec + 1e-9 * time.nanosec;
+}
+
+template <class Message>
+void expect_increasing_stamps(const std::vector<Message>& messages, const std::string& name) {
+  for (std::size_t i = 1; i < messages.size(); ++i)
+    expect(seconds(messages[i].header.stamp) >= seconds(messages[i - 1].header.stamp),
+           "the stamps of the " + name + " increase");
+}
+
+/// The estimated pose is that of the simulated car. Both have the stamps of the scans.
+void check_poses(const std::vector<Odometry>& true_poses, const std::vector<Odometry>& estimates) {
+  std::map<double, geometry_msgs::msg::Point> truth;
+  for (const auto& m : true_poses) truth[seconds(m.header.stamp)] = m.pose.pose.position;
+  double sum = 0;
+  int count = 0;
+  for (const auto& m : estimates) {
+    const auto found = truth.find(seconds(m.header.stamp));
+    if (found == truth.end()) continue;
+    const auto& estimate = m.pose.pose.position;
+    sum += std::hypot(estimate.x - found->second.x, estimate.y - found->second.y);
+    ++count;
+  }
+  expect(count > 100, "estimates of the pose, with the true pose of the same time");
+  std::printf("ok: the estimated pose is %.3f m from the true one, mean of %d\n", sum / count, count);
+  expect(sum / count < 0.15, "the estimated pose is that of the car");
+}
+
+void check_diagnostics(const Client& client) {
+  for (const auto& [status, key] : {std::pair<const char*, const char*>{"planner: plans", "plans"},
+                                    {"planner: plans", "deadlines missed"},
+                                    {"planner: plans", "least effective sample size"},
+                                    {"planner: plans", "latency from scan to command, p50, ms"},
+                                    {"planner: plans", "latency from scan to command, p99, ms"},
+                                    {"localiser: localisation", "health"},
+                                    {"world: simulated car", "laps"}}) {
+    const auto found = client.diagnostics.find(status);
+    expect(found != client.diagnostics.end() && found->second.count(key) > 0,
+           std::string("diagnostics have ") + status + ", " + key);
+    std::printf("   %s, %s: %s\n", status, key, found->second.at(key).c_str());
+  }
+}
 
 class NodeTest {
  public:
-  explicit NodeTest(const std::string& place) : client_("node_test"), nodes_(place) {
-    nodes_.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=0"});
-    nodes_.start("localiser", "localiser", {"autostart:=true", "course:=wren"});
-    nodes_.start("planner", "planner", {"course:=wren", "svg_mppi.samples:=500"});
+  explicit NodeTest(const std::string& place) : nodes_(place) {
+    nodes_.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=5"});
+    nodes_.start("localiser", "localiser", {"autostart:=true", "course:=wren", "everywhere:=true"});
+    nodes_.start("planner", "planner", {"course:=wren", "svg_mppi.samples:=2000"});
     nodes_.start("planner", "wrong", {"planner.max_sped:=1.0"});
     nodes_.start("planner", "wild", {"svg_mppi.samples:=-5"});
   }
@@ -85,22 +143,31 @@ class NodeTest {
     }
   }
 
-  void services() {
-    DriveLaps::Request negative;
-    negative.laps = -1;
-    const auto refused = client_.call<DriveLaps>("/planner/drive_laps", negative);
-    expect(!refused->success && !refused->message.empty(), "a negative number of laps is refused");
+  void laps() {
     expect(set("planner.max_speed", rclcpp::ParameterValue(100.0)).successful, "full speed");
-    DriveLaps::Request once;
-    once.laps = 1;
-    expect(client_.call<DriveLaps>("/planner/drive_laps", once)->success, "a lap is asked for");
+    expect(!ask_for_laps(-1), "a negative number of laps is refused");
+    expect(ask_for_laps(3), "three laps are asked for");
+    const int contacts = contacts_->back().data;
     const double begin = steady_seconds();
-    client_.wait("after a lap the car stops", 120,
+    client_.wait("after three laps the car stops", 270,
                  [&] { return client_.has_said("all laps are driven", begin) && client_.stops(); });
-    DriveLaps::Request forever;
-    expect(client_.call<DriveLaps>("/planner/drive_laps", forever)->success, "laps without end");
+    expect(laps_->back().data >= 3, "the simulator has counted the laps");
+    expect(contacts_->back().data == contacts, "no contacts");
+    expect(!map_->empty() && !path_->empty(), "a map and a path");
+    expect(!parked_->empty() && !markers_->empty(), "markers of parked cars and of plans");
+    expect_increasing_stamps(*scans_, "scans");
+    expect_increasing_stamps(*commands_, "commands");
+    for (const LaserScan& scan : *scans_) expect(scan.ranges.size() == 1081, "a scan has 1081 ranges");
+    for (const AckermannDriveStamped& m : *commands_)
+      expect(std::abs(m.drive.steering_angle) < 0.42F && std::isfinite(m.drive.speed), "a command is valid");
+    expect(plans_->size() > scans_->size() / 2, "plans for most scans");
+    check_poses(*truth_, *estimates_);
+    check_diagnostics(client_);
+    expect(ask_for_laps(0), "laps without end");
     client_.wait("it drives on", 20, [&] { return client_.drives(); });
+  }
 
+  void saves_its_options() {
     const std::string file = std::filesystem::temp_directory_path() / "slalom_ros_node_test.yaml";
     Save::Request save;
     save.file = file;
@@ -108,7 +175,7 @@ class NodeTest {
     std::ifstream stream(file);
     std::stringstream text;
     text << stream.rdbuf();
-    expect(text.str().find("samples: 500") != std::string::npos, "the file has the options");
+    expect(text.str().find("samples: 2000") != std::string::npos, "the file has the options");
     std::filesystem::remove(file);
     save.file = "/none/at/all.yaml";
     expect(!client_.call<Save>("/planner/save", save)->success, "a file that cannot be written is an error");
@@ -141,6 +208,11 @@ class NodeTest {
     client_.run(0.2);
     return changed;
   }
+  bool ask_for_laps(int laps) {
+    DriveLaps::Request request;
+    request.laps = laps;
+    return client_.call<DriveLaps>("/planner/drive_laps", request)->success;
+  }
   rcl_interfaces::msg::SetParametersResult set(const std::string& name, const rclcpp::ParameterValue& value) {
     SetParameters::Request request;
     request.parameters.push_back(rclcpp::Parameter(name, value).to_parameter_msg());
@@ -157,7 +229,22 @@ class NodeTest {
     return client_.call<DescribeParameters>("/planner/describe_parameters", request)->descriptors.at(0);
   }
 
-  Client client_;
+  const rclcpp::QoS some_{50}, latched_ = rclcpp::QoS(1).transient_local();
+  Client client_{"nodes_test"};
+  template <class Message>
+  using Recorded = std::shared_ptr<const std::vector<Message>>;
+  Recorded<LaserScan> scans_ = client_.record<LaserScan>("scan", rclcpp::SensorDataQoS());
+  Recorded<AckermannDriveStamped> commands_ = client_.record<AckermannDriveStamped>("drive", some_);
+  Recorded<Odometry> truth_ = client_.record<Odometry>("ground_truth", some_);
+  Recorded<Odometry> estimates_ = client_.record<Odometry>("pf/pose/odom", some_);
+  Recorded<Int32> contacts_ = client_.record<Int32>("contacts", some_);
+  Recorded<Int32> laps_ = client_.record<Int32>("laps", some_);
+  Recorded<slalom_msgs::msg::PlannerMetrics> plans_ =
+      client_.record<slalom_msgs::msg::PlannerMetrics>("mppi/eval_metrics", some_);
+  Recorded<nav_msgs::msg::OccupancyGrid> map_ = client_.record<nav_msgs::msg::OccupancyGrid>("map", latched_);
+  Recorded<nav_msgs::msg::Path> path_ = client_.record<nav_msgs::msg::Path>("reference_path", latched_);
+  Recorded<MarkerArray> parked_ = client_.record<MarkerArray>("obstacles", latched_);
+  Recorded<MarkerArray> markers_ = client_.record<MarkerArray>("planner_markers", some_);
   Nodes nodes_;
 };
 
@@ -167,7 +254,8 @@ void test(const std::string& place) {
   all.speed_limit();
   all.parameters();
   all.wrong_parameters();
-  all.services();
+  all.laps();
+  all.saves_its_options();
   all.lifecycle_to_the_end();
 }
 
