@@ -15,30 +15,27 @@ namespace {
 
 constexpr double quarter = std::numbers::pi / 2;  // rad
 
-TEST(MountTest, AnUprightSensorIsAPoseInThePlane) {
+void expect_pose(const maps::Pose& pose, double x, double y, double yaw) {
+  EXPECT_NEAR(pose.x, x, 1e-12);
+  EXPECT_NEAR(pose.y, y, 1e-12);
+  EXPECT_NEAR(pose.yaw, yaw, 1e-12);
+}
+
+TEST(Mount, OfAnUprightSensorIsAPoseInThePlane) {
   const Mount turned = mount_of(0.3, -0.1, 0.2, 0, 0, std::sin(quarter / 2), std::cos(quarter / 2));
   EXPECT_TRUE(turned.upright());
-  const maps::Pose pose = turned.planar();
-  EXPECT_EQ(pose.x, 0.3);
-  EXPECT_EQ(pose.y, -0.1);
-  EXPECT_NEAR(pose.yaw, quarter, 1e-12);
-  EXPECT_NEAR(turned.rotation[0][1], -1, 1e-12) << "its y axis points backwards";
-}
-
-TEST(MountTest, ASensorThatHangsUpsideDownIsNotUpright) {
-  const Mount hanging = mount_of(0, 0, 0, 1, 0, 0, 0);  // turned by 180 degrees about x
-  EXPECT_FALSE(hanging.upright());
-  EXPECT_NEAR(hanging.rotation[1][1], -1, 1e-12);
-  EXPECT_NEAR(hanging.rotation[2][2], -1, 1e-12) << "a turn to its left is one to the right of the car";
-}
-
-TEST(MountTest, RotatesVectorsToTheAxesOfTheCar) {
-  const Mount turned = mount_of(0, 0, 0, 0, 0, std::sin(quarter / 2), std::cos(quarter / 2));
+  expect_pose(turned.planar(), 0.3, -0.1, quarter);
   const double ahead_of_sensor[3] = {2, 0, 0}, up[3] = {0, 0, 3};
   EXPECT_NEAR(along(0, turned, ahead_of_sensor), 0, 1e-12);
   EXPECT_NEAR(along(1, turned, ahead_of_sensor), 2, 1e-12) << "it looks to the left of the car";
   EXPECT_NEAR(along(2, turned, up), 3, 1e-12);
-  const Mount hanging = mount_of(0, 0, 0, 1, 0, 0, 0);
+}
+
+TEST(Mount, OfASensorThatHangsUpsideDownIsNotUpright) {
+  const Mount hanging = mount_of(0, 0, 0, 1, 0, 0, 0);  // turned by 180 degrees about x
+  EXPECT_FALSE(hanging.upright());
+  const double left[3] = {0, 1, 0}, up[3] = {0, 0, 3};
+  EXPECT_NEAR(along(1, hanging, left), -1, 1e-12) << "its left is the right of the car";
   EXPECT_NEAR(along(2, hanging, up), -3, 1e-12);
 }
 
@@ -49,19 +46,9 @@ TEST(StampTest, SurvivesTheWayThroughSeconds) {
 }
 
 TEST(KnownPlaceTest, MovesAsTheOdometryDoes) {
-  const KnownPlace known{{10, 20, 1 + quarter}, {3, 4, 1}};
-  const maps::Pose moved = place_now(known, {4, 4, 1.5});
-  EXPECT_NEAR(moved.x, 10, 1e-12);
-  EXPECT_NEAR(moved.y, 21, 1e-12);
-  EXPECT_NEAR(moved.yaw, 1.5 + quarter, 1e-12);
-}
-
-TEST(KnownPlaceTest, IsKeptWhereTheOdometryHasStartedAgain) {
-  const KnownPlace known{{10, 20, 1}, {30, 40, 2}};
-  const maps::Pose same = place_now(known, {0.1, 0, 0});
-  EXPECT_EQ(same.x, 10);
-  EXPECT_EQ(same.y, 20);
-  EXPECT_EQ(same.yaw, 1);
+  expect_pose(place_now({{10, 20, 1 + quarter}, {3, 4, 1}}, {4, 4, 1.5}), 10, 21, 1.5 + quarter);
+  // The odometry has started again.
+  expect_pose(place_now({{10, 20, 1}, {30, 40, 2}}, {0.1, 0, 0}), 10, 20, 1);
 }
 
 TEST(KnownPlaceTest, IsReadFromAFileWhileItIsYoung) {
@@ -71,12 +58,8 @@ TEST(KnownPlaceTest, IsReadFromAFileWhileItIsYoung) {
   ASSERT_TRUE(write_place(file, {{1.25, -3.5, 0.1}, {7, 8, 0.9}}, 1000));
   const auto place = read_place(file, 1009);
   ASSERT_TRUE(place);
-  EXPECT_EQ(place->map.x, 1.25);
-  EXPECT_EQ(place->map.y, -3.5);
-  EXPECT_EQ(place->map.yaw, 0.1);
-  EXPECT_EQ(place->odometry.x, 7);
-  EXPECT_EQ(place->odometry.y, 8);
-  EXPECT_EQ(place->odometry.yaw, 0.9);
+  expect_pose(place->map, 1.25, -3.5, 0.1);
+  expect_pose(place->odometry, 7, 8, 0.9);
   EXPECT_FALSE(read_place(file, 1011)) << "too old";
   EXPECT_FALSE(read_place(file, 999)) << "from the future";
   std::ofstream(file) << "1.25 -3.5";

@@ -3,7 +3,8 @@
 #include "slalom/core/options.hpp"
 #include "slalom/sim/world.hpp"
 
-/// The options of a world by name, for keyword arguments. `WorldOptions::validate` checks them together.
+/// The options of a world that Python has as keyword arguments. `WorldOptions::validate` checks them
+/// together.
 namespace slalom::sim {
 
 inline const char* const* enum_names(CollisionResponse) {
@@ -12,22 +13,6 @@ inline const char* const* enum_names(CollisionResponse) {
 }
 inline const char* const* enum_names(Model) {
   static constexpr const char* names[] = {"kinematic", "single_track", "saturating", nullptr};
-  return names;
-}
-inline const char* const* enum_names(Integrator) {
-  static constexpr const char* names[] = {"runge_kutta_4", "euler", nullptr};
-  return names;
-}
-inline const char* const* enum_names(Coast) {
-  static constexpr const char* names[] = {"roll", "brake", "repeat", nullptr};
-  return names;
-}
-inline const char* const* enum_names(SteeringInput) {
-  static constexpr const char* names[] = {"angle", "rate", nullptr};
-  return names;
-}
-inline const char* const* enum_names(SpeedInput) {
-  static constexpr const char* names[] = {"speed", "acceleration", nullptr};
   return names;
 }
 
@@ -42,15 +27,6 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.lidar.dropout, {"dropout", "", "fraction of beams without a return"});
   visit(o.lidar.rate, {"scan_rate", "Hz", "scans of the LiDAR per second; 0: one in every step"});
   visit(o.plant.dynamics.model, {"model", "", "equations of motion"});
-  visit(o.plant.steering_dead_time,
-        {"steering_dead_time", "s", "time from a steering command to its effect"});
-  visit(o.plant.steering_input, {"steering_input", "", "meaning of the steering command"});
-  visit(o.plant.speed_input, {"speed_input", "", "meaning of the speed command"});
-  visit(o.plant.dynamics.integrator, {"integrator", "", "integration of the equations of motion"});
-  visit(o.plant.dynamics.substeps, {"substeps", "", "parts of a step; 0: as many as keep the tyres stable"});
-  visit(o.plant.actuation.speed_gain, {"speed_gain", "1/s", "acceleration per error of speed"});
-  visit(o.plant.actuation.brake_gain, {"brake_gain", "1/s", "acceleration per error of speed when braking"});
-  visit(o.plant.coast, {"coast", "", "behaviour of a car without a usable command"});
   visit(o.car.friction, {"friction", "", "coefficient between tyre and road"});
   visit(o.car.cornering_front, {"cornering_front", "1/rad", "cornering stiffness over load, front axle"});
   visit(o.car.cornering_rear, {"cornering_rear", "1/rad", "cornering stiffness over load, rear axle"});
@@ -69,7 +45,6 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.car.speed_min, {"speed_min", "m/s", "highest speed in reverse, negative"});
   visit(o.car.acceleration_max, {"acceleration_max", "m/s^2", "largest acceleration of motor and brakes"});
   visit(o.car.speed_max, {"speed_max", "m/s", "highest speed of a car"});
-  visit(o.sectors, {"sectors", "", "parts of a lap with a split time"});
   visit(o.wall_response, {"wall_response", "", "effect of a collision with a wall"});
   visit(o.body_response, {"body_response", "", "effect of a collision with a car, disc or box"});
 }

@@ -4,10 +4,13 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
 #include <class_loader/class_loader.hpp>
-#include <rclcpp/rclcpp.hpp>
+#include <diagnostic_msgs/msg/diagnostic_array.hpp>
+#include <rcl_interfaces/msg/log.hpp>
 #include <rclcpp_components/node_factory.hpp>
 
 #include "harness.hpp"
@@ -69,6 +72,82 @@ class Nodes {
   class_loader::ClassLoader loader_{SLALOM_ROS_NODES "/libslalom_ros_nodes.so"};
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::map<std::string, Component> components_;
+};
+
+/// A node that listens to the nodes under test: commands, log and diagnostics.
+class Client : public TestNode {
+ public:
+  explicit Client(const std::string& name) : TestNode(name) {
+    listen<ackermann_msgs::msg::AckermannDriveStamped>("drive", rclcpp::QoS(50), [this](const auto& m) {
+      speed = static_cast<double>(m.drive.speed);
+      commanded_at = steady_seconds();
+      commands_.emplace_back(commanded_at, speed);
+    });
+    listen<rcl_interfaces::msg::Log>("/rosout", rclcpp::QoS(1000), [this](const auto& m) {
+      log_.push_back({steady_seconds(), m.name, m.msg});
+    });
+    listen<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", rclcpp::QoS(20), [this](const auto& m) {
+      for (const auto& status : m.status)
+        for (const auto& pair : status.values) diagnostics[status.name][pair.key] = pair.value;
+    });
+  }
+
+  /// The messages of a topic from now on, in the order of their arrival.
+  template <class Message>
+  std::shared_ptr<const std::vector<Message>> record(const std::string& topic, const rclcpp::QoS& qos) {
+    const auto all = std::make_shared<std::vector<Message>>();
+    listen<Message>(topic, qos, [all](const Message& m) { all->push_back(m); });
+    return all;
+  }
+
+  /// Whether all commands of the last 0.3 s, of which there are some, drive, or stop.
+  bool drives() const {
+    return all_of_last(0.3, [](double v) { return v > 0.2; });
+  }
+  bool stops() const {
+    return all_of_last(0.3, [](double v) { return v == 0; });
+  }
+  /// Whether a node has given these words as the reason for a stop since a time.
+  bool has_said(const std::string& words, double since) const {
+    for (const Line& line : log_)
+      if (line.time >= since && line.text.rfind("stopping:", 0) == 0 &&
+          line.text.find(words) != std::string::npos)
+        return true;
+    return false;
+  }
+
+  double speed = 0, commanded_at = 0;  ///< speed (m/s) and time (s, steady clock) of the last command
+  std::map<std::string, std::map<std::string, std::string>> diagnostics;  ///< by status and key
+
+ private:
+  struct Line {
+    double time;  // s, steady
+    std::string node, text;
+  };
+
+  template <class Message, class Hear>
+  void listen(const std::string& topic, const rclcpp::QoS& qos, Hear hear) {
+    subscriptions_.push_back(node->create_subscription<Message>(
+        topic, qos, [hear](const std::shared_ptr<const Message> m) { hear(*m); }));
+  }
+  template <class Holds>
+  bool all_of_last(double seconds, Holds&& holds) const {
+    int count = 0;
+    const double since = steady_seconds() - seconds;
+    for (auto c = commands_.rbegin(); c != commands_.rend() && c->first >= since; ++c, ++count)
+      if (!holds(c->second)) return false;
+    return count > 3;
+  }
+  std::string log() const override {
+    std::string text;
+    for (std::size_t i = log_.size() < 10 ? 0 : log_.size() - 10; i < log_.size(); ++i)
+      text += "   " + log_[i].node + ": " + log_[i].text + "\n";
+    return text;
+  }
+
+  std::vector<std::pair<double, double>> commands_;  // s, m/s
+  std::vector<Line> log_;
+  std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
 };
 
 }  // namespace slalom_ros_test

@@ -25,7 +25,6 @@
 #include <std_srvs/srv/empty.hpp>
 #include <visualization_msgs/msg/marker_array.hpp>
 
-#include "client.hpp"
 #include "nodes.hpp"
 
 namespace slalom_ros_test {
