@@ -17,26 +17,13 @@ from numpy.typing import ArrayLike, NDArray
 """
 
 
-def split(text):
-    """The parts of a list of arguments, which may have commas in brackets and quotes."""
-    parts, depth, quoted, part = [], 0, False, ""
-    for c in text:
-        quoted ^= c == "'"
-        depth += (c in "[({") - (c in "])}") if not quoted else 0
-        if c == "," and depth == 0 and not quoted:
-            parts, part = [*parts, part.strip()], ""
-        else:
-            part += c
-    return [*parts, part.strip()] if part.strip() else parts
-
-
 def translate(kind, argument):
     """The Python type for a type in a signature of pybind11, of an argument or of a result."""
     kind = re.sub(r"(slalom\.)?(_slalom|_driving)\.", "", kind)
     if kind.startswith("numpy.ndarray") or kind.startswith("List[") and argument:
         return "ArrayLike" if argument else "NDArray[Any]"
     if kind.startswith("Union["):
-        return " | ".join(translate(part, argument) for part in split(kind[6:-1]))
+        return " | ".join(translate(part, argument) for part in re.findall(r"[\w.]+(?:\[[^]]*\])?", kind[6:-1]))
     if kind.startswith("Optional["):
         return translate(kind[9:-1], argument) + " | None"
     if kind.startswith("List["):
@@ -60,7 +47,7 @@ def signature(function):
     if not match:
         plain = inspect.signature(function)
         return ", ".join(plain.parameters), "Any"
-    return ", ".join(map(argument, split(match[1]))), translate(match[2], False)
+    return ", ".join(map(argument, filter(None, re.split(r", (?=\w+: |\*)", match[1])))), translate(match[2], False)
 
 
 def option_keywords(options):
