@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <chrono>
 #include <cstring>
 #include <exception>
 
@@ -28,7 +29,6 @@ namespace slalom::gpu {
   X(stream_create, "cuStreamCreate", void**, unsigned) \
   X(stream_destroy, "cuStreamDestroy_v2", void*) \
   X(stream_query, "cuStreamQuery", void*) \
-  X(stream_synchronize, "cuStreamSynchronize", void*) \
   X(allocate, "cuMemAlloc_v2", Address*, std::size_t) \
   X(free, "cuMemFree_v2", Address) \
   X(fill, "cuMemsetD8_v2", Address, unsigned char, std::size_t) \
@@ -57,6 +57,12 @@ struct Session::Driver {
     SLALOM_DRIVER(SLALOM_FIND)
   }
 
+  /// Calls a function with a context. Returns its result, or that of the choice of the context.
+  template <class... Parameters, class... Arguments>
+  int in(void* context, int (*function)(Parameters...), Arguments... arguments) const {
+    const int result = context_set(context);
+    return result == 0 ? function(arguments...) : result;
+  }
   std::string text(int result) const {
     const char* words = nullptr;
     error_text(result, &words);
@@ -70,6 +76,7 @@ namespace {
 constexpr int multiprocessors = 16, major_version = 75, minor_version = 76, dynamic_shared_bytes = 8;
 constexpr int not_ready = 600;
 constexpr unsigned non_blocking = 1, device_map = 2;
+constexpr std::chrono::seconds longest_wait{1};  ///< for all that is queued
 
 }  // namespace
 
@@ -78,8 +85,7 @@ bool Session::check(int result, const char* call) noexcept {
   if (fault_.empty()) {
     try {
       fault_ = std::string("GPU: ") + call + ": " + driver_->text(result);
-    } catch (const std::exception&) {
-      static_cast<void>(0);
+    } catch (const std::exception&) {  // out of memory: the result says that something failed
     }
   }
   return false;
@@ -116,8 +122,8 @@ Session::Session(std::span<const Image> images, const Layout& layout) {
 }
 
 Session::~Session() {
-  driver_->context_set(context_);
-  if (fault_.empty()) driver_->stream_synchronize(stream_);
+  synchronize();
+  if (driver_->stream_query(stream_) == not_ready) return;  // freeing would wait for a kernel that never ends
   for (const Address address : memory_) driver_->free(address);
   for (void* const address : host_memory_) driver_->host_free(address);
   driver_->stream_destroy(stream_);
@@ -155,8 +161,7 @@ void Session::load(std::span<const Image> images, const Layout& layout) {
 Session::Address Session::allocate(std::size_t bytes) {
   Address address = 0;
   memory_.reserve(memory_.size() + 1);
-  require(driver_->context_set(context_), "context");
-  require(driver_->allocate(&address, bytes), "memory");
+  require(driver_->in(context_, driver_->allocate, &address, bytes), "memory");
   memory_.push_back(address);
   require(driver_->fill(address, 0, bytes), "memory");
   return address;
@@ -165,8 +170,7 @@ Session::Address Session::allocate(std::size_t bytes) {
 void* Session::allocate_on_host(std::size_t bytes, Address& device) {
   void* address = nullptr;
   host_memory_.reserve(host_memory_.size() + 1);
-  require(driver_->context_set(context_), "context");
-  require(driver_->host_allocate(&address, bytes, device_map), "memory of the host");
+  require(driver_->in(context_, driver_->host_allocate, &address, bytes, device_map), "memory of the host");
   host_memory_.push_back(address);
   std::memset(address, 0, bytes);
   require(driver_->host_address(&device, address, 0), "memory of the host");
@@ -174,20 +178,17 @@ void* Session::allocate_on_host(std::size_t bytes, Address& device) {
 }
 
 void Session::copy_in(Address to, const void* from, std::size_t bytes) {
-  require(driver_->context_set(context_), "context");
-  require(driver_->copy_in(to, from, bytes), "copy to the device");
+  require(driver_->in(context_, driver_->copy_in, to, from, bytes), "copy to the device");
 }
 
 void Session::copy_out(void* to, Address from, std::size_t bytes) {
-  require(driver_->context_set(context_), "context");
-  require(driver_->stream_synchronize(stream_), "kernel");
+  if (!synchronize()) throw DeviceError(fault_);
   require(driver_->copy_out(to, from, bytes), "copy from the device");
 }
 
 void* Session::kernel(const char* kernel_name, int threads, int shared_bytes) {
   void* function = nullptr;
-  require(driver_->context_set(context_), "context");
-  require(driver_->module_function(&function, module_, kernel_name), kernel_name);
+  require(driver_->in(context_, driver_->module_function, &function, module_, kernel_name), kernel_name);
   require(driver_->function_attribute(function, dynamic_shared_bytes, shared_bytes), "shared memory");
   if (resident_blocks(function, threads, shared_bytes) < 1)
     throw DeviceError(std::string("GPU: a block of ") + kernel_name + " does not fit into the device");
@@ -201,16 +202,16 @@ int Session::resident_blocks(void* function, int threads, int shared_bytes) {
 }
 
 bool Session::refresh(Address to, const void* from, std::size_t bytes) noexcept {
-  return check(driver_->context_set(context_), "context") &&
-         check(driver_->copy_in_queued(to, from, bytes, stream_), "copy to the device");
+  return check(driver_->in(context_, driver_->copy_in_queued, to, from, bytes, stream_),
+               "copy to the device");
 }
 
 bool Session::launch(void* function, int blocks, int threads, int shared_bytes,
                      const void* argument) noexcept {
   void* arguments[] = {const_cast<void*>(argument)};
-  return check(driver_->context_set(context_), "context") &&
-         check(driver_->launch(function, static_cast<unsigned>(blocks), 1, 1, static_cast<unsigned>(threads),
-                               1, 1, static_cast<unsigned>(shared_bytes), stream_, arguments, nullptr),
+  return check(driver_->in(context_, driver_->launch, function, static_cast<unsigned>(blocks), 1u, 1u,
+                           static_cast<unsigned>(threads), 1u, 1u, static_cast<unsigned>(shared_bytes),
+                           stream_, arguments, nullptr),
                "launch");
 }
 
@@ -220,8 +221,12 @@ bool Session::alive() noexcept {
 }
 
 bool Session::synchronize() noexcept {
-  return check(driver_->context_set(context_), "context") &&
-         check(driver_->stream_synchronize(stream_), "kernel");
+  using Clock = std::chrono::steady_clock;
+  const auto give_up = Clock::now() + longest_wait;
+  int result = driver_->context_set(context_);
+  while (result == 0 && (result = driver_->stream_query(stream_)) == not_ready && Clock::now() < give_up)
+    result = 0;
+  return check(result, "kernel");
 }
 
 }  // namespace slalom::gpu

@@ -23,20 +23,14 @@ struct Functions {
   P problem{};
 
   static std::pair<detail::StateOf<P, double>, Input<double, nu>> split(const Scalars& z) {
-    double x[nx];
-    Input<double, nu> u;
-    for (int i = 0; i < nx; ++i) x[i] = z[static_cast<std::size_t>(i)];
-    for (int i = 0; i < nu; ++i) u[i] = z[static_cast<std::size_t>(nx + i)];
-    return {detail::state_of<P, double>(x), u};
+    return {detail::state_of<P, double>(z.data()), detail::inputs_of<P, double>(z.data() + nx)};
   }
   std::array<double, nx> step(const Scalars& z) const {
     const auto [x, u] = split(z);
-    double next[nx];
+    std::array<double, nx> next;
     detail::scalars_of<P, double>(
-        detail::step<P, double>(problem, x, detail::look_up<P, double>(problem, x), u, 0), next);
-    std::array<double, nx> result;
-    std::copy_n(next, nx, result.begin());
-    return result;
+        detail::step<P, double>(problem, x, detail::look_up<P, double>(problem, x), u, 0), next.data());
+    return next;
   }
   double stage(const Scalars& z) const {
     const auto [x, u] = split(z);
@@ -113,8 +107,14 @@ TYPED_TEST(BuiltInProblems, HessiansAreTheDerivativesOfGradients) {
     const auto l = linearize(f.problem, x, u);
     expect_same(cost.value, l.cost);
     EXPECT_NEAR(end.value, f.terminal(z), 1e-12 * std::abs(end.value));
-    for (int i = 0; i < F::nx; ++i) expect_same(cost.state_gradient[i], l.state_gradient[i]);
-    for (int i = 0; i < F::nu; ++i) expect_same(cost.input_gradient[i], l.input_gradient[i]);
+    const auto gradient_of = [](const Linearization<TypeParam>& at) {
+      typename F::Scalars gradient;
+      std::copy_n(at.state_gradient, F::nx, gradient.begin());
+      std::copy_n(at.input_gradient, F::nu, gradient.begin() + F::nx);
+      return gradient;
+    };
+    const auto gradient = gradient_of(l);
+    for (int i = 0; i < F::n; ++i) expect_same(cost.gradient[i], gradient[static_cast<std::size_t>(i)]);
     const double h = 1e-6;
     for (int i = 0; i < F::n; ++i) {
       auto low = z, high = z;
@@ -122,19 +122,15 @@ TYPED_TEST(BuiltInProblems, HessiansAreTheDerivativesOfGradients) {
       high[static_cast<std::size_t>(i)] += h;
       const auto [x0, u0] = F::split(low);
       const auto [x1, u1] = F::split(high);
-      const auto a = linearize(f.problem, x0, u0), b = linearize(f.problem, x1, u1);
+      const auto a = gradient_of(linearize(f.problem, x0, u0)), b = gradient_of(linearize(f.problem, x1, u1));
       const auto e0 = expand_terminal_cost(f.problem, x0), e1 = expand_terminal_cost(f.problem, x1);
-      for (int j = 0; j < F::nx; ++j) {
-        const double second = (b.state_gradient[j] - a.state_gradient[j]) / (2 * h);
-        const double entry = i < F::nx ? cost.state_hessian[i][j] : cost.cross_hessian[i - F::nx][j];
-        EXPECT_NEAR(entry, second, 1e-5 * (1 + std::abs(second))) << i << ' ' << j;
-        if (i >= F::nx) continue;
-        const double at_end = (e1.state_gradient[j] - e0.state_gradient[j]) / (2 * h);
-        EXPECT_NEAR(end.state_hessian[i][j], at_end, 1e-5 * (1 + std::abs(at_end))) << i << ' ' << j;
-      }
-      for (int j = 0; i >= F::nx && j < F::nu; ++j) {
-        const double second = (b.input_gradient[j] - a.input_gradient[j]) / (2 * h);
-        EXPECT_NEAR(cost.input_hessian[i - F::nx][j], second, 1e-5 * (1 + std::abs(second)));
+      for (int j = 0; j < F::n; ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        const double second = (b[at] - a[at]) / (2 * h);
+        EXPECT_NEAR(cost.hessian[i][j], second, 1e-5 * (1 + std::abs(second))) << i << ' ' << j;
+        if (i >= F::nx || j >= F::nx) continue;
+        const double at_end = (e1.gradient[j] - e0.gradient[j]) / (2 * h);
+        EXPECT_NEAR(end.hessian[i][j], at_end, 1e-5 * (1 + std::abs(at_end))) << i << ' ' << j;
       }
     }
   }
@@ -178,12 +174,12 @@ TEST(Linearize, TakesLookUpsStepIndicesAndNamedTermsAlong) {
   EXPECT_EQ(l.input_gradient[0], 7 * 6);
   EXPECT_FALSE(l.kink);
   const auto cost = expand_stage_cost(Whole{}, {{2.0, 3.0}}, {{5.0}}, 7);
-  EXPECT_EQ(cost.state_hessian[0][1], 7 * 5);
-  EXPECT_EQ(cost.cross_hessian[0][0], 7 * 3);
+  EXPECT_EQ(cost.hessian[0][1], 7 * 5);
+  EXPECT_EQ(cost.hessian[2][0], 7 * 3);
   const auto end = expand_terminal_cost(Whole{}, {{2.0, 3.0}});
   EXPECT_EQ(end.value, 36);
-  EXPECT_EQ(end.state_hessian[0][0], 18);
-  EXPECT_EQ(end.state_hessian[1][0], 24);
+  EXPECT_EQ(end.hessian[0][0], 18);
+  EXPECT_EQ(end.hessian[1][0], 24);
 }
 
 TEST(Linearize, TellsOfKinks) {

@@ -1,4 +1,4 @@
-// What a problem may say of itself besides dynamics and costs, in the rollouts of every instruction set.
+// The optional members of a problem, in the rollouts of every instruction set.
 #include <gtest/gtest.h>
 
 #include <array>

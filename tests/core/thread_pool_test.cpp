@@ -80,7 +80,7 @@ long voluntary_switches() {
   return usage.ru_nvcsw;
 }
 
-/// How often threads went to sleep in so many rounds with a pause after each.
+/// Counts how often threads went to sleep in some rounds with a pause after each.
 long sleeps(ThreadPool& pool, int rounds, std::chrono::microseconds pause) {
   const long before = voluntary_switches();
   for (int round = 0; round < rounds; ++round) {

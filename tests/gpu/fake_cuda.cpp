@@ -27,7 +27,6 @@ int cuOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, void*, int, Size) {
 int cuStreamCreate(void**, unsigned) { return 0; }
 int cuStreamDestroy_v2(void*) { return 0; }
 int cuStreamQuery(void*) { return fake_query; }
-int cuStreamSynchronize(void*) { return 0; }
 int cuMemAlloc_v2(void** address, Size bytes) {
   if (fake_allocation == 0) *address = std::malloc(bytes);
   return fake_allocation;

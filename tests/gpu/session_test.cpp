@@ -16,11 +16,11 @@ std::span<const Image> images<Pendulum>() {
 
 namespace {
 
-/// A driver whose kernels never end.
+/// A driver whose kernels do nothing.
 class GpuErrors : public ::testing::Test {
  protected:
   GpuErrors() {
-    fake_query = 600, fake_allocation = 0;
+    fake_query = fake_allocation = 0;
     const int layout[] = {sizeof(Pendulum), alignof(Pendulum), sizeof(Arguments<Pendulum>), 1};
     std::copy_n(layout, 4, fake_layout);
   }
@@ -42,6 +42,7 @@ TEST_F(GpuErrors, AProblemThatComputesSomethingElseIsRefused) {
 TEST_F(GpuErrors, ASolveEndsWithItsDeadlineAndWhenTheDeviceIsLost) {
   GpuSolver<Pendulum, MppiOptions> solver(options_);
   ProblemEvaluator<Pendulum> evaluator{{}};
+  fake_query = 600;
   EXPECT_EQ(solver.solve(evaluator, {.deadline = 0.01}).status, Status::deadline);
   EXPECT_EQ(solver.session().fault(), "");
   fake_query = 700;
@@ -49,6 +50,18 @@ TEST_F(GpuErrors, ASolveEndsWithItsDeadlineAndWhenTheDeviceIsLost) {
   EXPECT_EQ(solver.session().fault(), "GPU: kernel: fake failure");
   EXPECT_EQ(solver.solve(evaluator, {}).status, Status::degenerate);
   EXPECT_EQ(solver.result().inputs.size(), 10u);
+}
+
+TEST_F(GpuErrors, NothingWaitsForADeviceThatNeverEnds) {
+  const auto start = std::chrono::steady_clock::now();
+  {
+    GpuSolver<Pendulum, MppiOptions> solver(options_);
+    fake_query = 600;
+    solver.reset(1);
+    EXPECT_EQ(solver.session().fault(), "GPU: kernel: fake failure");
+    EXPECT_THROW(solver.clone(), DeviceError);
+  }
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 10);
 }
 
 }  // namespace

@@ -148,12 +148,12 @@ TEST(Field, GivesDualNumbersItsGradientAndTellsOfItsKinks) {
   const auto here = field.value_and_gradient(2.1, 1.3);
   const auto end = expand_terminal_cost(Walker{field}, {2.1, 1.3});
   EXPECT_DOUBLE_EQ(end.value, here.value);
-  EXPECT_NEAR(end.state_gradient[0], here.dx, 1e-12);
-  EXPECT_NEAR(end.state_gradient[1], here.dy, 1e-12);
+  EXPECT_NEAR(end.gradient[0], here.dx, 1e-12);
+  EXPECT_NEAR(end.gradient[1], here.dy, 1e-12);
   EXPECT_FALSE(l.kink);
   const double h = 1e-6;
   const auto right = field.value_and_gradient(2.1 + h, 1.3), left = field.value_and_gradient(2.1 - h, 1.3);
-  EXPECT_NEAR(end.state_hessian[0][1], (right.dy - left.dy) / (2 * h), 1e-5);
+  EXPECT_NEAR(end.hessian[0][1], (right.dy - left.dy) / (2 * h), 1e-5);
   const Field level(FieldGeometry{2, 2, 1, {}}, std::vector<double>{0, 1, 2, 3});
   EXPECT_TRUE(linearize(Walker{level}, {0.5, 0.9}, {{0.0, 0.0}}).kink) << "on a line between cells";
 }

@@ -40,22 +40,6 @@ TEST(Controller, RepeatsThePlanWhereTheStateIsNotFinite) {
   EXPECT_EQ(second.states[0].position, 0.5);
 }
 
-TEST(Controller, HasAnAnswerBeforeTheFirstSolve) {
-  Mppi controller{DoubleIntegrator{}, {.horizon = 5}};
-  const auto plan = controller.solve({0, std::numeric_limits<double>::infinity()});
-  EXPECT_EQ(plan.status, Status::non_finite_state);
-  ASSERT_EQ(plan.inputs.size(), 5u);
-  EXPECT_EQ(plan.inputs[0][0], 0.0);
-  EXPECT_TRUE(plan.stats.weights.empty());
-}
-
-TEST(Controller, TakesParametersThatChangeBetweenSolves) {
-  Mppi controller{DoubleIntegrator{}, {.horizon = 5, .input_min = {-2}, .input_max = {2}}};
-  controller.problem().dt = 0.2;
-  const auto plan = controller.solve({0.5, 1.0});
-  EXPECT_DOUBLE_EQ(plan.states[1].position, 0.7);
-}
-
 /// The problem of the copy is its own: the original's changes do not reach it, and both go on with the same
 /// bits as controllers that were never copied.
 template <class Make>

@@ -1,7 +1,7 @@
 #include "solvers/golden_json.hpp"
 #include "solvers/methods/guides.hpp"
 #include "solvers/methods/stein.hpp"
-#include "solvers/published/published_stein.hpp"
+#include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::testing {

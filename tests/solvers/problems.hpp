@@ -61,7 +61,7 @@ struct DoubleIntegrator {
   }
 };
 
-/// A batch evaluator made of any function of a control sequence: double(std::span<const float> u).
+/// An evaluator made of a function of a batch and a sample, which returns the cost and whether it collides.
 template <class Function>
 class FunctionEvaluator final : public BatchEvaluator {
  public:
@@ -82,5 +82,15 @@ class FunctionEvaluator final : public BatchEvaluator {
   int inputs_;
   Function function_;
 };
+
+/// An evaluator of sequences of one input, whose cost is the sum of cost(input, step) over the steps.
+template <class Cost>
+auto sum_over_steps(Cost cost) {
+  return FunctionEvaluator(1, [cost](const SequenceBatch& batch, int k) {
+    double sum = 0;
+    for (int t = 0; t < batch.steps(); ++t) sum += cost(static_cast<double>(batch.at(t, 0, k)), t);
+    return std::pair(sum, false);
+  });
+}
 
 }  // namespace slalom::testing

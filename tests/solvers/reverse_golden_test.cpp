@@ -1,6 +1,6 @@
 #include "solvers/golden_json.hpp"
 #include "solvers/methods/reverse_weights.hpp"
-#include "solvers/published/published_rejection.hpp"
+#include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::testing {

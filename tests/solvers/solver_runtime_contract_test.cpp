@@ -156,14 +156,7 @@ TEST_P(SolverRuntimeContract, WarmStartFollowsTheClock) {
     set(o, "variance", 0.2);
   });
   // Wants u[t] = 0.1 t at first; broken costs then show the fallback, which is the shifted solution.
-  const auto ramp = FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
-    double cost = 0;
-    for (int t = 0; t < batch.steps(); ++t) {
-      const double error = static_cast<double>(batch.at(t, 0, k)) - 0.1 * t;
-      cost += 100 * error * error;
-    }
-    return std::pair(cost, false);
-  });
+  const auto ramp = sum_over_steps([](double u, int t) { return 100 * std::pow(u - 0.1 * t, 2); });
   for (int i = 0; i < 10; ++i) solver->solve(ramp, {});
   const auto last = solver->solve(ramp, {}).inputs;
   const std::vector<float> before(last.begin(), last.end());

@@ -1,6 +1,6 @@
 #include "solvers/golden_json.hpp"
 #include "solvers/kernels/kernels.hpp"
-#include "solvers/methods/mirror_descent.hpp"
+#include "solvers/methods/reverse_weights.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::testing {

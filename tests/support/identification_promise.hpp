@@ -5,7 +5,7 @@
 #include "slalom/vehicle/model/identification.hpp"
 #include "support/promise.hpp"
 
-/// What an identification of any samples promises.
+/// The promise of an identification for any samples.
 namespace slalom::testing {
 
 /// Throws Finding unless all estimates are finite and no deviation is negative.

@@ -50,7 +50,7 @@ struct Mppi : GpuController<P, MppiOptions> {
   using GpuController<P, MppiOptions>::GpuController;
 };
 template <class P>
-Mppi(P, MppiOptions) -> Mppi<P>;
+Mppi(P, MppiOptions = {}) -> Mppi<P>;
 
 /// `svg_mppi` on a GPU.
 template <class P>
@@ -58,6 +58,6 @@ struct SvgMppi : GpuController<P, SvgMppiOptions> {
   using GpuController<P, SvgMppiOptions>::GpuController;
 };
 template <class P>
-SvgMppi(P, SvgMppiOptions) -> SvgMppi<P>;
+SvgMppi(P, SvgMppiOptions = {}) -> SvgMppi<P>;
 
 }  // namespace slalom::gpu

@@ -73,7 +73,7 @@ class Session {
   bool launch(void* kernel, int blocks, int threads, int shared_bytes, const void* argument) noexcept;
   /// Whether the device still works; asks it, which takes some microseconds.
   bool alive() noexcept;
-  /// Waits for everything that is queued.
+  /// Waits for everything that is queued, for a second at most: then the device counts as failed.
   bool synchronize() noexcept;
   /// The first failure; empty if there is none.
   const std::string& fault() const noexcept { return fault_; }

@@ -23,8 +23,8 @@ constexpr int enough_groups = 128;
 /// Samples from which a thread draws its own sample.
 constexpr int fused_samples = 32768;
 
-/// How the samples are spread over blocks. A function of the problem's size alone, so that the results do not
-/// depend on the device.
+/// The distribution of the samples over blocks. It is a function of the problem's size alone, so that the
+/// results do not depend on the device.
 struct Shape {
   bool fused = false;  ///< each thread draws and rolls out its own sample
   int tile = 32;       ///< samples of a tile

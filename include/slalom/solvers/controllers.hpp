@@ -32,11 +32,7 @@ struct Mppi : detail::ControllerOf<P, MppiOptions> {
   using detail::ControllerOf<P, MppiOptions>::ControllerOf;
 };
 template <class P>
-Mppi(P) -> Mppi<P>;
-template <class P>
-Mppi(P, MppiOptions) -> Mppi<P>;
-template <class P>
-Mppi(P, MppiOptions, std::shared_ptr<ThreadPool>) -> Mppi<P>;
+Mppi(P, MppiOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> Mppi<P>;
 
 /// Solves its problem with `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024).
 template <class P>
@@ -44,11 +40,7 @@ struct SvgMppi : detail::ControllerOf<P, SvgMppiOptions> {
   using detail::ControllerOf<P, SvgMppiOptions>::ControllerOf;
 };
 template <class P>
-SvgMppi(P) -> SvgMppi<P>;
-template <class P>
-SvgMppi(P, SvgMppiOptions) -> SvgMppi<P>;
-template <class P>
-SvgMppi(P, SvgMppiOptions, std::shared_ptr<ThreadPool>) -> SvgMppi<P>;
+SvgMppi(P, SvgMppiOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> SvgMppi<P>;
 
 /// Solves its problem with `reverse_mppi`: mirror descent on the reverse KL divergence with sample rejection
 /// (Kobayashi and Fukumoto 2022).
@@ -57,11 +49,7 @@ struct ReverseMppi : detail::ControllerOf<P, ReverseMppiOptions> {
   using detail::ControllerOf<P, ReverseMppiOptions>::ControllerOf;
 };
 template <class P>
-ReverseMppi(P) -> ReverseMppi<P>;
-template <class P>
-ReverseMppi(P, ReverseMppiOptions) -> ReverseMppi<P>;
-template <class P>
-ReverseMppi(P, ReverseMppiOptions, std::shared_ptr<ThreadPool>) -> ReverseMppi<P>;
+ReverseMppi(P, ReverseMppiOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> ReverseMppi<P>;
 
 /// Solves its problem with `sv_mpc`: Stein variational MPC (Lambert et al., CoRL 2020).
 template <class P>
@@ -69,11 +57,7 @@ struct SvMpc : detail::ControllerOf<P, SvMpcOptions> {
   using detail::ControllerOf<P, SvMpcOptions>::ControllerOf;
 };
 template <class P>
-SvMpc(P) -> SvMpc<P>;
-template <class P>
-SvMpc(P, SvMpcOptions) -> SvMpc<P>;
-template <class P>
-SvMpc(P, SvMpcOptions, std::shared_ptr<ThreadPool>) -> SvMpc<P>;
+SvMpc(P, SvMpcOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> SvMpc<P>;
 
 /// Solves its problem with `cem`: the cross-entropy method.
 template <class P>
@@ -81,11 +65,7 @@ struct Cem : detail::ControllerOf<P, CemOptions> {
   using detail::ControllerOf<P, CemOptions>::ControllerOf;
 };
 template <class P>
-Cem(P) -> Cem<P>;
-template <class P>
-Cem(P, CemOptions) -> Cem<P>;
-template <class P>
-Cem(P, CemOptions, std::shared_ptr<ThreadPool>) -> Cem<P>;
+Cem(P, CemOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> Cem<P>;
 
 /// Solves its problem with `icem`: the improved cross-entropy method.
 template <class P>
@@ -93,11 +73,7 @@ struct Icem : detail::ControllerOf<P, IcemOptions> {
   using detail::ControllerOf<P, IcemOptions>::ControllerOf;
 };
 template <class P>
-Icem(P) -> Icem<P>;
-template <class P>
-Icem(P, IcemOptions) -> Icem<P>;
-template <class P>
-Icem(P, IcemOptions, std::shared_ptr<ThreadPool>) -> Icem<P>;
+Icem(P, IcemOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> Icem<P>;
 
 /// Solves its problem with `dial_mpc`: several updates of MPPI with annealed noise.
 template <class P>
@@ -105,10 +81,6 @@ struct DialMpc : detail::ControllerOf<P, DialMpcOptions> {
   using detail::ControllerOf<P, DialMpcOptions>::ControllerOf;
 };
 template <class P>
-DialMpc(P) -> DialMpc<P>;
-template <class P>
-DialMpc(P, DialMpcOptions) -> DialMpc<P>;
-template <class P>
-DialMpc(P, DialMpcOptions, std::shared_ptr<ThreadPool>) -> DialMpc<P>;
+DialMpc(P, DialMpcOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> DialMpc<P>;
 
 }  // namespace slalom

@@ -45,7 +45,8 @@ class ProblemDerivatives final : public DifferentiableProblem {
   void step(int k, std::span<const double> x, std::span<const double> u,
             std::span<double> next) noexcept override {
     const State now = to_state(x);
-    copy_state(detail::step<P, double>(*problem_, now, look_up(now), to_inputs(u), k), next);
+    detail::scalars_of<P, double>(detail::step<P, double>(*problem_, now, look_up(now), to_inputs(u), k),
+                                  next.data());
   }
 
   double cost(std::span<const double> x, std::span<const double> inputs) noexcept override {
@@ -64,39 +65,25 @@ class ProblemDerivatives final : public DifferentiableProblem {
     const State x = to_state(at.state);
     const Inputs u = to_inputs(at.inputs);
     const auto l = linearize(*problem_, x, u, k);
-    const auto cost = expand_stage_cost(*problem_, x, u, k);
     std::copy_n(l.state_jacobian[0], nx * nx, at.state_jacobian.begin());
     std::copy_n(l.input_jacobian[0], nx * nu, at.input_jacobian.begin());
-    std::copy_n(cost.state_gradient, nx, at.gradient.begin());
-    std::copy_n(cost.input_gradient, nu, at.gradient.begin() + nx);
-    detail::copy_hessian(cost, at.hessian.data());
-    return l.kink || cost.kink;
+    return copy(expand_stage_cost(*problem_, x, u, k), at) || l.kink;
   }
 
   bool expand_end(const FeedbackGains::Terminal& at) noexcept override {
-    const auto cost = expand_terminal_cost(*problem_, to_state(at.state));
-    std::copy_n(cost.state_gradient, nx, at.gradient.begin());
-    std::copy_n(cost.state_hessian[0], nx * nx, at.hessian.begin());
-    return cost.kink;
-  }
-
-  /// Writes the scalars of a state.
-  static void copy_state(const State& x, std::span<double> to) noexcept {
-    double values[nx];
-    detail::scalars_of<P, double>(x, values);
-    std::copy_n(values, nx, to.begin());
+    return copy(expand_terminal_cost(*problem_, to_state(at.state)), at);
   }
 
  private:
-  static State to_state(std::span<const double> x) noexcept {
-    double values[nx];
-    std::copy_n(x.begin(), nx, values);
-    return detail::state_of<P, double>(values);
+  template <int N>
+  static bool copy(const CostExpansion<N>& cost, const auto& to) noexcept {
+    std::copy_n(cost.gradient, N, to.gradient.begin());
+    std::copy_n(cost.hessian[0], N * N, to.hessian.begin());
+    return cost.kink;
   }
+  static State to_state(std::span<const double> x) noexcept { return detail::state_of<P, double>(x.data()); }
   static Inputs to_inputs(std::span<const double> u) noexcept {
-    Inputs inputs;
-    std::copy_n(u.begin(), nu, inputs.value);
-    return inputs;
+    return detail::inputs_of<P, double>(u.data());
   }
   auto look_up(const State& x) const noexcept { return detail::look_up<P, double>(*problem_, x); }
 

@@ -33,7 +33,6 @@ class Feedback {
   static_assert(detail::Controlled<P>::has_problem && detail::Controlled<P>::predicts,
                 "slalom: feedback needs the problem and the predicted states of the controller's evaluator");
   using Problem = std::remove_cvref_t<decltype(std::declval<const Controller<P>&>().problem())>;
-  using Derivatives = ProblemDerivatives<Problem>;
   static constexpr int nx = detail::state_size<Problem>, nu = Problem::inputs;
 
  public:
@@ -50,11 +49,11 @@ class Feedback {
     const Problem& problem = controller.problem();
     for (int k = 0; k < steps(); ++k) {
       const auto to = gains_.step(k);
-      Derivatives::copy_state(plan.states[static_cast<std::size_t>(k)], to.state);
+      detail::scalars_of<Problem, double>(plan.states[static_cast<std::size_t>(k)], to.state.data());
       std::copy_n(plan.inputs[static_cast<std::size_t>(k)].value, nu, to.inputs.begin());
     }
-    Derivatives::copy_state(plan.states.back(), gains_.terminal().state);
-    Derivatives derivatives(problem);
+    detail::scalars_of<Problem, double>(plan.states.back(), gains_.terminal().state.data());
+    ProblemDerivatives derivatives(problem);
     kink_ = gains_.expand(derivatives);
     const double step = detail::time_step_of(problem);
     return gains_.solve(step > 0 ? step : 1);

@@ -99,7 +99,6 @@ class IterativeLqr {
 /// on the rates of inputs are not applied.
 template <Problem P>
 class Ilqr {
-  using Derivatives = ProblemDerivatives<P>;
   static constexpr int nx = detail::state_size<P>, nu = P::inputs;
 
  public:
@@ -123,7 +122,7 @@ class Ilqr {
     if (step > 0 && elapsed > 0) lqr_.shift(elapsed / step);
     double start[nx];
     detail::scalars_of<P, double>(x, start);
-    Derivatives derivatives(problem);
+    ProblemDerivatives derivatives(problem);
     std::span<const double> values = lqr_.improve(derivatives, start);
     for (Inputs& u : inputs_) {
       std::copy_n(values.begin(), nu, u.value);
@@ -156,14 +155,9 @@ class Ilqr {
 };
 
 template <Problem P>
-Ilqr(const P&, int) -> Ilqr<P>;
-template <Problem P>
-Ilqr(const P&, int, IlqrOptions) -> Ilqr<P>;
+Ilqr(const P&, int, IlqrOptions = {}) -> Ilqr<P>;
 template <class C>
-Ilqr(const Controller<C>&)
-    -> Ilqr<std::remove_cvref_t<decltype(std::declval<const Controller<C>&>().problem())>>;
-template <class C>
-Ilqr(const Controller<C>&, IlqrOptions)
+Ilqr(const Controller<C>&, IlqrOptions = {})
     -> Ilqr<std::remove_cvref_t<decltype(std::declval<const Controller<C>&>().problem())>>;
 
 }  // namespace slalom

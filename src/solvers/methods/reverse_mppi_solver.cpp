@@ -3,10 +3,9 @@
 #include <limits>
 
 #include "slalom/solvers/reverse_mppi_options.hpp"
-#include "solvers/methods/mirror_descent.hpp"
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
-#include "solvers/published/published_rejection.hpp"
+#include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 namespace slalom {

@@ -5,7 +5,7 @@
 #include "slalom/solvers/sv_mpc_options.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/stein.hpp"
-#include "solvers/published/published_stein.hpp"
+#include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"
 #include "solvers/sampling/spline.hpp"
 

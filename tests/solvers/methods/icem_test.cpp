@@ -15,14 +15,8 @@ namespace {
 
 /// A cost with many local minima.
 auto rough() {
-  return testing::FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
-    double cost = 0;
-    for (int t = 0; t < batch.steps(); ++t) {
-      const auto v = static_cast<double>(batch.at(t, 0, k));
-      cost += (v - 1) * (v - 1) + 2 * std::sin(9 * v + t) * std::sin(9 * v + t);
-    }
-    return std::pair(cost, false);
-  });
+  return testing::sum_over_steps(
+      [](double u, int t) { return (u - 1) * (u - 1) + 2 * std::sin(9 * u + t) * std::sin(9 * u + t); });
 }
 
 std::vector<float> sample(const SequenceBatch& batch, int k) {
@@ -70,9 +64,9 @@ TEST(Icem, ElitesStayInTheNextSolve) {
 
 TEST(Icem, ElitesAreTheBestSamplesAndMoveWithTheTime) {
   const auto evaluator = rough();
-  const auto solver = make_solver(
-      IcemOptions{.horizon = 6, .samples = 50, .iterations = 1, .elite_share = 0.1, .kept_elite_share = 0.4},
-      1);
+  const IcemOptions options{
+      .horizon = 6, .samples = 50, .iterations = 1, .elite_share = 0.1, .kept_elite_share = 0.4};
+  const auto solver = make_solver(options, 1);
   const SolveResult& result = solver->solve(evaluator, {});
   std::vector<int> order(50);
   std::iota(order.begin(), order.end(), 0);
@@ -89,9 +83,7 @@ TEST(Icem, ElitesAreTheBestSamplesAndMoveWithTheTime) {
   EXPECT_EQ(sample(*result.samples, 49), best[0]);
   EXPECT_EQ(sample(*result.samples, 48), best[1]);
   solver->reset(0);
-  const auto again = make_solver(
-      IcemOptions{.horizon = 6, .samples = 50, .iterations = 1, .elite_share = 0.1, .kept_elite_share = 0.4},
-      1);
+  const auto again = make_solver(options, 1);
   const std::vector<float> fresh = sample(*again->solve(evaluator, {}).samples, 49);
   EXPECT_EQ(sample(*solver->solve(evaluator, {}).samples, 49), fresh) << "a reset forgets the elites";
 }

@@ -23,14 +23,7 @@ const char* const taking[] = {"mppi", "svg_mppi", "cem", "icem", "dial_mpc"};
 
 /// The cost is least, 0, where every input is 3: far from the samples of `make`.
 auto far_away() {
-  return testing::FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
-    double cost = 0;
-    for (int t = 0; t < batch.steps(); ++t) {
-      const double distance = static_cast<double>(batch.at(t, 0, k)) - 3;
-      cost += 100 * distance * distance;
-    }
-    return std::pair(cost, false);
-  });
+  return testing::sum_over_steps([](double u, int) { return 100 * (u - 3) * (u - 3); });
 }
 
 std::unique_ptr<Solver> make(const char* method) {

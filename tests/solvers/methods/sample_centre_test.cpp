@@ -7,7 +7,7 @@
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/problems.hpp"
 
-/// Where `svg_mppi` draws its samples: docs/algorithms/svg-mppi.md.
+/// The centre of the samples of `svg_mppi`: docs/algorithms/svg-mppi.md.
 namespace slalom {
 namespace {
 
@@ -16,14 +16,7 @@ constexpr double stiffness = 0.5, wanted = 3, temperature = 0.4;
 
 /// The cost 0.5 stiffness (v - wanted)^2, summed over the steps.
 auto spring() {
-  return testing::FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
-    double cost = 0;
-    for (int t = 0; t < batch.steps(); ++t) {
-      const double error = static_cast<double>(batch.at(t, 0, k)) - wanted;
-      cost += 0.5 * stiffness * error * error;
-    }
-    return std::pair(cost, false);
-  });
+  return testing::sum_over_steps([](double u, int) { return 0.5 * stiffness * (u - wanted) * (u - wanted); });
 }
 
 SvgMppiOptions options(SampleCentre centre) {
@@ -96,8 +89,7 @@ TEST(FewSamples, AreReportedWhenTheyStay) {
     EXPECT_FALSE(result.has_few_samples());
   }
   EXPECT_TRUE(solver->solve(evaluator, {}).has_few_samples());
-  const auto flat =
-      testing::FunctionEvaluator(1, [](const SequenceBatch&, int) { return std::pair(0.0, false); });
+  const auto flat = testing::sum_over_steps([](double, int) { return 0.0; });
   EXPECT_FALSE(solver->solve(flat, {}).has_few_samples());
   solver->solve(evaluator, {});
   solver->reset(1);

@@ -42,16 +42,27 @@ Dual<T, N> step_function(const Dual<T, N>& x, double value, bool jumps) {
 
 }  // namespace detail
 
-/// Sine of an angle, rad.
-template <class T, int N>
-Dual<T, N> sin(const Dual<T, N>& x) {
-  return detail::chain(x, sin(x.value), cos(x.value));
-}
-/// Cosine of an angle, rad.
-template <class T, int N>
-Dual<T, N> cos(const Dual<T, N>& x) {
-  return detail::chain(x, cos(x.value), -sin(x.value));
-}
+/// Functions of one number: value and derivative at x.value, of which `r` is the value.
+#define SLALOM_DUAL_FUNCTION(name, slope) \
+  template <class T, int N>               \
+  Dual<T, N> name(const Dual<T, N>& a) {  \
+    const T x = a.value, r = name(x);     \
+    return detail::chain(a, r, slope);    \
+  }
+SLALOM_DUAL_FUNCTION(sin, cos(x))
+SLALOM_DUAL_FUNCTION(cos, -sin(x))
+SLALOM_DUAL_FUNCTION(tan, T(1.0) + r * r)
+SLALOM_DUAL_FUNCTION(exp, r)
+SLALOM_DUAL_FUNCTION(exp2, T(0.6931471805599453) * r)
+SLALOM_DUAL_FUNCTION(log, T(1.0) / x)
+SLALOM_DUAL_FUNCTION(log1p, T(1.0) / (T(1.0) + x))
+SLALOM_DUAL_FUNCTION(sinh, cosh(x))
+SLALOM_DUAL_FUNCTION(cosh, sinh(x))
+SLALOM_DUAL_FUNCTION(tanh, T(1.0) - r * r)
+SLALOM_DUAL_FUNCTION(atan, T(1.0) / (T(1.0) + x * x))
+SLALOM_DUAL_FUNCTION(reciprocal_sqrt, T(-0.5) * r / x)
+#undef SLALOM_DUAL_FUNCTION
+
 /// Sine and cosine of an angle, rad.
 template <class T, int N>
 void sin_cos(const Dual<T, N>& x, Dual<T, N>& s, Dual<T, N>& c) {
@@ -62,55 +73,6 @@ void sin_cos(const Dual<T, N>& x, Dual<T, N>& s, Dual<T, N>& c) {
 template <class T, int N>
 void sin_cos_half_turn(const Dual<T, N>& x, Dual<T, N>& s, Dual<T, N>& c) {
   sin_cos(x, s, c);
-}
-/// Tangent of an angle, rad.
-template <class T, int N>
-Dual<T, N> tan(const Dual<T, N>& x) {
-  const T t = tan(x.value);
-  return detail::chain(x, t, T(1.0) + t * t);
-}
-/// The exponential e^x.
-template <class T, int N>
-Dual<T, N> exp(const Dual<T, N>& x) {
-  const T e = exp(x.value);
-  return detail::chain(x, e, e);
-}
-/// 2^x.
-template <class T, int N>
-Dual<T, N> exp2(const Dual<T, N>& x) {
-  const T e = exp2(x.value);
-  return detail::chain(x, e, T(0.6931471805599453) * e);
-}
-/// Natural logarithm.
-template <class T, int N>
-Dual<T, N> log(const Dual<T, N>& x) {
-  return detail::chain(x, log(x.value), T(1.0) / x.value);
-}
-/// log(1 + x), accurate near 0 as well.
-template <class T, int N>
-Dual<T, N> log1p(const Dual<T, N>& x) {
-  return detail::chain(x, log1p(x.value), T(1.0) / (T(1.0) + x.value));
-}
-/// Hyperbolic sine.
-template <class T, int N>
-Dual<T, N> sinh(const Dual<T, N>& x) {
-  return detail::chain(x, sinh(x.value), cosh(x.value));
-}
-/// Hyperbolic cosine.
-template <class T, int N>
-Dual<T, N> cosh(const Dual<T, N>& x) {
-  return detail::chain(x, cosh(x.value), sinh(x.value));
-}
-/// Hyperbolic tangent.
-template <class T, int N>
-Dual<T, N> tanh(const Dual<T, N>& x) {
-  const T t = tanh(x.value);
-  return detail::chain(x, t, T(1.0) - t * t);
-}
-/// Arc tangent, rad.
-template <class T, int N>
-Dual<T, N> atan(const Dual<T, N>& x) {
-  return detail::chain(x, atan(x.value), T(1.0) / (T(1.0) + x.value * x.value));
 }
 /// Arc sine, rad.
 template <class T, int N>
@@ -136,12 +98,6 @@ Dual<T, N> sqrt(const Dual<T, N>& x) {
     return zero;
   }
   return detail::chain(x, root, T(0.5) / root);
-}
-/// 1 / sqrt(x).
-template <class T, int N>
-Dual<T, N> reciprocal_sqrt(const Dual<T, N>& x) {
-  const T r = reciprocal_sqrt(x.value);
-  return detail::chain(x, r, T(-0.5) * r / x.value);
 }
 /// Cube root.
 template <class T, int N>

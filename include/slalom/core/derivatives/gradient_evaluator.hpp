@@ -76,13 +76,14 @@ class GradientEvaluator final : public BatchEvaluator, private CostGradient {
     };
     State x = start_;
     for (int k = 0; k < steps; ++k) {
-      put_state(x, workspace, k);
+      detail::scalars_of<P, double>(x, &workspace[static_cast<std::size_t>(k * nx)]);
       x = detail::step<P, double>(problem(), x, detail::look_up<P, double>(problem(), x), inputs_of(k), k);
     }
     double slope[nx];
     bool kink = terminal_gradient(x, slope), finite = true;
     for (int k = steps - 1; k >= 0; --k) {
-      const auto l = linearize(problem(), state_at(workspace, k), inputs_of(k), k);
+      const State at = detail::state_of<P, double>(&workspace[static_cast<std::size_t>(k * nx)]);
+      const auto l = linearize(problem(), at, inputs_of(k), k);
       kink = kink || l.kink;
       for (int i = 0; i < nu; ++i) {
         double sum = l.input_gradient[i];
@@ -107,28 +108,14 @@ class GradientEvaluator final : public BatchEvaluator, private CostGradient {
     using T = Dual<double, nx>;
     detail::check_differentiable<P, T>();
     double values[nx];
-    detail::scalars_of<P, double>(x, values);
     T scalars[nx];
-    for (int i = 0; i < nx; ++i) {
-      scalars[i] = T(values[i]);
-      scalars[i].derivative[i] = 1;
-    }
+    detail::scalars_of<P, double>(x, values);
+    detail::seed_directions(values, scalars);
     const auto state = detail::state_of<P, T>(scalars);
     const T cost = detail::total_of(
         detail::terminal_cost<P, T>(problem(), state, detail::look_up<P, T>(problem(), state)));
     std::copy_n(cost.derivative, nx, slope);
     return cost.kink;
-  }
-
-  static void put_state(const State& x, std::span<double> workspace, int k) noexcept {
-    double values[nx];
-    detail::scalars_of<P, double>(x, values);
-    std::copy_n(values, nx, workspace.begin() + k * nx);
-  }
-  static State state_at(std::span<const double> workspace, int k) noexcept {
-    double values[nx];
-    std::copy_n(workspace.begin() + k * nx, nx, values);
-    return detail::state_of<P, double>(values);
   }
 
   ProblemEvaluator<P> batch_;

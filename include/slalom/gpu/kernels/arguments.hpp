@@ -9,7 +9,7 @@ namespace slalom::gpu {
 constexpr int most_inputs = 16;
 constexpr int block_threads = 256;  ///< threads of a block of any kernel
 
-/// How many values a rollout starts from: the state, and the previous input where rates are limited.
+/// Number of values that a rollout starts from: the state, and the previous input where rates are limited.
 template <class P>
 constexpr int start_size = detail::state_size<P> + (detail::limits_rates<P> ? P::inputs : 0);
 
