@@ -87,9 +87,8 @@ std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol p
     environment->path.push_back({point.x, point.y, point.yaw, point.speed});
   }
   maps::check_reference_path(environment->path);
-  environment->track = std::make_shared<const sim::Track>(
-      environment->course.map, sim::LapPath(points),
-      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = rules_of(protocol).outside_is_wall()});
+  environment->track = std::make_shared<const sim::Track>(environment->course.map, sim::LapPath(points),
+                                                          rules_of(protocol).outside_is_wall());
   environment->obstacle_room = room_beside(*environment->track, environment->course.obstacle_path);
   find_start(*environment);
   environment->timeout = environment->course.timeout.value_or(0);
@@ -99,7 +98,7 @@ std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol p
 std::shared_ptr<const Environment> load_environment(const std::filesystem::path& folder, Protocol protocol,
                                                     const std::vector<std::filesystem::path>& course_roots) {
   const LapRules& rules = rules_of(protocol);
-  vehicle::Course course = vehicle::load_course(folder, rules.map_reading());
+  vehicle::Course course = vehicle::load_course(folder, rules.map_rule());
   vehicle::move_to_local_origin(course);
   auto environment = make_environment(std::move(course), protocol);
   rules.complete(*environment, folder, course_roots);

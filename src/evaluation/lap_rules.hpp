@@ -20,7 +20,7 @@ class LapRules {
   virtual ~LapRules() = default;
 
   /// The way images of maps are read.
-  virtual maps::MapReading map_reading() const = 0;
+  virtual maps::MapRule map_rule() const noexcept = 0;
   /// Whether a car that leaves the map has hit a wall.
   virtual bool outside_is_wall() const noexcept = 0;
   /// Sets start and timeout from the table of known courses, if the protocol prescribes them.
@@ -39,9 +39,9 @@ class LapRules {
 
   /// Returns the places of the parked cars of a lap, which have the size of `car`. Throws std::runtime_error
   /// if there is no room for them.
-  virtual std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
-                                                      std::uint64_t seed, const maps::Point& start,
-                                                      const sim::CarParameters& car) const = 0;
+  virtual std::vector<maps::Pose> place_obstacles(const Environment& environment, int obstacles,
+                                                  std::uint64_t seed, const maps::Point& start,
+                                                  const sim::CarParameters& car) const = 0;
 
   /// The scan as the planner gets it.
   virtual maps::LaserScanView scan(const sim::Observation& seen, const sim::World& world) const noexcept = 0;

@@ -29,8 +29,8 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
   rules.check(settings);
   if (settings.hardware) {
     validate_options(*settings.hardware, "hardware");
-    settings.hardware->wheels.validate();
-    settings.hardware->inertial.validate();
+    validate_options(settings.hardware->wheels, "wheel_odometry");
+    validate_options(settings.hardware->inertial, "imu");
     settings.hardware->localiser.validate();
   }
   require(settings.opponents == 0 || closed,

@@ -12,13 +12,9 @@ namespace {
 std::vector<maps::Pose> place_obstacles(const LapSetup& setup, std::uint64_t lap_seed) try {
   const maps::Pose start = setup.start();
   const LapSettings& settings = setup.settings;
-  std::vector<maps::Pose> poses;
-  for (const sim::Placement& each :
-       rules_of(setup.environment->protocol)
-           .place_obstacles(*setup.environment, settings.obstacles, settings.layout.value_or(lap_seed),
-                            {start.x, start.y}, sim::parameters_of(settings.car)))
-    poses.push_back(each.pose);
-  return poses;
+  return rules_of(setup.environment->protocol)
+      .place_obstacles(*setup.environment, settings.obstacles, settings.layout.value_or(lap_seed),
+                       {start.x, start.y}, sim::parameters_of(settings.car));
 } catch (const std::runtime_error& error) {
   throw std::runtime_error("course " + setup.environment->course.name + ": " + error.what() +
                            "; the course may be too narrow to pass a parked car");
@@ -84,8 +80,7 @@ void add_opponents(CarDrive& drive, const LapSetup& setup, std::uint64_t seed,
     }
     if (!line) line = std::make_shared<const sim::RacingLine>(path, *setup.environment->track, car, parked);
     const RandomKey key{solver_seed(seed, "opponents"), static_cast<std::uint64_t>(i)};
-    drive.drivers.emplace_back(
-        number, sim::RacingOpponent(line, number, {.driver = driver, .speed_share = share}, key));
+    drive.drivers.emplace_back(number, sim::RacingOpponent(line, number, driver, share, key));
   }
 }
 

@@ -14,11 +14,7 @@ constexpr double control_period_s = 0.01;  // one simulation step per command
 
 class PublishedRules final : public LapRules {
  public:
-  maps::MapReading map_reading() const override {
-    maps::MapReading reading;
-    reading.rule = maps::MapRule::grey_threshold;
-    return reading;
-  }
+  maps::MapRule map_rule() const noexcept override { return maps::MapRule::grey_threshold; }
   bool outside_is_wall() const noexcept override { return false; }
   void complete(Environment& environment, const std::filesystem::path& folder,
                 const std::vector<std::filesystem::path>& course_roots) const override {
@@ -43,9 +39,8 @@ class PublishedRules final : public LapRules {
   }
   double control_period(const vehicle::Configuration&) const noexcept override { return control_period_s; }
 
-  std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
-                                              std::uint64_t seed, const maps::Point&,
-                                              const sim::CarParameters&) const override {
+  std::vector<maps::Pose> place_obstacles(const Environment& environment, int obstacles, std::uint64_t seed,
+                                          const maps::Point&, const sim::CarParameters&) const override {
     return sim::place_at_random(environment.course.obstacle_path, obstacles, seed);
   }
 

@@ -9,7 +9,7 @@ namespace {
 
 class StandardRules final : public LapRules {
  public:
-  maps::MapReading map_reading() const override { return {}; }
+  maps::MapRule map_rule() const noexcept override { return maps::MapRule::map_server; }
   bool outside_is_wall() const noexcept override { return true; }
   void complete(Environment&, const std::filesystem::path&,
                 const std::vector<std::filesystem::path>&) const override {}
@@ -48,11 +48,11 @@ class StandardRules final : public LapRules {
     return configuration.planner.control_period;
   }
 
-  std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
-                                              std::uint64_t seed, const maps::Point& start,
-                                              const sim::CarParameters& car) const override {
+  std::vector<maps::Pose> place_obstacles(const Environment& environment, int obstacles, std::uint64_t seed,
+                                          const maps::Point& start,
+                                          const sim::CarParameters& car) const override {
     return sim::place_apart(environment.course.obstacle_path, environment.obstacle_room, obstacles, seed,
-                            start, sim::placement_of(car));
+                            start, car);
   }
 
   maps::LaserScanView scan(const sim::Observation& seen, const sim::World&) const noexcept override {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 namespace slalom::maps {
 namespace {
@@ -19,15 +20,23 @@ double intersection(std::int64_t v, std::int64_t fv, std::int64_t q, std::int64_
   return static_cast<double>((fq + q * q) - (fv + v * v)) / static_cast<double>(2 * (q - v));
 }
 
-void check_size(int width, int height) {
-  if (width > 0 && height > 0) return;
-  throw std::invalid_argument("distance transform: the grid must have width x height cells, at least one");
-}
-
 }  // namespace
 
+void check_grid(const OccupancyGrid& grid) {
+  const auto cells = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+  if (grid.width < 1 || grid.height < 1 || grid.cells.size() != cells)
+    throw std::invalid_argument("map: " + std::to_string(grid.cells.size()) +
+                                " cells must be width x height, " + std::to_string(grid.width) + " x " +
+                                std::to_string(grid.height) + ", at least one");
+  if (!(grid.resolution > 0) || !std::isfinite(grid.resolution))
+    throw std::invalid_argument("map: the resolution must be finite and above 0");
+  if (!std::isfinite(grid.origin.x) || !std::isfinite(grid.origin.y) || !std::isfinite(grid.origin.yaw))
+    throw std::invalid_argument("map: the origin must be finite");
+}
+
 DistanceTransform::DistanceTransform(int width, int height) : width_(width), height_(height) {
-  check_size(width, height);
+  if (width < 1 || height < 1)
+    throw std::invalid_argument("distance transform: the grid must have width x height cells, at least one");
   vertical_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   envelope_.resize(static_cast<std::size_t>(width));
 }
@@ -92,11 +101,9 @@ void DistanceTransform::compute(std::span<const Occupancy> cells, bool unknown_i
 }
 
 DistanceField distance_transform(const OccupancyGrid& grid, bool unknown_is_obstacle) {
-  check_size(grid.width, grid.height);
+  check_grid(grid);
   DistanceField field{grid.width, grid.height, grid.resolution, grid.origin, {}};
-  field.distance.resize(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
-  if (grid.cells.size() != field.distance.size())
-    throw std::invalid_argument("distance_transform: the grid must have width x height cells");
+  field.distance.resize(grid.cells.size());
   DistanceTransform(grid.width, grid.height)
       .compute(grid.cells, unknown_is_obstacle, grid.resolution, field.distance);
   return field;

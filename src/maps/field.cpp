@@ -56,15 +56,6 @@ OccupancyGrid with_border(const OccupancyGrid& grid) {
   return wide;
 }
 
-void check_grid(const OccupancyGrid& grid) {
-  detail::require(grid.width >= 1, "grid.width", grid.width, "at least 1");
-  detail::require(grid.height >= 1, "grid.height", grid.height, "at least 1");
-  const auto cells = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
-  detail::require(grid.cells.size() == cells, "grid.cells: number", grid.cells.size(), "width x height");
-  detail::require(grid.resolution > 0 && std::isfinite(grid.resolution), "grid.resolution", grid.resolution,
-                  "finite and above 0");
-}
-
 }  // namespace
 
 void Field::check(const FieldGeometry& geometry) {

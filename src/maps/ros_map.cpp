@@ -56,10 +56,7 @@ class Reader {
                   std::string("`") + key + ": " + value + "`: must be " + rule);
   }
 
-  double number(const char* key, const YAML::Node& node, const char* rule) const {
-    return number(key, node, rule, node);
-  }
-  /// A number that is a part of the key's value, `whole`.
+  /// Reads a number that is a part of the key's value, `whole`.
   double number(const char* key, const YAML::Node& node, const char* rule, const YAML::Node& whole) const {
     const auto value = node.IsScalar() ? finite_number(node.Scalar()) : std::nullopt;
     if (!value) fail(key, whole, rule);
@@ -83,7 +80,7 @@ class Reader {
 double threshold(const Reader& reader, const char* key) {
   constexpr const char* rule = "a number within 0 to 1";
   const YAML::Node node = reader.need(key);
-  const double value = reader.number(key, node, rule);
+  const double value = reader.number(key, node, rule, node);
   if (value < 0 || value > 1) reader.fail(key, node, rule);
   return value;
 }
@@ -107,13 +104,13 @@ Mode read_mode(const Reader& reader) {
   reader.fail("mode", *node, "trinary, scale or raw");
 }
 
-Header read_header(const std::filesystem::path& path, const MapReading& reading) {
+Header read_header(const std::filesystem::path& path, MapRule rule) {
   const Reader reader(path);
   Header header;
 
   constexpr const char* positive = "a finite number above 0, at most 1000 (m per pixel)";
   const YAML::Node resolution = reader.need("resolution");
-  header.resolution = reader.number("resolution", resolution, positive);
+  header.resolution = reader.number("resolution", resolution, positive, resolution);
   if (!(header.resolution > 0) || header.resolution > 1000) reader.fail("resolution", resolution, positive);
 
   constexpr const char* triple = "[x, y, yaw], three finite numbers (m, m, rad)";
@@ -123,12 +120,10 @@ Header read_header(const std::filesystem::path& path, const MapReading& reading)
   for (std::size_t i = 0; i < 3; ++i) values[i] = reader.number("origin", origin[i], triple, origin);
   header.origin = {values[0], values[1], values[2]};
 
-  if (reading.image_extension.empty()) {
-    const YAML::Node image = reader.need("image");
-    if (!image.IsScalar() || image.Scalar().empty()) reader.fail("image", image, "a file name");
-    header.image = image.Scalar();
-  }
-  if (reading.rule == MapRule::grey_threshold) return header;
+  const YAML::Node image = reader.need("image");
+  if (!image.IsScalar() || image.Scalar().empty()) reader.fail("image", image, "a file name");
+  header.image = image.Scalar();
+  if (rule == MapRule::grey_threshold) return header;
 
   header.negate = read_negate(reader);
   header.mode = read_mode(reader);
@@ -140,7 +135,8 @@ Header read_header(const std::filesystem::path& path, const MapReading& reading)
   return header;
 }
 
-Occupancy classify(const Header& header, int grey) {
+Occupancy classify(const Header& header, MapRule rule, int grey) {
+  if (rule == MapRule::grey_threshold) return grey <= 128 ? Occupancy::occupied : Occupancy::free;
   if (header.negate) grey = 255 - grey;
   if (header.mode == Mode::raw) {
     return grey == 0 ? Occupancy::free : grey == 100 ? Occupancy::occupied : Occupancy::unknown;
@@ -148,18 +144,6 @@ Occupancy classify(const Header& header, int grey) {
   const double p = (255 - grey) / 255.0;
   if (p > header.occupied_threshold) return Occupancy::occupied;
   return p < header.free_threshold ? Occupancy::free : Occupancy::unknown;
-}
-
-/// The occupancy of every grey value.
-std::array<Occupancy, 256> occupancy_table(const Header& header, const MapReading& reading) {
-  std::array<Occupancy, 256> table{};
-  for (int grey = 0; grey < 256; ++grey) {
-    table[static_cast<std::size_t>(grey)] =
-        reading.rule == MapRule::grey_threshold
-            ? (grey <= reading.grey_threshold ? Occupancy::occupied : Occupancy::free)
-            : classify(header, grey);
-  }
-  return table;
 }
 
 /// The shortest text that reads back as the same number.
@@ -171,21 +155,12 @@ std::string text(double value) {
 
 }  // namespace
 
-OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, const MapReading& reading) {
-  if (reading.grey_threshold < 0 || reading.grey_threshold > 255) {
-    throw std::invalid_argument("MapReading::grey_threshold: " + std::to_string(reading.grey_threshold) +
-                                ": must be within 0 to 255");
-  }
-  const Header header = read_header(yaml_file, reading);
-  auto image_file = yaml_file;
-  if (reading.image_extension.empty()) {
-    image_file = yaml_file.parent_path() / header.image;
-  } else {
-    image_file.replace_extension(reading.image_extension);
-  }
-  const GreyImage image = load_image(image_file);
-  const auto table = occupancy_table(header, reading);
-  const bool see_opacity = !image.opacity.empty() && reading.rule == MapRule::map_server;
+OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule) {
+  const Header header = read_header(yaml_file, rule);
+  const GreyImage image = load_image(yaml_file.parent_path() / header.image);
+  std::array<Occupancy, 256> table{};
+  for (int grey = 0; grey < 256; ++grey) table[static_cast<std::size_t>(grey)] = classify(header, rule, grey);
+  const bool see_opacity = !image.opacity.empty() && rule == MapRule::map_server;
 
   OccupancyGrid grid{image.width, image.height, header.resolution, header.origin, {}};
   grid.cells.resize(image.grey.size());
@@ -202,10 +177,7 @@ OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, const MapRead
 }
 
 void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_file) {
-  if (grid.width <= 0 || grid.height <= 0 ||
-      grid.cells.size() != static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height)) {
-    throw std::invalid_argument("save_ros_map: the grid must have width x height cells, at least one");
-  }
+  check_grid(grid);
   GreyImage image{grid.width, grid.height, {}, {}};
   image.grey.resize(grid.cells.size());
   for (int row = 0; row < grid.height; ++row) {

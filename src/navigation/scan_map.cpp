@@ -22,9 +22,7 @@ void visit_cell(const maps::OccupancyGrid& grid, const maps::Point& at, Visit&& 
 }  // namespace
 
 ScanMap::ScanMap(maps::OccupancyGrid known) : known_(std::move(known)), seen_(known_) {
-  if (known_.width < 1 || known_.height < 1 || !(known_.resolution > 0) ||
-      known_.cells.size() != static_cast<std::size_t>(known_.width) * static_cast<std::size_t>(known_.height))
-    throw std::invalid_argument("scan map: the map must have width x height cells, at least one");
+  maps::check_grid(known_);
   if (known_.origin.yaw != 0) throw std::invalid_argument("scan map: the map must not be turned");
 }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/maps/distance_field.hpp"
 
@@ -13,19 +11,6 @@ namespace {
 constexpr int aligned_readings = 120, max_steps = 6;
 constexpr double outlier = 0.15;  // m, distance at which a reading has a quarter of its weight
 constexpr double min_position_deviation = 1e-3, min_yaw_deviation = 1e-4;
-
-const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
-  if (map.width < 1 || map.height < 1 ||
-      map.cells.size() != static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height))
-    throw std::invalid_argument("map: " + std::to_string(map.cells.size()) +
-                                " cells must be width x height, " + std::to_string(map.width) + " x " +
-                                std::to_string(map.height) + ", at least one");
-  if (!std::isfinite(map.resolution) || map.resolution <= 0)
-    throw std::invalid_argument("map: the resolution must be finite and above 0");
-  if (!std::isfinite(map.origin.x) || !std::isfinite(map.origin.y) || !std::isfinite(map.origin.yaw))
-    throw std::invalid_argument("map: the origin must be finite");
-  return map;
-}
 
 /// Solves A x = b for a symmetric positive definite matrix by its Cholesky decomposition; false if it is not.
 bool solve(double (&a)[3][3], double (&b)[3]) noexcept {
@@ -52,7 +37,7 @@ bool solve(double (&a)[3][3], double (&b)[3]) noexcept {
 }  // namespace
 
 MapBackground::MapBackground(const maps::OccupancyGrid& map)
-    : width_(checked(map).width),
+    : width_((maps::check_grid(map), map.width)),
       height_(map.height),
       resolution_(map.resolution),
       origin_(map.origin),

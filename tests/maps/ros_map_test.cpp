@@ -70,11 +70,10 @@ TEST_F(RosMap, RawModeReadsPercent) {
 
 TEST_F(RosMap, GreyThresholdIgnoresTheYamlRules) {
   write("map.pgm", "P2 3 2 255 128 129 205 0 1 255");
-  const Path path = map("image: absent.png\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 1\n");
-  const OccupancyGrid grid = load_ros_map(path, {.rule = MapRule::grey_threshold, .image_extension = ".pgm"});
+  const Path path = map("image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 1\n");
+  const OccupancyGrid grid = load_ros_map(path, MapRule::grey_threshold);
   const auto f = Occupancy::free, o = Occupancy::occupied;
   EXPECT_EQ(grid.cells, (std::vector<Occupancy>{o, o, f, o, f, f}));
-  EXPECT_THROW(load_ros_map(path, {.grey_threshold = 256}), std::invalid_argument);
 }
 
 TEST_F(RosMap, BinaryPgmOfOneAndTwoBytes) {

@@ -1,16 +1,21 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iostream>
+#include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
+
+#include "golden.hpp"
 
 namespace slalom::testing {
 
@@ -60,9 +65,22 @@ class GoldenTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
+/// A row of a table.
+struct GoldenRow {
+  const GoldenTable& table;
+  std::size_t row;
+
+  const std::string& text(const std::string& column) const { return table.text(row, column); }
+  double real(const std::string& column) const { return table.real(row, column); }
+  int integer(const std::string& column) const { return table.integer(row, column); }
+  std::vector<double> series(const std::string& prefix) const { return table.series(row, prefix); }
+};
+
 /// Counts what was compared and keeps the largest error; reports both when it goes.
 class Comparison {
  public:
+  using Columns = std::initializer_list<std::pair<const char*, double>>;
+
   explicit Comparison(std::string name) : name_(std::move(name)) {}
   ~Comparison() {
     std::cout << name_ << ": " << cases_ << " cases, " << values_ << " values, largest error " << worst_
@@ -70,19 +88,29 @@ class Comparison {
   }
   void next_case() { ++cases_; }
   /// The error of `actual` over max(1, |expected|).
-  double relative(double actual, double expected) {
-    return note(std::abs(actual - expected) / std::max(1.0, std::abs(expected)));
+  void relative(double actual, double expected) {
+    note(std::abs(actual - expected) / std::max(1.0, std::abs(expected)));
   }
-  double absolute(double actual, double expected) { return note(std::abs(actual - expected)); }
+  void absolute(double actual, double expected) { note(std::abs(actual - expected)); }
+  /// The same of several columns of a row.
+  void relative(const GoldenRow& row, Columns columns) {
+    for (const auto& [name, actual] : columns) relative(actual, row.real(name));
+  }
+  void absolute(const GoldenRow& row, Columns columns) {
+    for (const auto& [name, actual] : columns) absolute(actual, row.real(name));
+  }
+  void absolute(std::span<const double> actual, const std::vector<double>& expected) {
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t i = 0; i < actual.size(); ++i) absolute(actual[i], expected[i]);
+  }
   int cases() const { return cases_; }
   double worst() const { return worst_; }
 
  private:
-  double note(double error) {
+  void note(double error) {
     ++values_;
     // Not std::max: a NaN must stay.
     if (!(error <= worst_)) worst_ = error;
-    return error;
   }
 
   std::string name_;
@@ -90,5 +118,20 @@ class Comparison {
   long values_ = 0;
   double worst_ = 0;
 };
+
+/// Calls `compare(row, compared)` for each row of the golden table NAME.csv of the simulator; the errors must
+/// not exceed `tolerance`. Skips the test where the golden data are absent.
+template <class Compare>
+void compare_rows(const std::string& name, double tolerance, Compare&& compare) {
+  SLALOM_GOLDEN_FOLDER(folder, "simulator");
+  const GoldenTable table(folder / (name + ".csv"));
+  Comparison compared(name);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    compared.next_case();
+    compare(GoldenRow{table, row}, compared);
+    ASSERT_LE(compared.worst(), tolerance) << "row " << row;
+  }
+  EXPECT_GT(compared.cases(), 0);
+}
 
 }  // namespace slalom::testing

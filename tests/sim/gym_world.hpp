@@ -13,16 +13,13 @@ inline sim::Track gym_track(const std::filesystem::path& folder, const std::stri
   const auto maps_folder = folder / "maps" / map;
   const auto yaml = std::filesystem::exists(maps_folder / "map.yaml") ? maps_folder / "map.yaml"
                                                                       : maps_folder / (map + ".yaml");
-  maps::MapReading reading;
-  reading.rule = maps::MapRule::grey_threshold;
-  return sim::Track(maps::load_ros_map(yaml, reading), {},
-                    {.unknown_is_wall = false, .outside_is_wall = false});
+  return sim::Track(maps::load_ros_map(yaml, maps::MapRule::grey_threshold), {}, false);
 }
 
 inline sim::LidarOptions gym_lidar() {
   sim::LidarOptions options;
   options.mount = {};
-  options.gym = sim::GymLidar::all();
+  options.gym = true;
   return options;
 }
 

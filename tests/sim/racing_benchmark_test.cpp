@@ -150,7 +150,7 @@ TEST_P(PublishedRacing, FollowTheGapDrivesTheSameLaps) {
   const char* root = std::getenv("SLALOM_RACING_DIR");
   if (!root) GTEST_SKIP() << "set SLALOM_RACING_DIR to the folder of the benchmark's maps";
   const auto file = std::filesystem::path(root) / GetParam().map / GetParam().map;
-  const auto grid = maps::load_ros_map(file.string() + ".yaml", {.rule = maps::MapRule::grey_threshold});
+  const auto grid = maps::load_ros_map(file.string() + ".yaml", maps::MapRule::grey_threshold);
   std::ifstream stream(file.string() + "_centerline.csv");
   std::vector<maps::Point> rows;
   std::string text;

@@ -108,7 +108,7 @@ TEST(RacingOpponent, AvoidsWhatPurePursuitDrivesInto) {
   World world = world_of(cars, parked);
   std::vector<RacingOpponent> drivers;
   for (std::size_t i = 0; i < 2; ++i)
-    drivers.emplace_back(line(4, parked), i, RacingOpponentOptions{.speed_share = 0.9}, RandomKey{1, i});
+    drivers.emplace_back(line(4, parked), i, OpponentDriver::racing, 0.9, RandomKey{1, i});
   EXPECT_EQ(drive(world, drivers, 25), 0);
   EXPECT_GE(world.laps(0)->laps(), 2);
   EXPECT_GE(world.laps(1)->laps(), 2);
@@ -126,8 +126,8 @@ TEST(RacingOpponent, AvoidsWhatPurePursuitDrivesInto) {
 TEST(RacingOpponent, FollowsASlowerCarWithoutTouchingIt) {
   World world = world_of({on_ring(0), on_ring(0.6)});
   std::vector<RacingOpponent> drivers;
-  drivers.emplace_back(line(4), 0, RacingOpponentOptions{.speed_share = 0.9}, RandomKey{1, 0});
-  drivers.emplace_back(line(4), 1, RacingOpponentOptions{.speed_share = 0.4}, RandomKey{1, 1});
+  drivers.emplace_back(line(4), 0, OpponentDriver::racing, 0.9, RandomKey{1, 0});
+  drivers.emplace_back(line(4), 1, OpponentDriver::racing, 0.4, RandomKey{1, 1});
   EXPECT_EQ(drive(world, drivers, 15), 0);
   EXPECT_LT(world.laps(0)->progress(), world.laps(1)->progress() + 0.6 * radius);
   EXPECT_GT(world.laps(0)->progress(), world.laps(1)->progress() + 0.6 * radius - 2.5);
@@ -137,7 +137,7 @@ TEST(RacingOpponent, StopsBehindACarThatStandsInItsLane) {
   // With 0.6 m, and with 0.1 m between the cars; the sum of their half lengths is 0.58 m.
   for (const double apart : {1.2, 0.68}) {
     World world = world_of({on_ring(0), on_ring(apart / radius)});
-    RacingOpponent driver(line(4), 0, {}, RandomKey{1, 0});
+    RacingOpponent driver(line(4), 0, OpponentDriver::racing, 1, RandomKey{1, 0});
     while (world.time() < 4) {
       world.step(std::array{driver.command(world), Command{}});
       ASSERT_FALSE(world.observe(0).collides()) << apart << " m, after " << world.time() << " s";
@@ -150,8 +150,8 @@ TEST(RacingOpponent, LeavesRoomToACarAlongside) {
   const auto line_here = line(4);
   const double path_yaw = on_ring(0).yaw;
   World world = world_of({on_ring(0, 0.5), on_ring(0)});
-  RacingOpponentOptions options;
-  RacingOpponent outer(line_here, 0, options, RandomKey{1, 0}), inner(line_here, 1, options, RandomKey{1, 1});
+  RacingOpponent outer(line_here, 0, OpponentDriver::racing, 1, RandomKey{1, 0}),
+      inner(line_here, 1, OpponentDriver::racing, 1, RandomKey{1, 1});
   double nearest = 10;
   for (int k = 0; world.time() < 3; ++k) {
     world.step(std::array{outer.command(world), inner.command(world)});
@@ -159,13 +159,12 @@ TEST(RacingOpponent, LeavesRoomToACarAlongside) {
     const double turned = std::abs(maps::wrap_angle(world.state(0).yaw - path_yaw));
     if (turned < 0.5) nearest = std::min(nearest, signed_gap(world.outline(0), world.outline(1)));
   }
-  EXPECT_GT(nearest, options.room - 0.02);
+  EXPECT_GT(nearest, 0.08);
 }
 
 TEST(RacingOpponent, BlocksTheCarBehindWithinItsLimitsAndNotOneAlongside) {
-  const RacingOpponentOptions options{.driver = OpponentDriver::blocking};
   const auto lane_with = [&](double behind, double outward) {
-    RacingOpponent driver(line(4), 1, options, RandomKey{1, 1});
+    RacingOpponent driver(line(4), 1, OpponentDriver::blocking, 1, RandomKey{1, 1});
     World world = world_of({on_ring(1 - behind / radius, outward), on_ring(1)});
     CarState moving = world.state(0);
     moving.speed = 3;
@@ -175,7 +174,7 @@ TEST(RacingOpponent, BlocksTheCarBehindWithinItsLimitsAndNotOneAlongside) {
   };
   EXPECT_NEAR(lane_with(2, 0.4), -0.4, 0.1) << "outward is to the right";
   EXPECT_NEAR(lane_with(2, -0.4), 0.4, 0.1);
-  EXPECT_EQ(lane_with(2, 1.2), -options.lane_offset);
+  EXPECT_EQ(lane_with(2, 1.2), -0.6);
   EXPECT_EQ(lane_with(6, 0.4), 0) << "out of reach";
   EXPECT_EQ(lane_with(0.3, 0.6), 0) << "alongside";
 }
@@ -184,8 +183,7 @@ TEST(RacingOpponent, DrawsLanesAndSpeedsFromItsKeyAlone) {
   const auto driven = [](std::uint64_t seed) {
     World world = world_of({on_ring(0)});
     std::vector<RacingOpponent> drivers;
-    drivers.emplace_back(line(4), 0, RacingOpponentOptions{.driver = OpponentDriver::erratic},
-                         RandomKey{seed, 0});
+    drivers.emplace_back(line(4), 0, OpponentDriver::erratic, 1, RandomKey{seed, 0});
     double least = 0, most = 0;
     for (int i = 0; i < 100; ++i) {
       EXPECT_EQ(drive(world, drivers, 0.2), 0);
@@ -201,15 +199,10 @@ TEST(RacingOpponent, DrawsLanesAndSpeedsFromItsKeyAlone) {
 }
 
 TEST(RacingOpponent, RejectsInvalidInput) {
-  const auto with = [](RacingOpponentOptions options) { RacingOpponent(line(4), 0, options, RandomKey{}); };
-  EXPECT_NO_THROW(with({}));
-  EXPECT_THROW(with({.driver = OpponentDriver::pursuit}), std::invalid_argument);
-  EXPECT_THROW(with({.speed_share = 1.1}), std::invalid_argument);
-  EXPECT_THROW(with({.longest_stay = 0.5}), std::invalid_argument);
-  EXPECT_THROW(RacingOpponent(nullptr, 0, {}, RandomKey{}), std::invalid_argument);
+  EXPECT_THROW(RacingOpponent(line(4), 0, OpponentDriver::racing, 1.1, RandomKey{}), std::invalid_argument);
+  EXPECT_THROW(RacingOpponent(nullptr, 0, OpponentDriver::racing, 1, RandomKey{}), std::invalid_argument);
   EXPECT_THROW(RacingLine(path(std::numeric_limits<double>::quiet_NaN()), *testing::ring_track(), {}),
                std::invalid_argument);
-  EXPECT_THROW(RacingLine(path(4), *testing::ring_track(), {}, {}, {.lateral = 0}), std::invalid_argument);
 }
 
 }  // namespace

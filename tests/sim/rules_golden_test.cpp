@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "golden.hpp"
 #include "sim/golden_table.hpp"
 #include "slalom/sim/laps.hpp"
 #include "slalom/sim/numpy_random.hpp"
@@ -13,7 +12,9 @@
 namespace slalom::sim {
 namespace {
 
+using slalom::testing::compare_rows;
 using slalom::testing::Comparison;
+using slalom::testing::GoldenRow;
 using slalom::testing::GoldenTable;
 
 /// Columns x, y, half width of a file without header; the width is what f1tenth_gym takes for the speed.
@@ -29,41 +30,26 @@ std::vector<PathPoint> opponent_path(const std::filesystem::path& file) {
   return path;
 }
 
-Box box_of(const GoldenTable& t, std::size_t row, const std::string& suffix = "") {
-  Box box{{t.real(row, "x" + suffix), t.real(row, "y" + suffix), t.real(row, "yaw" + suffix)}, 0.58, 0.31};
-  if (t.has("length")) box.length = t.real(row, "length"), box.width = t.real(row, "width");
+Box box_of(const GoldenRow& row, const std::string& suffix = "") {
+  Box box{{row.real("x" + suffix), row.real("y" + suffix), row.real("yaw" + suffix)}, 0.58, 0.31};
+  if (row.table.has("length")) box.length = row.real("length"), box.width = row.real("width");
   return box;
 }
 
 TEST(GymRules, Vertices) {
-  SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "vertices.csv");
-  Comparison compared("vertices");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    compared.next_case();
-    const auto actual = corners(box_of(table, row));
-    const char* names[] = {"rl", "rr", "fr", "fl"};
-    for (std::size_t i = 0; i < 4; ++i) {
-      compared.absolute(actual[i].x, table.real(row, std::string(names[i]) + "_x"));
-      compared.absolute(actual[i].y, table.real(row, std::string(names[i]) + "_y"));
-    }
-  }
-  EXPECT_GT(compared.cases(), 0);
-  EXPECT_LE(compared.worst(), 1e-9);
+  compare_rows("vertices", 1e-9, [](const GoldenRow& row, Comparison& compared) {
+    const auto [rl, rr, fr, fl] = corners(box_of(row));
+    compared.absolute(row, {{"rl_x", rl.x}, {"rl_y", rl.y}, {"rr_x", rr.x}, {"rr_y", rr.y}});
+    compared.absolute(row, {{"fr_x", fr.x}, {"fr_y", fr.y}, {"fl_x", fl.x}, {"fl_y", fl.y}});
+  });
 }
 
 TEST(GymRules, PairCollisions) {
-  SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "gjk_pairs.csv");
-  Comparison compared("gjk_pairs");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    compared.next_case();
-    const double gap = signed_gap(box_of(table, row, "1"), box_of(table, row, "2"));
-    EXPECT_EQ(gap <= 0, table.integer(row, "collide") == 1) << "case " << table.text(row, "case");
-    compared.absolute(gap, table.real(row, "sat_signed_gap"));
-  }
-  EXPECT_GT(compared.cases(), 0);
-  EXPECT_LE(compared.worst(), 1e-9);
+  compare_rows("gjk_pairs", 1e-9, [](const GoldenRow& row, Comparison& compared) {
+    const double gap = signed_gap(box_of(row, "1"), box_of(row, "2"));
+    EXPECT_EQ(gap <= 0, row.integer("collide") == 1) << "case " << row.text("case");
+    compared.absolute(row, {{"sat_signed_gap", gap}});
+  });
 }
 
 TEST(GymRules, CollisionsOfMany) {
@@ -78,7 +64,7 @@ TEST(GymRules, CollisionsOfMany) {
       int partner = -1;
       // The last pair in the order (0,1), (0,2), ..., (1,2), ... that has i in it and collides.
       for (std::size_t j = begin; j < end; ++j)
-        if (j != i && signed_gap(box_of(table, i), box_of(table, j)) <= 0)
+        if (j != i && signed_gap(box_of({table, i}), box_of({table, j})) <= 0)
           partner = static_cast<int>(j - begin);
       compared.absolute(partner >= 0, table.integer(i, "collision"));
       compared.absolute(partner, table.integer(i, "collision_idx"));
@@ -131,77 +117,56 @@ TEST(GymRules, ScanNoise) {
 
 TEST(GymRules, ParkedCars) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "obstacles.csv");
   std::vector<maps::Point> path;
   for (const PathPoint& p : opponent_path(folder / "maps/berlin/opp_ref_path.csv")) path.push_back(p.point);
-  Comparison compared("obstacles");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    compared.next_case();
-    const int index = table.integer(row, "i");
-    const auto cars =
-        place_at_random(path, index + 1, static_cast<std::uint64_t>(table.integer(row, "seed")));
-    const Placement& car = cars.at(static_cast<std::size_t>(index));
-    EXPECT_EQ(static_cast<int>(car.waypoint), table.integer(row, "waypoint_row"));
-    compared.absolute(car.pose.x, table.real(row, "x"));
-    compared.absolute(car.pose.y, table.real(row, "y"));
-    compared.absolute(car.pose.yaw, table.real(row, "yaw"));
-  }
-  EXPECT_GT(compared.cases(), 0);
-  EXPECT_LE(compared.worst(), 1e-12);
+  compare_rows("obstacles", 1e-12, [&](const GoldenRow& row, Comparison& compared) {
+    const int index = row.integer("i");
+    const auto cars = place_at_random(path, index + 1, static_cast<std::uint64_t>(row.integer("seed")));
+    const maps::Pose& car = cars.at(static_cast<std::size_t>(index));
+    compared.absolute(row, {{"x", car.x}, {"y", car.y}, {"yaw", car.yaw}});
+  });
 }
 
 TEST(GymRules, PurePursuit) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "pure_pursuit.csv");
-  const PurePursuit driver(opponent_path(folder / "maps/berlin/opp_ref_path.csv"),
-                           {.gym = GymPurePursuit::all()});
-  Comparison compared("pure_pursuit");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    compared.next_case();
-    const maps::Pose pose{table.real(row, "x"), table.real(row, "y"), table.real(row, "yaw")};
+  const PurePursuit driver(opponent_path(folder / "maps/berlin/opp_ref_path.csv"), {.gym = true});
+  compare_rows("pure_pursuit", 1e-9, [&](const GoldenRow& row, Comparison& compared) {
+    const maps::Pose pose{row.real("x"), row.real("y"), row.real("yaw")};
     const auto target = driver.target({pose.x, pose.y});
     const Command command = driver.command(pose);
     using Mode = PurePursuit::Target::Mode;
     const char* mode = target.mode == Mode::lookahead   ? "lookahead"
                        : target.mode == Mode::reacquire ? "reacquire"
                                                         : "none";
-    EXPECT_EQ(mode, table.text(row, "mode"));
-    EXPECT_EQ(static_cast<int>(target.nearest.segment), table.integer(row, "nearest_seg"));
-    EXPECT_EQ(target.row, table.integer(row, "target_row")) << "case " << table.text(row, "case");
-    compared.absolute(target.nearest.distance, table.real(row, "nearest_dist"));
-    compared.absolute(target.nearest.along, table.real(row, "nearest_t"));
-    compared.absolute(target.along, table.real(row, "target_t"));
-    compared.absolute(command.speed, table.real(row, "speed"));
-    compared.absolute(command.steer, table.real(row, "steer"));
-    EXPECT_LE(compared.worst(), 1e-9) << "case " << table.text(row, "case");
-  }
-  EXPECT_GT(compared.cases(), 0);
+    EXPECT_EQ(mode, row.text("mode"));
+    EXPECT_EQ(static_cast<int>(target.nearest.segment), row.integer("nearest_seg"));
+    EXPECT_EQ(target.row, row.integer("target_row")) << "case " << row.text("case");
+    compared.absolute(row, {{"nearest_dist", target.nearest.distance},
+                            {"nearest_t", target.nearest.along},
+                            {"target_t", target.along},
+                            {"speed", command.speed},
+                            {"steer", command.steer}});
+  });
 }
 
 TEST(GymRules, Laps) {
-  SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "lap_trace.csv");
-  Comparison compared("lap_trace");
   std::vector<StartZoneLaps> cars;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const auto agent = static_cast<std::size_t>(table.integer(row, "agent"));
-    if (table.integer(row, "k") == 0) {
-      if (agent == 0) compared.next_case();
+  compare_rows("lap_trace", 0, [&](const GoldenRow& row, Comparison& compared) {
+    const auto agent = static_cast<std::size_t>(row.integer("agent"));
+    if (row.integer("k") == 0) {
       if (agent == 0) cars.clear();
       cars.emplace_back();
-      const double heading = agent == 0 ? table.real(row, "start_yaw") : table.real(row - agent, "start_yaw");
-      cars[agent].reset({table.real(row, "start_x"), table.real(row, "start_y")}, heading);
+      const double heading = row.table.real(row.row - agent, "start_yaw");
+      cars[agent].reset({row.real("start_x"), row.real("start_y")}, heading);
     }
     StartZoneLaps& car = cars.at(agent);
-    car.update({table.real(row, "x"), table.real(row, "y")}, table.real(row, "time"));
-    compared.absolute(car.near_start(), table.integer(row, "near_start"));
-    compared.absolute(car.toggles(), table.integer(row, "toggles"));
-    compared.absolute(car.laps(), table.integer(row, "lap_count"));
-    compared.absolute(car.time(), table.real(row, "lap_time"));
-    compared.absolute(car.finished(), table.integer(row, "checkpoint_done"));
-    ASSERT_EQ(compared.worst(), 0) << "row " << row;
-  }
-  EXPECT_GT(compared.cases(), 0);
+    car.update({row.real("x"), row.real("y")}, row.real("time"));
+    compared.absolute(row, {{"near_start", car.near_start()},
+                            {"toggles", car.toggles()},
+                            {"lap_count", car.laps()},
+                            {"lap_time", car.time()},
+                            {"checkpoint_done", car.finished()}});
+  });
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
 
 TEST(ScanProperty, TheGymWindowReachesToTheNearestBeamOfEveryCorner) {
   LidarOptions options;
-  options.gym.window = true;
+  options.gym = true;
   const Lidar lidar(options);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-3, 3);
@@ -203,9 +203,9 @@ TEST(ScanProperty, OpenBorderReturnsNothing) {
   std::fill(grid.cells.begin(), grid.cells.end(), maps::Occupancy::free);
   const Lidar lidar(LidarOptions{});
   std::vector<float> ranges(lidar.padded_beams());
-  lidar.scan(Track(grid, {}, {.outside_is_wall = false}), {2, 2, 1}, ranges);
+  lidar.scan(Track(grid, {}, false), {2, 2, 1}, ranges);
   EXPECT_TRUE(std::all_of(ranges.begin(), ranges.begin() + 1080, [](float r) { return r == 30.0f; }));
-  lidar.scan(Track(grid, {}, {.outside_is_wall = true}), {2, 2, 0}, ranges);
+  lidar.scan(Track(grid), {2, 2, 0}, ranges);
   EXPECT_NEAR(ranges[540], 3, 0.01);
   lidar.scan(Track(grid), {-1, 2, 0}, ranges);
   EXPECT_EQ(ranges[540], 0);

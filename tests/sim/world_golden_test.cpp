@@ -2,7 +2,6 @@
 
 #include <map>
 
-#include "golden.hpp"
 #include "sim/golden_table.hpp"
 #include "sim/gym_world.hpp"
 #include "slalom/sim/time_to_collision.hpp"
@@ -11,42 +10,33 @@
 namespace slalom::sim {
 namespace {
 
+using slalom::testing::compare_rows;
 using slalom::testing::Comparison;
+using slalom::testing::GoldenRow;
 using slalom::testing::GoldenTable;
 
 TEST(GymWorld, BeamGeometry) {
-  SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "beam_geometry.csv");
   const Lidar lidar(testing::gym_lidar());
   const TimeToCollision geometry(testing::gym_lidar(), {});
-  Comparison compared("beam_geometry");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const auto beam = static_cast<std::size_t>(table.integer(row, "beam"));
-    compared.next_case();
-    compared.absolute(lidar.angles()[beam], table.real(row, "scan_angle"));
-    compared.absolute(geometry.cosines()[beam], table.real(row, "cosine"));
-    compared.absolute(geometry.sides()[beam], table.real(row, "side_distance"));
-  }
-  EXPECT_GT(compared.cases(), 0);
-  EXPECT_LE(compared.worst(), 1e-9);
+  compare_rows("beam_geometry", 1e-9, [&](const GoldenRow& row, Comparison& compared) {
+    const auto beam = static_cast<std::size_t>(row.integer("beam"));
+    compared.absolute(row, {{"scan_angle", lidar.angles()[beam]},
+                            {"cosine", geometry.cosines()[beam]},
+                            {"side_distance", geometry.sides()[beam]}});
+  });
 }
 
 TEST(GymWorld, TimeToCollision) {
-  SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "ttc.csv");
   const TimeToCollision test(testing::gym_lidar(), {});
-  Comparison compared("ttc");
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    compared.next_case();
-    const auto ranges = table.series(row, "r");
-    const int hit = test.first_hit(std::span<const double>(ranges), table.real(row, "vel"));
-    EXPECT_EQ(hit >= 0, table.integer(row, "in_collision") == 1) << "case " << table.text(row, "case");
-    compared.absolute(hit, table.integer(row, "first_hit_beam"));
-  }
-  EXPECT_GT(compared.cases(), 0);
-  EXPECT_EQ(compared.worst(), 0);
+  compare_rows("ttc", 0, [&](const GoldenRow& row, Comparison& compared) {
+    const auto ranges = row.series("r");
+    const int hit = test.first_hit(std::span<const double>(ranges), row.real("vel"));
+    EXPECT_EQ(hit >= 0, row.integer("in_collision") == 1) << "case " << row.text("case");
+    compared.absolute(row, {{"first_hit_beam", hit}});
+  });
 }
 
+/// Drives the cases of a recorded run again and compares states and scans.
 class TraceRun {
  public:
   TraceRun(const GoldenTable& trace, const GoldenTable& scans, std::shared_ptr<const Track> track)
@@ -84,14 +74,14 @@ class TraceRun {
                Comparison& ranges) {
     const auto where = [&] { return "case " + trace_.text(row, "case") + " k " + trace_.text(row, "k"); };
     const CarState& s = world.state(agent);
-    states.absolute(s.x, trace_.real(row, "x"));
-    states.absolute(s.y, trace_.real(row, "y"));
-    states.absolute(s.steer, trace_.real(row, "delta"));
-    states.absolute(s.speed, trace_.real(row, "v"));
-    states.absolute(s.yaw, trace_.real(row, "psi"));
-    states.absolute(s.yaw_rate, trace_.real(row, "psidot"));
-    states.absolute(s.slip, trace_.real(row, "beta"));
-    states.absolute(world.start_zone_laps(agent).time(), trace_.real(row, "lap_time"));
+    states.absolute({trace_, row}, {{"x", s.x},
+                                    {"y", s.y},
+                                    {"delta", s.steer},
+                                    {"v", s.speed},
+                                    {"psi", s.yaw},
+                                    {"psidot", s.yaw_rate},
+                                    {"beta", s.slip},
+                                    {"lap_time", world.start_zone_laps(agent).time()}});
     EXPECT_LE(states.worst(), 1e-8) << where();
     EXPECT_EQ(world.flags()[agent], trace_.integer(row, "collision")) << where();
     EXPECT_EQ(world.observe(agent).wall, trace_.integer(row, "wall_collision") == 1) << where();
@@ -106,9 +96,7 @@ class TraceRun {
         scan_rows_.find({trace_.integer(row, "case"), trace_.integer(row, "k"), static_cast<int>(agent)});
     if (scan == scan_rows_.end()) return;
     ranges.next_case();
-    const auto expected = scans_.series(scan->second, "r");
-    for (std::size_t i = 0; i < expected.size(); ++i)
-      ranges.absolute(world.observe(agent).gym_ranges[i], expected[i]);
+    ranges.absolute(world.observe(agent).gym_ranges, scans_.series(scan->second, "r"));
     EXPECT_LE(ranges.worst(), 1e-8) << where();
   }
 

@@ -121,7 +121,7 @@ RacingMap load_racing_map(const fs::path& folder, const std::string& name) {
   const fs::path own = folder / name, from = fs::is_directory(own) ? own : folder;
   RacingMap map;
   map.name = name;
-  map.grid = maps::load_ros_map(from / (name + ".yaml"), {.rule = maps::MapRule::grey_threshold});
+  map.grid = maps::load_ros_map(from / (name + ".yaml"), maps::MapRule::grey_threshold);
   const fs::path file = from / (name + "_centerline.csv");
   map.centre_line = vehicle::read_centre_line(file).line.points;
   map.centre_line.erase(map.centre_line.begin());

@@ -1,6 +1,5 @@
 #include "driving.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
-#include "world_keywords.hpp"
 
 namespace slalom::python {
 

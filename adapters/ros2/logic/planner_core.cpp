@@ -78,7 +78,7 @@ void PlannerCore::use_path(const Path& path, bool closed) {
     std::vector<maps::Point> points;
     for (const maps::ReferencePoint& point : path) points.push_back({point.x, point.y});
     const sim::LapPath around(std::move(points));
-    laps_.emplace(Laps{around, sim::LapTimer(around, 1)});
+    laps_.emplace(Laps{around, sim::LapTimer(around)});
   }
   laps_to_drive_ = 0;
   outputs_.path(path, closed);

@@ -28,10 +28,8 @@ SimulatedCar::SimulatedCar(const vehicle::Course& course, std::uint64_t seed, in
       world_(world_options(*environment_), environment_->track),
       odometry_(parameters(), odometry_options(seed)) {
   const maps::Pose& start = environment_->start;
-  for (const sim::Placement& placed :
-       sim::place_apart(environment_->course.obstacle_path, environment_->obstacle_room, obstacles, seed,
-                        {start.x, start.y}))
-    parked_.push_back(placed.pose);
+  parked_ = sim::place_apart(environment_->course.obstacle_path, environment_->obstacle_room, obstacles, seed,
+                             {start.x, start.y});
   reset();
 }
 

@@ -24,8 +24,7 @@ struct DistanceField {
 
 /// Exact Euclidean distance transform in linear time by lower envelopes of parabolas (Felzenszwalb &
 /// Huttenlocher, "Distance Transforms of Sampled Functions", Theory of Computing 8, 2012). Unknown cells
-/// count as obstacles if `unknown_is_obstacle`. Throws std::invalid_argument unless the grid has width x
-/// height cells, at least one.
+/// count as obstacles if `unknown_is_obstacle`. Throws as check_grid does.
 DistanceField distance_transform(const OccupancyGrid& grid, bool unknown_is_obstacle);
 
 /// The same transform for grids of one size, computed over and over: after construction nothing allocates.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "slalom/maps/occupancy_grid.hpp"
 
@@ -13,30 +12,22 @@ enum class MapRule {
   /// p > occupied_thresh, free where p < free_thresh, else unknown. In mode `raw` the grey value itself is
   /// the occupancy in percent.
   map_server,
-  /// As f1tenth_gym: a grey of at most `grey_threshold` is an obstacle, all else free, unknown cells too;
-  /// `negate`, `mode` and the thresholds of the yaml file are neither used nor needed.
+  /// As f1tenth_gym: a grey of at most 128 is an obstacle, all else free, unknown cells too; `negate`, `mode`
+  /// and
+  /// the thresholds of the yaml file are neither used nor needed.
   grey_threshold,
-};
-
-/// Options of load_ros_map.
-struct MapReading {
-  MapRule rule = MapRule::map_server;  ///< conversion of grey values to occupancy
-  int grey_threshold = 128;            ///< largest grey of an obstacle, 0..255; rule grey_threshold only
-  std::string image_extension{};  ///< if set (".png"), the image is the yaml file's name with this extension
-                                  ///< instead of the file the key `image` names; f1tenth_gym looks for it so
 };
 
 /// Loads a map of ROS map_server: a yaml file with `image` (relative to it), `resolution` (m per pixel),
 /// `origin` [x, y, yaw] of the lower left corner (m, m, rad), `negate`, `occupied_thresh`, `free_thresh` and,
 /// if present, `mode` (trinary, scale, raw). The grid keeps three states: values of `scale` and `raw` between
 /// free (0) and occupied (100) are unknown, as in AMCL, and so are, with MapRule::map_server, pixels less
-/// than half opaque. Throws IoError if a file cannot be read or breaks a rule, and std::invalid_argument if
-/// `grey_threshold` is outside [0, 255].
-OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, const MapReading& reading = {});
+/// than half opaque. Throws IoError if a file cannot be read or breaks a rule.
+OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule = MapRule::map_server);
 
 /// Writes `yaml_file` and, beside it, a PNG of the same name, with the greys and thresholds of map_saver.
-/// Throws IoError if a file cannot be written or the grid is too large for an image (image.hpp), and
-/// std::invalid_argument unless it has width x height cells, at least one.
+/// Throws IoError if a file cannot be written or the grid is too large for an image (image.hpp), and as
+/// check_grid does.
 void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
 
 }  // namespace slalom::maps

@@ -1,26 +1,29 @@
 #pragma once
 
+#include "slalom/core/options.hpp"
+
 namespace slalom::sim {
 
-/// The parameters of a car. The defaults are the 1/10-scale car of f1tenth_gym.
+/// The parameters of a car. The defaults are the 1/10-scale car of f1tenth_gym. `visit_options` below
+/// describes the fields.
 struct CarParameters {
-  double friction = 1.0489;        ///< mu, between tyre and road
-  double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
-  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad, the same of the rear axle
-  double front_length = 0.15875;   ///< l_f, m, from the centre of gravity to the front axle
-  double rear_length = 0.17145;    ///< l_r, m
-  double gravity_height = 0.074;   ///< h, m, of the centre of gravity
-  double mass = 3.74;              ///< m, kg
-  double inertia = 0.04712;        ///< I_z, kg m^2, about the vertical axis
-  double steer_min = -0.4189;      ///< rad
-  double steer_max = 0.4189;       ///< rad
-  double steer_rate_max = 3.2;     ///< rad/s, either way
-  double switch_speed = 7.319;     ///< m/s, above it the motor's power limits the acceleration
-  double acceleration_max = 9.51;  ///< m/s^2, also of braking
-  double speed_min = -5.0;         ///< m/s
-  double speed_max = 20.0;         ///< m/s
-  double length = 0.58;            ///< m, of the body, whose middle is the centre of gravity
-  double width = 0.31;             ///< m
+  double friction = 1.0489;
+  double cornering_front = 4.718;
+  double cornering_rear = 5.4562;
+  double front_length = 0.15875;
+  double rear_length = 0.17145;
+  double gravity_height = 0.074;
+  double mass = 3.74;
+  double inertia = 0.04712;
+  double steer_min = -0.4189;
+  double steer_max = 0.4189;
+  double steer_rate_max = 3.2;
+  double switch_speed = 7.319;
+  double acceleration_max = 9.51;
+  double speed_min = -5.0;
+  double speed_max = 20.0;
+  double length = 0.58;
+  double width = 0.31;
 
   /// Distance between the axles, m.
   double wheelbase() const { return front_length + rear_length; }
@@ -28,10 +31,38 @@ struct CarParameters {
   /// A passenger car: parameter set 2 (a BMW 320i) of Althoff & Wuersching, "CommonRoad: Vehicle Models"
   /// (2020), as its single-track model uses them.
   static CarParameters full_scale();
-
-  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
-  void validate() const;
 };
+
+template <class Options, class Visit>
+requires is_options_of<Options, CarParameters>
+void visit_options(Options& o, Visit&& visit) {
+  constexpr double least = 1e-9, most = 1e9;  // of what must be above 0
+  visit(o.friction, {"friction", "", "coefficient between tyre and road", least, most, "mu"});
+  visit(o.cornering_front,
+        {"cornering_front", "1/rad", "cornering stiffness over load, front axle", least, most, "C_Sf"});
+  visit(o.cornering_rear,
+        {"cornering_rear", "1/rad", "cornering stiffness over load, rear axle", least, most, "C_Sr"});
+  visit(o.front_length,
+        {"front_length", "m", "distance from the centre of gravity to the front axle", least, most, "l_f"});
+  visit(o.rear_length,
+        {"rear_length", "m", "distance from the centre of gravity to the rear axle", least, most, "l_r"});
+  visit(o.gravity_height, {"gravity_height", "m", "height of the centre of gravity", 0, 10, "h"});
+  visit(o.mass, {"mass", "kg", "mass of a car", least, most, "m"});
+  visit(o.inertia, {"inertia", "kg m^2", "moment of inertia about the vertical axis", least, most, "I_z"});
+  visit(o.steer_min, {"steer_min", "rad", "largest steering angle to the right, negative", -1.5, 0});
+  visit(o.steer_max, {"steer_max", "rad", "largest steering angle to the left", 0, 1.5});
+  visit(o.steer_rate_max,
+        {"steer_rate_max", "rad/s", "largest rate of the steering, either way", least, most});
+  visit(o.switch_speed,
+        {"switch_speed", "m/s", "speed above which the motor's power limits the acceleration", least, most});
+  visit(o.acceleration_max,
+        {"acceleration_max", "m/s^2", "largest acceleration of motor and brakes", least, most});
+  visit(o.speed_min, {"speed_min", "m/s", "highest speed in reverse, negative", -1000, 0});
+  visit(o.speed_max, {"speed_max", "m/s", "highest speed of a car", least, most});
+  visit(o.length,
+        {"length", "m", "length of a car's body, whose middle is the centre of gravity", least, most});
+  visit(o.width, {"width", "m", "width of a car's body", least, most});
+}
 
 /// The cars whose parameters and LiDAR are known by name.
 enum class CarKind {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "slalom/sim/car.hpp"
-#include "slalom/sim/gym.hpp"
 
 namespace slalom::sim {
 
@@ -17,9 +16,17 @@ namespace slalom::sim {
 ///   F_y = mu F_z sin(C atan(B alpha)), C = 1.5, B = C_S / C: the same slope at 0, but grip can be exceeded.
 ///   Driving and braking forces reduce the largest sideways force (friction ellipse).
 enum class Model { kinematic, single_track, saturating };
+inline const char* const* enum_names(Model) {
+  static constexpr const char* names[] = {"kinematic", "single_track", "saturating", nullptr};
+  return names;
+}
 
 /// Integration method of a step.
 enum class Integrator { runge_kutta_4, euler };
+inline const char* const* enum_names(Integrator) {
+  static constexpr const char* names[] = {"runge_kutta_4", "euler", nullptr};
+  return names;
+}
 
 /// Options of the car dynamics.
 struct DynamicsOptions {
@@ -27,7 +34,9 @@ struct DynamicsOptions {
   Integrator integrator = Integrator::runge_kutta_4;  ///< integration method
   /// Equal parts into which a time step is cut; 0 takes as many as keep the tyres' fastest mode stable.
   int substeps = 0;
-  GymDynamics gym{};  ///< reproduction of f1tenth_gym
+  /// As f1tenth_gym: below 0.5 m/s the car moves along its axis and the slip angle does not change; the last
+  /// move towards the steering's limit may pass it; in reverse the tyres push the wrong way.
+  bool gym = false;
 };
 
 /// Speed (m/s) below which single_track and saturating fall back to the kinematic model.

@@ -17,9 +17,6 @@ struct ImuOptions {
   double gyro_noise = 0.02;
   double accelerometer_bias = 0.1;
   double accelerometer_noise = 0.5;
-
-  /// Throws std::invalid_argument naming the field, its value and the rule.
-  void validate() const;
 };
 
 template <class Options, class Visit>

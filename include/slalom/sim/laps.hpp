@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "slalom/maps/pose.hpp"
@@ -50,8 +49,8 @@ class LapPath {
 /// where the car started. Times are interpolated within a step.
 class LapTimer {
  public:
-  /// `sectors` equal parts of the path, 1 to 1000, get split times. Throws std::invalid_argument otherwise.
-  explicit LapTimer(const LapPath& path, int sectors = 3);
+  /// Starts at the first point of the path, at time 0.
+  explicit LapTimer(const LapPath& path) { reset(path, path.points().front(), 0); }
 
   /// Starts at a position and time (s).
   void reset(const LapPath& path, const maps::Point& position, double time) noexcept;
@@ -68,11 +67,8 @@ class LapTimer {
   double progress() const noexcept { return progress_; }  ///< m since the start, backwards counts down
   double last_lap_time() const noexcept { return last_lap_time_; }  ///< s; 0 before the first is complete
   double lap_start_time() const noexcept { return lap_start_; }     ///< s, when the present lap began
-  /// Times (s) from the lap's start to the end of each sector, of the present lap as far as it has come and
-  /// of the last one beyond that.
-  std::span<const double> splits() const noexcept { return splits_; }
-  double lateral() const noexcept { return place_.lateral; }  ///< m off the path, to the left positive
-  double arc() const noexcept { return place_.arc; }          ///< m along the path from its first point
+  double lateral() const noexcept { return place_.lateral; }        ///< m off the path, to the left positive
+  double arc() const noexcept { return place_.arc; }                ///< m along the path from its first point
 
  private:
   LapPath::Place place_;
@@ -81,8 +77,6 @@ class LapTimer {
   double lap_start_ = 0;
   double last_lap_time_ = 0;
   int laps_ = 0;
-  int sectors_done_ = 0;
-  std::vector<double> splits_;
 };
 
 /// Laps as f1tenth_gym counts them: the zone around the car's own start lies within 0.316 m of a line

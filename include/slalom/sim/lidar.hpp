@@ -1,10 +1,11 @@
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <vector>
 
+#include "slalom/core/options.hpp"
 #include "slalom/maps/pose.hpp"
-#include "slalom/sim/gym.hpp"
 #include "slalom/sim/shapes.hpp"
 #include "slalom/sim/track.hpp"
 
@@ -14,18 +15,18 @@ namespace detail {
 struct ScanKernels;
 }
 
-/// Options of a LiDAR scanner on a car.
+/// Options of a LiDAR scanner on a car. `visit_options` below describes the fields.
 struct LidarOptions {
-  int beams = 1080;  ///< 1 to 100000
-  double field_of_view =
-      4.7;                ///< rad, from the first beam to the last, which lie evenly about the sensor's axis
-  double range_max = 30;  ///< m; the range of a beam that meets nothing nearer
-  double noise = 0.01;    ///< m, standard deviation of each range
-  double rate = 0;        ///< Hz, rounded to whole time steps; 0 scans in every step
+  int beams = 1080;
+  double field_of_view = 4.7;
+  double range_max = 30;
+  double noise = 0.01;
+  double dropout = 0;
+  double rate = 0;                  ///< rounded to whole time steps
   maps::Pose mount{0.10355, 0, 0};  ///< pose of the sensor on the car, from the centre of gravity
-  double dropout = 0;               ///< share of beams that come back without a return: range_max
-
-  GymLidar gym{};  ///< reproduction of f1tenth_gym
+  /// As f1tenth_gym: ranges are found in steps between the middles of cells, in directions from a table,
+  /// their noise is that of numpy, and few beams see other cars. Only for a world with WorldOptions::gym.
+  bool gym = false;
 
   /// The Hokuyo UTM-30LX by its data sheet: 1081 beams over 270 degrees at 40 Hz, 30 m, 10 mm of noise (to 10
   /// m).
@@ -33,10 +34,20 @@ struct LidarOptions {
 
   double angle_increment() const { return beams > 1 ? field_of_view / (beams - 1) : 0; }  ///< rad
   double angle_min() const { return beams > 1 ? -field_of_view / 2 : 0; }                 ///< rad
-
-  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
-  void validate() const;
 };
+
+template <class Options, class Visit>
+requires is_options_of<Options, LidarOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.beams, {"beams", "", "number of beams of the LiDAR", 1, 100000});
+  visit(o.field_of_view,
+        {"field_of_view", "rad", "angle from the first beam to the last, which lie evenly about the axis", 0,
+         2 * std::numbers::pi});
+  visit(o.range_max, {"range_max", "m", "longer ranges read range_max", 1e-3, 1e4});
+  visit(o.noise, {"noise", "m", "standard deviation of each range", 0, 100});
+  visit(o.dropout, {"dropout", "", "fraction of beams without a return: range_max", 0, 1});
+  visit(o.rate, {"scan_rate", "Hz", "scans of the LiDAR per second; 0: one in every step", 0, 1e6});
+}
 
 /// A planar laser scanner. By default a range is exact: to the outline of the first wall cell on the beam,
 /// found by steps that the clearance of each cell allows (sphere tracing, J. C. Hart, 1996), for 16
@@ -57,7 +68,7 @@ class Lidar {
   maps::Pose sensor_pose(const maps::Pose& car) const noexcept;
 
   /// The distances (m) to the walls of the track from a sensor at `sensor`, without noise; padded_beams()
-  /// values. From outside the map they are 0 with TrackOptions::outside_is_wall, else range_max.
+  /// values. From outside the map they are 0 if the outside of the track is wall, else range_max.
   void scan(const Track& track, const maps::Pose& sensor, std::span<float> ranges) const noexcept;
 
   /// Shortens ranges to a body where it is nearer. Only beams that can hit it are looked at. padded_beams()
@@ -66,7 +77,7 @@ class Lidar {
   /// Shortens ranges (m) to a disc where it is nearer.
   void cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ranges) const noexcept;
 
-  /// Like `scan`, with the ranges of f1tenth_gym (GymLidar::ranges) in float64; one value per beam.
+  /// Like `scan`, as f1tenth_gym computes it, in float64; one value per beam.
   void gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept;
   /// Like `cast`, as in f1tenth_gym.
   void gym_cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept;
@@ -80,8 +91,9 @@ class Lidar {
   };
   Window window(const maps::Pose& sensor, const maps::Point& middle, double radius) const noexcept;
   Window gym_window(const maps::Pose& sensor, const Box& box) const noexcept;
-  void gym_directions_scan(const Track& track, const maps::Pose& sensor,
-                           std::span<float> ranges) const noexcept;
+  template <class Body>
+  void gym_shorten(const maps::Pose& sensor, const Body& body, Window beams,
+                   std::span<double> ranges) const noexcept;
 
   LidarOptions options_;
   std::vector<double> angles_;

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "slalom/maps/command.hpp"
-#include "slalom/sim/actuation.hpp"
 #include "slalom/sim/car.hpp"
 #include "slalom/sim/dynamics.hpp"
 
@@ -11,8 +10,16 @@ namespace slalom::sim {
 
 /// The meaning of `Command::steer`: an angle, rad, or the rate of the angle, rad/s.
 enum class SteeringInput { angle, rate };
+inline const char* const* enum_names(SteeringInput) {
+  static constexpr const char* names[] = {"angle", "rate", nullptr};
+  return names;
+}
 /// The meaning of `Command::speed`: a speed, m/s, or an acceleration, m/s^2.
 enum class SpeedInput { speed, acceleration };
+inline const char* const* enum_names(SpeedInput) {
+  static constexpr const char* names[] = {"speed", "acceleration", nullptr};
+  return names;
+}
 
 /// The behaviour of a car in a step without a usable command.
 enum class Coast {
@@ -20,18 +27,58 @@ enum class Coast {
   brake,   ///< the wheels keep their angle, the car brakes to a stop
   repeat,  ///< the last command still holds (of a fresh car: stand still)
 };
+inline const char* const* enum_names(Coast) {
+  static constexpr const char* names[] = {"roll", "brake", "repeat", nullptr};
+  return names;
+}
 
-/// Options of a car with its actuators.
+/// The low-level control between a command and the model's input. `visit_options` of PlantOptions describes
+/// the gains.
+struct ActuationOptions {
+  double speed_gain = 4.755;
+  double brake_gain = 19.02;
+  /// As f1tenth_gym: the steering moves at full rate or not at all, and the gains follow from the limits of
+  /// speed.
+  bool gym = false;
+};
+
+/// The steering rate (rad/s) that turns the wheels from `steer` to `target` (rad): the actuator gets there
+/// within `time_step` (s) where its rate allows.
+double steer_rate_towards(const CarParameters& car, const ActuationOptions& options, double steer,
+                          double target, double time_step) noexcept;
+
+/// The acceleration (m/s^2) that takes the car from `speed` to `target` (m/s): proportional to the
+/// difference.
+double acceleration_towards(const CarParameters& car, const ActuationOptions& options, double speed,
+                            double target) noexcept;
+
+/// Options of a car with its actuators. `visit_options` below describes the fields.
 struct PlantOptions {
   DynamicsOptions dynamics;    ///< car dynamics
   ActuationOptions actuation;  ///< conversion of commands to steering and acceleration
-  SteeringInput steering_input = SteeringInput::angle;  ///< meaning of the steering command
-  SpeedInput speed_input = SpeedInput::speed;           ///< meaning of the speed command
-  double steering_dead_time =
-      0.02;                   ///< s, from a steering command to its effect; rounded to whole time steps
-  Coast coast = Coast::roll;  ///< behaviour without a command
-  GymPlant gym{};             ///< reproduction of f1tenth_gym
+  SteeringInput steering_input = SteeringInput::angle;
+  SpeedInput speed_input = SpeedInput::speed;
+  double steering_dead_time = 0.02;  ///< rounded to whole time steps
+  Coast coast = Coast::roll;
+  bool gym = false;  ///< as f1tenth_gym: the yaw is brought to [0, 2 pi] by at most one turn per step
 };
+
+template <class Options, class Visit>
+requires is_options_of<Options, PlantOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.dynamics.model, {"model", "", "equations of motion"});
+  visit(o.dynamics.integrator, {"integrator", "", "integration of the equations of motion"});
+  visit(o.dynamics.substeps,
+        {"substeps", "", "parts of a step; 0: as many as keep the tyres stable", 0, 1000});
+  visit(o.steering_dead_time,
+        {"steering_dead_time", "s", "time from a steering command to its effect", 0, 1});
+  visit(o.steering_input, {"steering_input", "", "meaning of the steering command"});
+  visit(o.speed_input, {"speed_input", "", "meaning of the speed command"});
+  visit(o.actuation.speed_gain, {"speed_gain", "1/s", "acceleration per error of speed", 1e-9, 1e9});
+  visit(o.actuation.brake_gain,
+        {"brake_gain", "1/s", "acceleration per error of speed when braking", 1e-9, 1e9});
+  visit(o.coast, {"coast", "", "behaviour of a car without a usable command"});
+}
 
 /// One car without a world round it: model, low-level control and steering dead time.
 class Plant {

@@ -5,9 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "slalom/maps/command.hpp"
 #include "slalom/maps/pose.hpp"
-#include "slalom/sim/gym.hpp"
-#include "slalom/sim/plant.hpp"
 
 namespace slalom::sim {
 
@@ -17,28 +16,24 @@ struct PathPoint {
   double speed = 0;   ///< m/s
 };
 
-/// Options of lookahead and speed.
+/// Options of PurePursuit.
 struct PurePursuitOptions {
-  double lookahead = 1.0;     ///< m, distance of the point that is aimed at
-  double wheelbase = 0.3302;  ///< m
-  /// m. If the path is farther away than `lookahead` but nearer than this, the car aims at the first point of
-  /// its nearest segment. Without such a point, and without one at lookahead distance, the car is lost.
-  double reacquire = 10.0;
-  double lost_speed = 0.5;    ///< m/s, straight ahead while lost
-  double steer_max = 0.4189;  ///< rad, largest steering angle of a command, either way
-  GymPurePursuit gym{};       ///< reproduction of f1tenth_gym
-
-  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
-  void validate() const;
+  double lookahead = 1.0;  ///< m, distance of the point that is aimed at
+  /// As f1tenth_gym: the nearest point is searched on an open path and the target on a closed one, whose
+  /// segments are shifted by 1e-6 m at their ends. The target is the start of the segment found. The steering
+  /// is that for an arc with the fixed lookahead as its chord, and is not bounded.
+  bool gym = false;
 };
 
 /// An opponent that follows a path: R. C. Coulter, "Implementation of the Pure Pursuit Path Tracking
 /// Algorithm", CMU-RI-TR-92-01 (1992): the arc that leads from the car through a point of the path at
-/// lookahead distance, tan(steer) = wheelbase 2 y / lookahead^2 with y sideways in the car's frame.
+/// lookahead distance, tan(steer) = wheelbase 2 y / lookahead^2 with y sideways in the car's frame. If the
+/// path is farther away, but nearer than 10 m, it aims at the first point of the nearest segment; else it is
+/// lost and drives straight ahead at 0.5 m/s.
 class PurePursuit {
  public:
-  /// Throws std::invalid_argument on fewer than 3 points, points that are not finite, or options out of
-  /// range.
+  /// Throws std::invalid_argument on fewer than 3 points, points that are not finite, and a lookahead that is
+  /// not above 0.
   PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& options = {});
 
   /// The nearest position on the path.

@@ -13,24 +13,15 @@
 
 namespace slalom::sim {
 
-/// Options of RacingLine. Lengths are for 1/10-scale cars.
-struct RacingLineOptions {
-  double wall_margin = 0.1;     ///< m, from walls to a circle around the body's middle, as wide as the body
-  double parked_margin = 0.12;  ///< m, from parked bodies to the body
-  double lateral = 6;           ///< m/s^2, the largest acceleration across the line
-  double longitudinal = 5;      ///< m/s^2, along it, either way
-
-  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
-  void validate() const;
-};
-
 /// A closed line for opponents, with speeds, that leads around parked bodies, and the room beside it.
 ///
-/// The given path is resampled at about 0.2 m. Of the offsets from it at which a car has its margins, dynamic
+/// The given path is resampled at about 0.2 m. Of the offsets from it at which a car has its margins (0.1 m
+/// from walls to a circle around the body's middle, as wide as the body; 0.12 m to parked bodies), dynamic
 /// programming takes the way round that stays nearest to the path and moves least from side to side, by at
 /// most 0.25 m for each metre. If there is none, it is searched with smaller margins. If there is none
 /// without margins either, the line is the path. Speeds are those of the path, lowered to the limits of the
-/// accelerations on the way that was found.
+/// accelerations, 6 m/s^2 across and 5 m/s^2 along, on the way that was found. All of that is for 1/10-scale
+/// cars.
 class RacingLine {
  public:
   /// The line at an arc length of the path.
@@ -47,10 +38,10 @@ class RacingLine {
   };
 
   /// Along a closed path with the speeds to drive, for cars of this size, among bodies that do not move.
-  /// Throws std::invalid_argument on fewer than 3 points, points or speeds that are not finite, a path
-  /// without length, and options out of range.
+  /// Throws std::invalid_argument on fewer than 3 points, points or speeds that are not finite, and a path
+  /// without length.
   RacingLine(std::span<const PathPoint> path, const Track& track, const CarParameters& car,
-             std::span<const Box> parked = {}, const RacingLineOptions& options = {});
+             std::span<const Box> parked = {});
 
   double length() const noexcept { return path_.length(); }  ///< m, once round the path
   /// The line at an arc length (m, any number of turns), linear between samples.
@@ -64,7 +55,7 @@ class RacingLine {
   }
   /// m from arc length `from` to `to` along the path, in [-length / 2, length / 2).
   double between(double from, double to) const noexcept;
-  /// Whether the line keeps less than the margins of the options, or leads through parked bodies.
+  /// Whether the line keeps less than the margins, or leads through parked bodies.
   bool narrow() const noexcept { return narrow_; }
 
  private:
@@ -74,7 +65,7 @@ class RacingLine {
   bool find_way(std::span<const std::uint8_t> free);
   void find_room(std::span<const std::uint8_t> free);
   void smooth();
-  void limit_speeds(const RacingLineOptions& options);
+  void limit_speeds();
 
   LapPath path_;
   std::vector<Point> points_;

@@ -22,37 +22,22 @@ inline const char* const* enum_names(OpponentDriver) {
   return names;
 }
 
-/// Options of RacingOpponent. Lengths are for 1/10-scale cars.
-struct RacingOpponentOptions {
-  OpponentDriver driver = OpponentDriver::racing;  ///< not `pursuit`
-  double speed_share = 0.8;                        ///< share of the speeds of the line, [0.01, 1]
-  double room = 0.1;                               ///< m, sideways from cars alongside
-  double side_acceleration = 4;                    ///< m/s^2, about the largest of a change of lane
-  double blocking_reach = 4;                       ///< m, within which a car behind is blocked
-  double lane_offset = 0.6;  ///< m from the line at most, of blocking and of random lanes
-  double shortest_stay = 1;  ///< s, of an erratic driver in a lane, at least
-  double longest_stay = 3;   ///< s, at most
-  double slowest = 0.6;      ///< least share of its speed that an erratic driver chooses
-
-  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
-  void validate() const;
-};
-
 /// An opponent that drives a racing line among other cars, whose states it knows exactly. It steers by pure
 /// pursuit (Coulter, CMU-RI-TR-92-01, 1992) from its rear axle and moves into another lane on a cubic curve,
 /// within the room of the line. It keeps a distance behind a car in its lane, also behind one that stands.
 /// While a car is alongside, from 0.15 m before they overlap along the line until 0.15 m after, it does not
-/// move nearer to it than `room`, as far as the line has room.
+/// move nearer to it than 0.1 m, as far as the line has room.
 ///
-/// A blocking opponent moves to where the car is that is behind it within `blocking_reach`, at most
-/// `lane_offset` from its line. While a car is alongside it chooses no other lane. An erratic one draws a
-/// lane, a speed and a time to keep both, again and again.
+/// A blocking opponent moves to where the car is that is behind it within 4 m, at most 0.6 m from its line.
+/// While a car is alongside it chooses no other lane. An erratic one draws a lane within 0.6 m, 60 to 100 %
+/// of its speed, and 1 to 3 s to keep both, again and again. All lengths are for 1/10-scale cars.
 class RacingOpponent {
  public:
-  /// Drives car `car` of the worlds that it is given, which must have this car. Random numbers follow from
-  /// `key`. Throws std::invalid_argument on a null line or options out of range.
-  RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car,
-                 const RacingOpponentOptions& options, RandomKey key);
+  /// Drives car `car` of the worlds that it is given, which must have this car, at a share, [0.01, 1], of the
+  /// speeds of the line. `driver` is not `pursuit`. Random numbers follow from `key`. Throws
+  /// std::invalid_argument on a null line or a share out of range.
+  RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car, OpponentDriver driver,
+                 double speed_share, RandomKey key);
 
   /// Returns steering and speed for now. Call it a few tens of times a second; between calls the command
   /// holds.
@@ -78,7 +63,8 @@ class RacingOpponent {
 
   std::shared_ptr<const RacingLine> line_;
   std::size_t car_;
-  RacingOpponentOptions options_;
+  OpponentDriver driver_;
+  double speed_share_;
   RandomStream random_;
 
   bool placed_ = false;

@@ -19,8 +19,6 @@ class TimeToCollision {
 
   /// The first beam with a time to collision below the limit, -1 if there is none.
   int first_hit(std::span<const double> ranges, double speed) const noexcept;
-  /// The first beam with a time to collision below the limit, or -1.
-  int first_hit(std::span<const float> ranges, double speed) const noexcept;
 
   /// The way (m) from the centre of gravity to the car's outline, one per beam.
   std::span<const double> sides() const noexcept { return sides_; }

@@ -11,21 +11,15 @@
 
 namespace slalom::sim {
 
-/// Options of the conversion from map to walls.
-struct TrackOptions {
-  bool unknown_is_wall = false;  ///< unknown cells stop cars and beams
-  bool outside_is_wall =
-      true;  ///< the border of the map stops them too; else a beam that leaves it has no return
-};
-
 /// The constant part of a world: walls, the fields computed from them and the path along which laps are
 /// measured. Expensive to construct, immutable, and shared by any number of worlds and threads.
 class Track {
  public:
   /// Throws std::invalid_argument on a map of no size or more than 32766 cells along a side, a resolution
   /// that is not positive, an origin that is not finite, a cell count that does not fit, or no free cell.
-  explicit Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path = {},
-                 const TrackOptions& options = {});
+  /// Unknown cells are free. `outside_is_wall`: the border of the map stops cars and beams; else a beam that
+  /// leaves the map has no return.
+  explicit Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path = {}, bool outside_is_wall = true);
 
   /// The map.
   const maps::OccupancyGrid& grid() const noexcept { return grid_; }
@@ -33,8 +27,8 @@ class Track {
   const maps::DistanceField& distance() const noexcept { return distance_; }
   /// Path for counting laps, or null.
   const LapPath* lap_path() const noexcept { return lap_path_ ? &*lap_path_ : nullptr; }
-  /// The options given at construction.
-  const TrackOptions& options() const noexcept { return options_; }
+  /// Whether the border of the map stops cars and beams.
+  bool outside_is_wall() const noexcept { return outside_is_wall_; }
 
   /// Whether a cell is a wall: column -1 .. width, row -1 .. height. The ring of cells round the map counts
   /// as wall even where `outside_is_wall` is off.
@@ -71,7 +65,7 @@ class Track {
   void make_clearance();
 
   maps::OccupancyGrid grid_;
-  TrackOptions options_;
+  bool outside_is_wall_;
   std::optional<LapPath> lap_path_;
   maps::DistanceField distance_;
   std::vector<std::int16_t> clearance_;

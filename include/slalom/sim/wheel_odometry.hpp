@@ -23,9 +23,6 @@ struct WheelOdometryOptions {
   double steer_offset = 0.005;
   double gyro_bias = 0.005;
   double gyro_noise = 0.02;
-
-  /// Throws std::invalid_argument naming the field, its value and the rule.
-  void validate() const;
 };
 
 template <class Options, class Visit>

@@ -40,29 +40,43 @@ enum class CollisionResponse {
   /// speed. With `slide` both lose speed, so a car that is hit from behind may stop.
   slide_unless_struck,
 };
+inline const char* const* enum_names(CollisionResponse) {
+  static constexpr const char* names[] = {"stop", "slide", "count_only", "slide_unless_struck", nullptr};
+  return names;
+}
 
-/// Options of cars, scanners and collisions.
+/// Options of cars, scanners and collisions. `visit_options` below describes the fields.
 struct WorldOptions {
-  double time_step = 0.01;                                    ///< s
-  CarParameters car;                                          ///< parameters of all cars
-  PlantOptions plant;                                         ///< dynamics and actuators of all cars
-  LidarOptions lidar;                                         ///< scanner of all cars
-  CollisionResponse wall_response = CollisionResponse::stop;  ///< effect of a wall collision
-  CollisionResponse body_response = CollisionResponse::stop;  ///< at cars, discs and boxes
-  int sectors = 3;                                            ///< parts of a lap with a split time
+  double time_step = 0.01;
+  CarParameters car;   ///< parameters of all cars
+  PlantOptions plant;  ///< dynamics and actuators of all cars
+  LidarOptions lidar;  ///< scanner of all cars
+  CollisionResponse wall_response = CollisionResponse::stop;
+  CollisionResponse body_response = CollisionResponse::stop;
+  /// As f1tenth_gym: walls are hit by TimeToCollision instead of by the car's outline; a car that hits one
+  /// stays at its new position, and its speed, yaw, yaw rate and slip become 0; cars may start in walls and
+  /// in each other; reset() makes one step with zero commands. The LiDAR must have `gym`, too.
+  bool gym = false;
 
-  GymWorld gym{};               ///< reproduction of f1tenth_gym
-  bool start_anywhere = false;  ///< cars may start in walls and in each other, as those of f1tenth_gym may
-
-  /// Returns the options with which a world behaves like f1tenth_gym: all `gym` switches, one integration
-  /// step per time step, LiDAR at the centre of gravity, cars that drive through each other, and starts
-  /// anywhere. Load the map with MapRule::grey_threshold and construct the track with
-  /// TrackOptions::outside_is_wall = false.
+  /// Returns the options with which a world behaves like f1tenth_gym: `gym` of every part, one integration
+  /// step per time step, LiDAR at the centre of gravity, and cars that drive through each other. Load the map
+  /// with MapRule::grey_threshold and construct the track without walls outside.
   static WorldOptions gym_compatible();
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
   void validate() const;
 };
+
+template <class Options, class Visit>
+requires is_options_of<Options, WorldOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.time_step, {"time_step", "s", "duration of a step", 1e-5, 0.1});
+  visit_options(o.lidar, visit);
+  visit_options(o.plant, visit);
+  visit_options(o.car, visit);
+  visit(o.wall_response, {"wall_response", "", "effect of a collision with a wall"});
+  visit(o.body_response, {"body_response", "", "effect of a collision with a car, disc or box"});
+}
 
 /// The measurements of one car and its collisions. Spans are valid until the world changes.
 struct Observation {
@@ -75,7 +89,7 @@ struct Observation {
   double time = 0;                     ///< s since the reset
   double scan_time = 0;                ///< s since the reset, when `scan` was taken
   maps::LaserScanView scan;            ///< scan in the frame of `sensor`; without a hit a range is range_max
-  std::span<const double> gym_ranges;  ///< the ranges in float64, with LidarOptions::gym.ranges only
+  std::span<const double> gym_ranges;  ///< the ranges in float64, with LidarOptions::gym only
   bool wall = false;                   ///< collides with a wall in this step
   std::span<const int> colliding;      ///< bodies that it collides with in this step, ascending
 
@@ -123,7 +137,7 @@ class World {
   StepStatus step(std::span<const Command> commands) noexcept;
 
   /// Moves by one time step and puts the driven cars into these states, for replays. Finds collisions and
-  /// laps, but no car responds. With `gym.wall_collision` it does not find collisions with walls. A car that
+  /// laps, but no car responds. With `gym` it does not find collisions with walls. A car that
   /// was taken away is moved, too, and stays off the track. Throws std::invalid_argument on states that are
   /// not finite or not as many as driven cars.
   void follow(std::span<const CarState> states);
@@ -185,7 +199,7 @@ class World {
     NormalNoise noise;
     NumpyRandom gym_noise{12345};
     std::vector<float> ranges;       ///< padded
-    std::vector<double> gym_ranges;  ///< ranges with LidarOptions::gym.ranges only
+    std::vector<double> gym_ranges;  ///< ranges with LidarOptions::gym only
     std::vector<int> colliding;
     maps::Pose sensor;
     double scan_time = 0;
@@ -202,7 +216,9 @@ class World {
   };
 
   int add(const Fixed& body);
+  void place(std::size_t car, const maps::Pose& start, double heading);
   void check_start(std::size_t car) const;
+  Fixed& fixed(int body);
   bool collides(const Box& car, const Fixed& body) const noexcept;
   void find_fixed_partners() noexcept;
   void find_collisions() noexcept;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/gym/gym_scan.hpp"
+#include "sim/gym/gym_distance.hpp"
 #include "slalom/sim/shapes.hpp"
 
 namespace slalom::sim {
@@ -19,17 +19,15 @@ PlantOptions plant_options() {
   PlantOptions options;
   options.dynamics.integrator = Integrator::euler;
   options.dynamics.substeps = 1;
-  options.dynamics.gym = GymDynamics::all();
-  options.actuation.gym = GymActuation::all();
+  options.dynamics.gym = options.actuation.gym = options.gym = true;
   options.steering_dead_time = steering_delay;
-  options.gym = GymPlant::all();
   return options;
 }
 
 LidarOptions lidar_options() {
   LidarOptions options;
   options.mount = {};
-  options.gym = GymLidar::all();
+  options.gym = true;
   return options;
 }
 

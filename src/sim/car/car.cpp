@@ -1,7 +1,5 @@
 #include "slalom/sim/car.hpp"
 
-#include "sim/validation.hpp"
-
 namespace slalom::sim {
 
 CarParameters CarParameters::full_scale() {
@@ -25,26 +23,6 @@ CarParameters CarParameters::full_scale() {
 
 CarParameters parameters_of(CarKind kind) {
   return kind == CarKind::passenger_car ? CarParameters::full_scale() : CarParameters{};
-}
-
-void CarParameters::validate() const {
-  detail::require_positive("friction", friction);
-  detail::require_positive("cornering_front", cornering_front);
-  detail::require_positive("cornering_rear", cornering_rear);
-  detail::require_positive("front_length", front_length);
-  detail::require_positive("rear_length", rear_length);
-  detail::require_range("gravity_height", gravity_height, 0, 10);
-  detail::require_positive("mass", mass);
-  detail::require_positive("inertia", inertia);
-  detail::require_range("steer_min", steer_min, -1.5, 0);
-  detail::require_range("steer_max", steer_max, 0, 1.5);
-  detail::require_positive("steer_rate_max", steer_rate_max);
-  detail::require_positive("switch_speed", switch_speed);
-  detail::require_positive("acceleration_max", acceleration_max);
-  detail::require_range("speed_min", speed_min, -1000, 0);
-  detail::require_positive("speed_max", speed_max);
-  detail::require_positive("length", length);
-  detail::require_positive("width", width);
 }
 
 }  // namespace slalom::sim

@@ -132,10 +132,9 @@ CarState derivative(const CarParameters& car, const DynamicsOptions& options, co
                     const DriveInput& input) noexcept {
   const DriveInput u{limit_steer_rate(car, s.steer, input.steer_rate),
                      limit_acceleration(car, s.speed, input.acceleration)};
-  if (is_kinematic(options, s.speed))
-    return options.gym.low_speed ? gym_kinematic(car, s, u) : kinematic(car, s, u);
+  if (is_kinematic(options, s.speed)) return options.gym ? gym_kinematic(car, s, u) : kinematic(car, s, u);
   if (options.model == Model::saturating) return saturating(car, s, u);
-  return single_track(car, s, u, options.gym.reverse);
+  return single_track(car, s, u, options.gym);
 }
 
 CarState advance(const CarParameters& car, const DynamicsOptions& options, const CarState& state,
@@ -145,8 +144,8 @@ CarState advance(const CarParameters& car, const DynamicsOptions& options, const
   for (int i = 0; i < parts; ++i) {
     s = integrate(car, options, s, input, time_step / parts);
     // The actuator's stop is hard, and its last move may have been longer than the way to it.
-    if (!options.gym.steer_overshoot) s.steer = std::clamp(s.steer, car.steer_min, car.steer_max);
-    if (!options.gym.low_speed && is_kinematic(options, s.speed)) {
+    if (!options.gym) s.steer = std::clamp(s.steer, car.steer_min, car.steer_max);
+    if (!options.gym && is_kinematic(options, s.speed)) {
       const CarState rates = kinematic(car, s, {});
       s.yaw_rate = rates.yaw;
       s.slip = std::atan(car.rear_length * std::tan(s.steer) / car.wheelbase());

@@ -4,12 +4,8 @@
 
 namespace slalom::sim {
 
-void ImuOptions::validate() const {
-  validate_options(*this, "imu");
-}
-
 Imu::Imu(const ImuOptions& options) : options_(options), random_({options.seed, 0}) {
-  options_.validate();
+  validate_options(options_, "imu");
 }
 
 void Imu::reset(const CarState& state) noexcept {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/validation.hpp"
-
 namespace slalom::sim {
 namespace {
 
@@ -19,15 +17,37 @@ double wrap(double yaw, bool gym) {
 
 }  // namespace
 
+double steer_rate_towards(const CarParameters& car, const ActuationOptions& options, double steer,
+                          double target, double time_step) noexcept {
+  if (options.gym) {
+    const double difference = target - steer;
+    if (std::abs(difference) <= 1e-4) return 0;
+    return difference > 0 ? car.steer_rate_max : -car.steer_rate_max;
+  }
+  const double difference = std::clamp(target, car.steer_min, car.steer_max) - steer;
+  return std::clamp(difference / time_step, -car.steer_rate_max, car.steer_rate_max);
+}
+
+double acceleration_towards(const CarParameters& car, const ActuationOptions& options, double speed,
+                            double target) noexcept {
+  const double difference = target - speed;
+  if (options.gym) {
+    const double factor = speed > 0 ? 10.0 : 2.0;
+    const double range = difference > 0 ? car.speed_max : -car.speed_min;
+    return factor * car.acceleration_max / range * difference;
+  }
+  // Braking is slowing down whichever way the car goes.
+  const bool brakes = speed != 0 && (difference > 0) != (speed > 0);
+  return (brakes ? options.brake_gain : options.speed_gain) * difference;
+}
+
 Plant::Plant(const CarParameters& car, const PlantOptions& options, double time_step)
     : car_(car), options_(options), time_step_(time_step) {
-  car.validate();
-  options.actuation.validate();
-  detail::require_range("time_step", time_step, 1e-5, 0.1);
-  detail::require_range("steering_dead_time", options.steering_dead_time, 0, 1);
-  detail::require_range("substeps", options.dynamics.substeps, 0, 1000);
-  if (options.actuation.gym.gains)
-    detail::require_range("speed_min with gym.gains", car.speed_min, -1000, -1e-3);
+  validate_options(car, "car");
+  validate_options(options, "plant");
+  slalom::detail::check("plant", {"time_step", "s", "", 1e-5, 0.1}, time_step);
+  if (options.actuation.gym)
+    slalom::detail::check("car", {"speed_min", "m/s", "", -1000, -1e-3}, car.speed_min);
   on_the_way_.assign(static_cast<std::size_t>(std::lround(options.steering_dead_time / time_step)), 0.0);
   options_.dynamics.substeps = substeps(car, options.dynamics, time_step);
 }
@@ -50,7 +70,7 @@ double Plant::delayed(double steering) noexcept {
 
 void Plant::move(const DriveInput& input) noexcept {
   state_ = advance(car_, options_.dynamics, state_, input, time_step_);
-  state_.yaw = wrap(state_.yaw, options_.gym.yaw);
+  state_.yaw = wrap(state_.yaw, options_.gym);
 }
 
 void Plant::step(const Command& command) noexcept {

@@ -4,14 +4,10 @@
 
 namespace slalom::sim {
 
-void WheelOdometryOptions::validate() const {
-  validate_options(*this, "wheel_odometry");
-}
-
 WheelOdometry::WheelOdometry(const CarParameters& car, const WheelOdometryOptions& options)
     : car_(car), options_(options), random_({options.seed, 0}) {
-  car_.validate();
-  options_.validate();
+  validate_options(car_, "car");
+  validate_options(options_, "wheel_odometry");
 }
 
 void WheelOdometry::reset(const CarState& state, const maps::Pose& start) noexcept {

@@ -10,6 +10,17 @@ namespace {
 
 using std::numbers::pi;
 
+// The values of f1tenth_benchmarks.
+constexpr int smoothing = 3;          // beams, of the mean over neighbours
+constexpr std::size_t skipped = 135;  // beams at each end of the scan that are not used
+constexpr double range_max = 10;      // m, longer ranges count as this
+constexpr int bubble = 160;           // beams to each side of the nearest return that count as blocked
+constexpr int min_gap = 5;            // beams; a gap must have more
+constexpr int target_width = 80;      // beams, of the mean whose maximum is steered for
+constexpr double steer_max = 0.4;     // rad
+constexpr double slow_above = 0.174;  // rad, of steering
+constexpr double fast = 5, slow = 3;  // m/s
+
 /// The mean over a window of `width` values; beyond the ends they are 0. As numpy.convolve in the mode `same`
 /// with `width` ones: as many values as the longer of both, the window of an even width begins half of it
 /// before.
@@ -30,13 +41,12 @@ std::vector<double> moving_mean(std::span<const double> values, int width) {
 }  // namespace
 
 Command FollowTheGap::command(std::span<const double> scan) {
-  const auto skipped = static_cast<std::size_t>(options_.skipped);
   if (scan.size() <= 2 * skipped) return {};
-  ranges_ = moving_mean(scan.subspan(skipped, scan.size() - 2 * skipped), options_.smoothing);
-  for (double& range : ranges_) range = std::clamp(range, 0.0, options_.range_max);
+  ranges_ = moving_mean(scan.subspan(skipped, scan.size() - 2 * skipped), smoothing);
+  for (double& range : ranges_) range = std::clamp(range, 0.0, range_max);
   const auto n = static_cast<int>(ranges_.size());
   const auto nearest = static_cast<int>(std::min_element(ranges_.begin(), ranges_.end()) - ranges_.begin());
-  for (int i = std::max(0, nearest - options_.bubble); i < std::min(nearest + options_.bubble, n - 1); ++i)
+  for (int i = std::max(0, nearest - bubble); i < std::min(nearest + bubble, n - 1); ++i)
     ranges_[static_cast<std::size_t>(i)] = 0;
 
   int end = n, begin = n;
@@ -44,16 +54,16 @@ Command FollowTheGap::command(std::span<const double> scan) {
     while (end > 0 && ranges_[static_cast<std::size_t>(end - 1)] == 0) --end;
     begin = end;
     while (begin > 0 && ranges_[static_cast<std::size_t>(begin - 1)] != 0) --begin;
-    if (end - begin > options_.min_gap) break;
+    if (end - begin > min_gap) break;
   }
   if (end == 0) return {};
   const auto gap =
       std::span(ranges_).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
-  const auto means = moving_mean(gap, options_.target_width);
+  const auto means = moving_mean(gap, target_width);
   const auto best = static_cast<int>(std::max_element(means.begin(), means.end()) - means.begin()) + begin;
   const double angle = (best - 0.5 * n) * (2 * pi / static_cast<double>(scan.size()));
-  const double steer = std::clamp(0.5 * angle, -options_.steer_max, options_.steer_max);
-  return {steer, std::abs(steer) > options_.slow_above ? options_.slow : options_.speed};
+  const double steer = std::clamp(0.5 * angle, -steer_max, steer_max);
+  return {steer, std::abs(steer) > slow_above ? slow : fast};
 }
 
 }  // namespace slalom::sim

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/validation.hpp"
+#include "slalom/core/options.hpp"
 
 namespace slalom::sim {
 namespace {
 
-constexpr double usual_spacing = 0.2;  // m, of samples
+constexpr double usual_spacing = 0.2;                      // m, of samples
+constexpr double wall_margin = 0.1, parked_margin = 0.12;  // m
+constexpr double lateral = 6, longitudinal = 5;            // m/s^2, limits of the accelerations
 constexpr int lanes_aside = 40, lanes = 2 * lanes_aside + 1;
 constexpr double lane_step = 0.05;                    // m, from one lane to the next: 0.25 of the spacing
 constexpr double offset_cost = 0.1, change_cost = 1;  // costs of 1 m^2 for a sample, and of a change of lane
@@ -20,7 +22,7 @@ constexpr int smoothing = 3;                          // samples to either side
 std::vector<maps::Point> points_of(std::span<const PathPoint> path) {
   std::vector<maps::Point> points;
   for (const PathPoint& each : path) {
-    detail::require_finite("line point speed", each.speed);
+    slalom::detail::check("racing line", {"speed", "m/s", "", -1e9, 1e9}, each.speed);
     points.push_back(each.point);
   }
   return points;
@@ -53,17 +55,9 @@ double half_diagonal(const Box& box) {
 
 }  // namespace
 
-void RacingLineOptions::validate() const {
-  detail::require_range("wall_margin", wall_margin, 0, 10);
-  detail::require_range("parked_margin", parked_margin, 0, 10);
-  detail::require_positive("lateral", lateral);
-  detail::require_positive("longitudinal", longitudinal);
-}
-
 RacingLine::RacingLine(std::span<const PathPoint> path, const Track& track, const CarParameters& car,
-                       std::span<const Box> parked, const RacingLineOptions& options)
+                       std::span<const Box> parked)
     : path_(resampled(LapPath(points_of(path)))) {
-  options.validate();
   const LapPath given(points_of(path));
   const std::size_t count = path_.size();
   spacing_ = path_.length() / static_cast<double>(count);
@@ -76,31 +70,30 @@ RacingLine::RacingLine(std::span<const PathPoint> path, const Track& track, cons
                        .speed = speed_at(path, given, here)});
   }
   for (const double share : {1.0, 0.6, 0.3, 0.0}) {
-    const auto free =
-        free_cells(track, car, parked, share * options.wall_margin, share * options.parked_margin);
+    const auto free = free_cells(track, car, parked, share * wall_margin, share * parked_margin);
     narrow_ = share < 1;
     if (!find_way(free)) continue;
     find_room(free);
     break;
   }
   smooth();
-  limit_speeds(options);
+  limit_speeds();
 }
 
 /// Whether a car may be there, [sample][lane].
 std::vector<std::uint8_t> RacingLine::free_cells(const Track& track, const CarParameters& car,
-                                                 std::span<const Box> parked, double wall_margin,
-                                                 double parked_margin) const {
+                                                 std::span<const Box> parked, double to_walls,
+                                                 double to_parked) const {
   std::vector<std::uint8_t> free(points_.size() * lanes);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& at = points_[i];
     const auto is_free = [&](const maps::Point& middle) {
-      if (track.distance_to_wall(middle) < 0.5 * car.width + wall_margin) return false;
+      if (track.distance_to_wall(middle) < 0.5 * car.width + to_walls) return false;
       const Box body{{middle.x, middle.y, at.yaw}, car.length, car.width + 2 * inflation};
       return std::none_of(parked.begin(), parked.end(), [&](const Box& other) {
-        const double reach = half_diagonal(body) + half_diagonal(other) + parked_margin;
+        const double reach = half_diagonal(body) + half_diagonal(other) + to_parked;
         return std::hypot(other.pose.x - middle.x, other.pose.y - middle.y) < reach &&
-               signed_gap(body, other) < parked_margin;
+               signed_gap(body, other) < to_parked;
       });
     };
     // Beyond a wall there may be another road.
@@ -183,7 +176,7 @@ void RacingLine::smooth() {
 }
 
 /// Lowers the speeds to the limits of the accelerations.
-void RacingLine::limit_speeds(const RacingLineOptions& options) {
+void RacingLine::limit_speeds() {
   std::vector<maps::Point> line;
   for (const Point& each : points_) line.push_back(each.beside(each.offset));
   const LapPath measured(line);
@@ -197,12 +190,12 @@ void RacingLine::limit_speeds(const RacingLineOptions& options) {
     const double turned = maps::wrap_angle(std::atan2(after.y - here.y, after.x - here.x) -
                                            std::atan2(here.y - before.y, here.x - before.x));
     const double curvature = std::abs(turned) / curvature_reach;
-    points_[i].speed = std::min(points_[i].speed, std::sqrt(options.lateral / std::max(curvature, 1e-6)));
+    points_[i].speed = std::min(points_[i].speed, std::sqrt(lateral / std::max(curvature, 1e-6)));
     way.push_back(std::hypot(b.x - a.x, b.y - a.y));
     arc += way.back();
   }
   const auto reached = [&](double from, double length) {
-    return std::sqrt(from * from + 2 * options.longitudinal * length);
+    return std::sqrt(from * from + 2 * longitudinal * length);
   };
   for (std::size_t i = 2 * count; i > 0; --i) {
     Point& here = points_[(i - 1) % count];

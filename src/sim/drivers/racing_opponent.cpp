@@ -3,17 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
-#include "sim/validation.hpp"
+#include "slalom/core/options.hpp"
 
 namespace slalom::sim {
 namespace {
 
 constexpr double sight = 12,
-                 widest = 4;       // m ahead and behind, and beside the path, in which other cars count
-constexpr double most_aside = 2;   // m, of lanes
-constexpr double look_step = 0.2;  // m, from one look ahead to the next
+                 widest = 4;             // m ahead and behind, and beside the path, in which other cars count
+constexpr double room = 0.1;             // m, sideways from cars alongside
+constexpr double lane_offset = 0.6;      // m from the line at most, of blocking and of random lanes
+constexpr double blocking_reach = 4;     // m, within which a car behind is blocked
+constexpr double side_acceleration = 4;  // m/s^2, about the largest of a change of lane
+constexpr double shortest_stay = 1, longest_stay = 3;  // s, of an erratic driver in a lane
+constexpr double slowest = 0.6;                     // least share of its speed that an erratic driver chooses
+constexpr double look_step = 0.2;                   // m, from one look ahead to the next
 constexpr double follow_gap = 0.4, headway = 0.5;   // m, s, to a car ahead
 constexpr double pass_gap = 0.15;                   // m along the line, from when cars are alongside
 constexpr double braking_lag = 0.1;                 // s, of the speed control
@@ -24,24 +30,11 @@ constexpr double least_aim = 0.4, aim_time = 0.14;  // m, s: distance to the poi
 
 }  // namespace
 
-void RacingOpponentOptions::validate() const {
-  if (driver == OpponentDriver::pursuit)
-    detail::fail("driver", "pursuit", "racing, blocking or erratic; the class PurePursuit drives as pursuit");
-  detail::require_range("speed_share", speed_share, 0.01, 1);
-  detail::require_range("room", room, 0, 10);
-  detail::require_positive("side_acceleration", side_acceleration);
-  detail::require_range("blocking_reach", blocking_reach, 0, sight);
-  detail::require_range("lane_offset", lane_offset, 0, most_aside);
-  detail::require_positive("shortest_stay", shortest_stay);
-  detail::require_range("longest_stay", longest_stay, shortest_stay, 1e9);
-  detail::require_range("slowest", slowest, 0.01, 1);
-}
-
-RacingOpponent::RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car,
-                               const RacingOpponentOptions& options, RandomKey key)
-    : line_(std::move(line)), car_(car), options_(options), random_(key) {
-  if (!line_) detail::fail("line", "null", "a line");
-  options_.validate();
+RacingOpponent::RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car, OpponentDriver driver,
+                               double speed_share, RandomKey key)
+    : line_(std::move(line)), car_(car), driver_(driver), speed_share_(speed_share), random_(key) {
+  if (!line_) throw std::invalid_argument("line: must not be null");
+  slalom::detail::check("opponent", {"speed_share", "", "", 0.01, 1}, speed_share);
 }
 
 /// Finds the own place along the path and those of the other cars. The line knows the parked bodies.
@@ -77,24 +70,24 @@ bool RacingOpponent::alongside(const Neighbour& other) const noexcept {
 
 /// m left of the racing line, where this driver wants to be.
 double RacingOpponent::wanted_lane(double time) {
-  if (options_.driver == OpponentDriver::erratic) {
+  if (driver_ == OpponentDriver::erratic) {
     if (time >= random_until_) {
-      random_lane_ = random_.uniform(-options_.lane_offset, options_.lane_offset);
-      random_share_ = random_.uniform(options_.slowest, 1);
-      random_until_ = time + random_.uniform(options_.shortest_stay, options_.longest_stay);
+      random_lane_ = random_.uniform(-lane_offset, lane_offset);
+      random_share_ = random_.uniform(slowest, 1);
+      random_until_ = time + random_.uniform(shortest_stay, longest_stay);
     }
     return random_lane_;
   }
-  if (options_.driver != OpponentDriver::blocking) return 0;
+  if (driver_ != OpponentDriver::blocking) return 0;
   const Neighbour* behind = nullptr;
   for (const Neighbour& other : neighbours_) {
     if (alongside(other)) return lane_;
-    if (other.gap > 0 || -other.gap > options_.blocking_reach || other.speed <= 0) continue;
+    if (other.gap > 0 || -other.gap > blocking_reach || other.speed <= 0) continue;
     if (!behind || other.gap > behind->gap) behind = &other;
   }
   if (!behind) return 0;
   const double offset = behind->offset - line_->at(place_.arc + behind->gap).offset;
-  return std::clamp(offset, -options_.lane_offset, options_.lane_offset);
+  return std::clamp(offset, -lane_offset, lane_offset);
 }
 
 /// m left of the path, `ahead` (m) on the way into the lane.
@@ -105,7 +98,7 @@ double RacingOpponent::offset_at(double ahead) const noexcept {
   for (const Neighbour& other : neighbours_) {
     if (!alongside(other)) continue;
     // A distance that is less than wanted already may stay as it is.
-    const double apart = other.half_width + half_width_ + options_.room;
+    const double apart = other.half_width + half_width_ + room;
     if (other.offset > place_.lateral)
       offset = std::min(offset, std::max(other.offset - apart, place_.lateral));
     else
@@ -115,7 +108,7 @@ double RacingOpponent::offset_at(double ahead) const noexcept {
 }
 
 double RacingOpponent::wanted_speed() const noexcept {
-  const double share = options_.speed_share * random_share_;
+  const double share = speed_share_ * random_share_;
   double speed = std::numeric_limits<double>::infinity();
   for (double ahead = 0; ahead <= braking_lag * speed_ + look_step; ahead += look_step)
     speed = std::min(speed, share * line_->at(place_.arc + ahead).speed);
@@ -126,7 +119,7 @@ double RacingOpponent::wanted_speed() const noexcept {
     if (other.gap <= 0) continue;
     const double half_widths = other.half_width + half_width_;
     if (alongside(other) && std::abs(place_.lateral - other.offset) >= half_widths) continue;
-    if (std::abs(offset_at(other.gap) - other.offset) > half_widths + options_.room) continue;
+    if (std::abs(offset_at(other.gap) - other.offset) > half_widths + room) continue;
     const double gap = other.gap - other.half_length - half_length_ - follow_gap;
     speed = std::min(speed, std::max(other.speed + gap / headway, 0.0));
   }
@@ -138,7 +131,7 @@ Command RacingOpponent::command(const World& world) {
   lane_ = wanted_lane(world.time());
   // A cubic of length l has an acceleration of at most 6 |offset| (v / l)^2.
   const double aside = std::abs(lane_ + line_->at(place_.arc).offset - place_.lateral);
-  change_ = std::max(shortest_change, speed_ * std::sqrt(6 * aside / options_.side_acceleration));
+  change_ = std::max(shortest_change, speed_ * std::sqrt(6 * aside / side_acceleration));
   const CarParameters& car = world.options().car;
   const double ahead = least_aim + aim_time * speed_;
   const RacingLine::Point at = line_->at(place_.arc + ahead);

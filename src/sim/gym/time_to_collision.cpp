@@ -17,27 +17,14 @@ TimeToCollision::TimeToCollision(const LidarOptions& lidar, const CarParameters&
   }
 }
 
-namespace {
-
-template <class T>
-int first(std::span<const T> ranges, double speed, const std::vector<double>& sides,
-          const std::vector<double>& cosines) {
+int TimeToCollision::first_hit(std::span<const double> ranges, double speed) const noexcept {
   constexpr double soon = 0.005;  // s
   if (speed == 0) return -1;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const double time = (ranges[i] - sides[i]) / (speed * cosines[i]);
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const double time = (ranges[i] - sides_[i]) / (speed * cosines_[i]);
     if (time < soon && time >= 0) return static_cast<int>(i);
   }
   return -1;
-}
-
-}  // namespace
-
-int TimeToCollision::first_hit(std::span<const double> ranges, double speed) const noexcept {
-  return first(ranges, speed, sides_, cosines_);
-}
-int TimeToCollision::first_hit(std::span<const float> ranges, double speed) const noexcept {
-  return first(ranges, speed, sides_, cosines_);
 }
 
 }  // namespace slalom::sim

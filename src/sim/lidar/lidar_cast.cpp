@@ -6,11 +6,8 @@
 #include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim {
-namespace {
 
 using std::numbers::pi;
-
-}  // namespace
 
 Lidar::Window Lidar::window(const maps::Pose& sensor, const maps::Point& middle,
                             double radius) const noexcept {
@@ -36,32 +33,9 @@ Lidar::Window Lidar::window(const maps::Pose& sensor, const maps::Point& middle,
   return all;
 }
 
-Lidar::Window Lidar::gym_window(const maps::Pose& sensor, const Box& box) const noexcept {
-  Window all{options_.beams - 1, 0};
-  const double heading = std::atan2(std::sin(sensor.yaw), std::cos(sensor.yaw));
-  for (const maps::Point& corner : corners(box)) {
-    const double dx = corner.x - sensor.x, dy = corner.y - sensor.y, distance = std::sqrt(dx * dx + dy * dy);
-    double angle = heading - std::atan2(dy / distance, dx / distance);
-    if (angle > pi) angle -= 2 * pi;
-    if (angle < -pi) angle += 2 * pi;
-    const auto nearer = [&](double a, double b) { return std::abs(a + angle) < std::abs(b + angle); };
-    // The beams stand evenly, so the nearest is one of the few about where it should be.
-    const double increment = options_.angle_increment(), last = static_cast<double>(options_.beams - 1);
-    const double about = increment > 0 ? (-angle - angles_.front()) / increment : 0;
-    const auto begin = angles_.begin() + static_cast<std::ptrdiff_t>(std::clamp(about - 2, 0.0, last)),
-               end = angles_.begin() + static_cast<std::ptrdiff_t>(std::clamp(about + 3, 0.0, last)) + 1;
-    const auto nearest = std::min_element(begin, end, nearer);
-    const int beam = static_cast<int>(nearest - angles_.begin());
-    all.first = std::min(all.first, beam);
-    all.last = std::max(all.last, beam);
-  }
-  return all;
-}
-
 void Lidar::cast(const maps::Pose& sensor, const Box& box, std::span<float> ranges) const noexcept {
   const double radius = std::sqrt(box.length * box.length + box.width * box.width) / 2;
-  const Window beams =
-      options_.gym.window ? gym_window(sensor, box) : window(sensor, {box.pose.x, box.pose.y}, radius);
+  const Window beams = window(sensor, {box.pose.x, box.pose.y}, radius);
   if (beams.first > beams.last) return;
   const maps::Point at = maps::inverse_transform(box.pose, {sensor.x, sensor.y});
   const double yaw = sensor.yaw - box.pose.yaw;
@@ -94,28 +68,6 @@ void Lidar::cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ra
                   .first = beams.first,
                   .last = beams.last,
                   .ranges = ranges.data()});
-}
-
-void Lidar::gym_cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept {
-  const double radius = std::sqrt(box.length * box.length + box.width * box.width) / 2;
-  const Window beams =
-      options_.gym.window ? gym_window(sensor, box) : window(sensor, {box.pose.x, box.pose.y}, radius);
-  for (int i = beams.first; i <= beams.last; ++i) {
-    const auto beam = static_cast<std::size_t>(i);
-    const double angle = sensor.yaw + angles_[beam];
-    ranges[beam] =
-        std::min(ranges[beam], ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), box));
-  }
-}
-
-void Lidar::gym_cast(const maps::Pose& sensor, const Disc& disc, std::span<double> ranges) const noexcept {
-  const Window beams = window(sensor, disc.middle, disc.radius);
-  for (int i = beams.first; i <= beams.last; ++i) {
-    const auto beam = static_cast<std::size_t>(i);
-    const double angle = sensor.yaw + angles_[beam];
-    ranges[beam] =
-        std::min(ranges[beam], ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), disc));
-  }
 }
 
 }  // namespace slalom::sim

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "slalom/core/options.hpp"
 
 namespace slalom::sim {
 
@@ -28,14 +29,6 @@ constexpr double at_point = 0.3;        // m from a point of the way that is not
 constexpr double at_end = 0.1;          // m, the same of the last
 constexpr double contact = 0.05;        // m from the robot, where nobody attentive steps nearer
 constexpr double least_distance = 0.1;  // m, for forces; nearer they would not grow much
-
-void require(std::size_t walker, double value, double least, double most, const char* what) {
-  if (value >= least && value <= most) return;
-  std::ostringstream text;
-  text << "walker " << walker << ": " << what << " " << value << ": must be in [" << least << ", " << most
-       << "]";
-  throw std::invalid_argument(text.str());
-}
 
 Point minus(const Point& a, const Point& b) {
   return {a.x - b.x, a.y - b.y};
@@ -79,21 +72,22 @@ Crowd::Crowd(const Room& room, std::vector<Walker> walkers)
   solid_.insert(solid_.end(), room.obstacles.begin(), room.obstacles.end());
   for (std::size_t i = 0; i < walkers_.size(); ++i) {
     const Walker& each = walkers_[i];
-    if (each.way.empty())
-      throw std::invalid_argument("walker " + std::to_string(i) + ": way: must have at least one point");
-    require(i, each.speed, 0, 3, "speed");
-    require(i, each.radius, 0.05, 1, "radius");
-    require(i, each.pause, 0, 1000, "pause");
-    for (const Point& point : each.way) {
-      require(i, point.x, -1e6, 1e6, "x of a point");
-      require(i, point.y, -1e6, 1e6, "y of a point");
-    }
+    const std::string name = "walker " + std::to_string(i);
+    const auto check = [&](const char* what, double value, double least, double most) {
+      slalom::detail::check(name, {what, "", "", least, most}, value);
+    };
+    if (each.way.empty()) throw std::invalid_argument(name + ": way: must have at least one point");
+    check("speed", each.speed, 0, 3);
+    check("radius", each.radius, 0.05, 1);
+    check("pause", each.pause, 0, 1000);
+    for (const Point& point : each.way)
+      for (const double value : {point.x, point.y}) check("way", value, -1e6, 1e6);
     const Disc body{each.way.front(), each.radius};
-    require(i, body.middle.x, each.radius, length_ - each.radius, "x of its first point");
-    require(i, body.middle.y, each.radius, width_ - each.radius, "y of its first point");
+    check("x of its first point", body.middle.x, each.radius, length_ - each.radius);
+    check("y of its first point", body.middle.y, each.radius, width_ - each.radius);
     for (const Box& box : solid_)
       if (signed_gap(box, body) <= 0)
-        throw std::invalid_argument("walker " + std::to_string(i) +
+        throw std::invalid_argument(name +
                                     ": first point: must not be within its radius of a wall or an obstacle");
     bodies_.push_back(body);
   }

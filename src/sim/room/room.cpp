@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 
+#include "slalom/core/options.hpp"
 #include "slalom/maps/laser_scan.hpp"
 
 namespace slalom::sim {
 
 namespace {
-
-void require(double value, double least, double most, const char* what) {
-  if (value >= least && value <= most) return;
-  std::ostringstream text;
-  text << "room: " << what << " " << value << ": must be in [" << least << ", " << most << "] m";
-  throw std::invalid_argument(text.str());
-}
 
 /// The cells that cover a length. One that is a multiple of the resolution but for rounding takes no more.
 int cells_of(double length, double resolution) {
@@ -34,9 +26,10 @@ double way_out(double position, double direction, double length) {
 }  // namespace
 
 maps::OccupancyGrid map_of(const Room& room, double resolution) {
-  require(room.length, 1, 1000, "length");
-  require(room.width, 1, 1000, "width");
-  require(resolution, 0.01, 1, "resolution");
+  using slalom::detail::check;
+  check("room", {"length", "m", "", 1, 1000}, room.length);
+  check("room", {"width", "m", "", 1, 1000}, room.width);
+  check("room", {"resolution", "m", "", 0.01, 1}, resolution);
   maps::OccupancyGrid grid;
   grid.resolution = resolution;
   grid.width = cells_of(room.length, resolution) + 2;

@@ -4,22 +4,23 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/validation.hpp"
+#include "slalom/core/options.hpp"
 
 namespace slalom::sim {
 
 LapPath::LapPath(std::vector<maps::Point> points) : points_(std::move(points)) {
-  if (points_.size() < 3) detail::fail("lap path points", std::to_string(points_.size()), "at least 3");
+  using slalom::detail::check;
+  check("lap path", {"points", "", "", 3}, static_cast<double>(points_.size()));
   double arc = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    detail::require_finite("lap path x", points_[i].x);
-    detail::require_finite("lap path y", points_[i].y);
+    check("lap path", {"x", "m", "", -1e9, 1e9}, points_[i].x);
+    check("lap path", {"y", "m", "", -1e9, 1e9}, points_[i].y);
     start_.push_back(arc);
     const maps::Point& next = points_[i + 1 == points_.size() ? 0 : i + 1];
     arc += std::hypot(next.x - points_[i].x, next.y - points_[i].y);
   }
   start_.push_back(arc);
-  detail::require_positive("lap path length", arc);
+  check("lap path", {"length", "m", "", 1e-9}, arc);
 }
 
 LapPath::Place LapPath::place(const maps::Point& p, std::size_t i) const noexcept {
@@ -69,19 +70,12 @@ maps::Pose LapPath::at(double arc) const noexcept {
   return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), std::atan2(b.y - a.y, b.x - a.x)};
 }
 
-LapTimer::LapTimer(const LapPath& path, int sectors) {
-  detail::require_range("sectors", sectors, 1, 1000);
-  splits_.assign(static_cast<std::size_t>(sectors), 0.0);
-  reset(path, path.points().front(), 0);
-}
-
 void LapTimer::reset(const LapPath& path, const maps::Point& position, double time) noexcept {
   place_ = path.project(position);
   progress_ = 0;
   time_ = lap_start_ = time;
   last_lap_time_ = 0;
-  laps_ = sectors_done_ = 0;
-  std::fill(splits_.begin(), splits_.end(), 0.0);
+  laps_ = 0;
 }
 
 void LapTimer::update(const LapPath& path, const maps::Point& position, double time) noexcept {
@@ -94,16 +88,11 @@ void LapTimer::update(const LapPath& path, const maps::Point& position, double t
   place_ = now;
   time_ = time;
   progress_ += moved;
-  const auto sectors = static_cast<int>(splits_.size());
-  const auto next_line = [&] { return length * (laps_ + static_cast<double>(sectors_done_ + 1) / sectors); };
-  while (moved > 0 && progress_ >= next_line()) {
-    const double part = std::clamp((next_line() - before) / moved, 0.0, 1.0);
+  while (moved > 0 && progress_ >= length * (laps_ + 1.0)) {
+    const double part = std::clamp((length * (laps_ + 1.0) - before) / moved, 0.0, 1.0);
     const double crossed = time_before + part * (time - time_before);
-    splits_[static_cast<std::size_t>(sectors_done_)] = crossed - lap_start_;
-    if (++sectors_done_ < sectors) continue;
     last_lap_time_ = crossed - lap_start_;
     lap_start_ = crossed;
-    sectors_done_ = 0;
     ++laps_;
   }
 }

@@ -5,39 +5,22 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/validation.hpp"
+#include "slalom/core/options.hpp"
 
 namespace slalom::sim {
-namespace {
 
-void check(const maps::OccupancyGrid& grid) {
-  constexpr int most = 32766;
-  detail::require_range("map width", grid.width, 1, most);
-  detail::require_range("map height", grid.height, 1, most);
-  detail::require_positive("map resolution", grid.resolution);
-  detail::require_finite("map origin x", grid.origin.x);
-  detail::require_finite("map origin y", grid.origin.y);
-  detail::require_finite("map origin yaw", grid.origin.yaw);
-  if (grid.cells.size() != static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height))
-    throw std::invalid_argument("map cells = " + std::to_string(grid.cells.size()) +
-                                ": must be width x height");
-}
-
-bool blocks(maps::Occupancy cell, bool unknown_is_wall) {
-  return cell == maps::Occupancy::occupied || (unknown_is_wall && cell == maps::Occupancy::unknown);
-}
-
-}  // namespace
-
-Track::Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path, const TrackOptions& options)
-    : grid_(std::move(grid)), options_(options), lap_path_(std::move(lap_path)) {
-  check(grid_);
-  const auto is_free = [&](maps::Occupancy cell) { return !blocks(cell, options_.unknown_is_wall); };
-  if (std::none_of(grid_.cells.begin(), grid_.cells.end(), is_free))
+Track::Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path, bool outside_is_wall)
+    : grid_(std::move(grid)), outside_is_wall_(outside_is_wall), lap_path_(std::move(lap_path)) {
+  using slalom::detail::check;
+  check("map", {"width", "cells", "", 1, 32766}, grid_.width);
+  check("map", {"height", "cells", "", 1, 32766}, grid_.height);
+  maps::check_grid(grid_);
+  if (std::all_of(grid_.cells.begin(), grid_.cells.end(),
+                  [](maps::Occupancy cell) { return cell == maps::Occupancy::occupied; }))
     throw std::invalid_argument("map: must have a free cell");
   cosine_ = std::cos(grid_.origin.yaw);
   sine_ = std::sin(grid_.origin.yaw);
-  distance_ = maps::distance_transform(grid_, options_.unknown_is_wall);
+  distance_ = maps::distance_transform(grid_, false);
   make_clearance();
 }
 
@@ -54,7 +37,7 @@ void Track::make_clearance() {
                      maps::Occupancy::free);
   const auto outside = [&](int c, int r) { return c < 0 || r < 0 || c >= grid_.width || r >= grid_.height; };
   const auto stops = [&](int c, int r) {
-    return outside(c, r) || blocks(grid_.at(c, r), options_.unknown_is_wall);
+    return outside(c, r) || grid_.at(c, r) == maps::Occupancy::occupied;
   };
   for (int r = -1; r <= grid_.height; ++r)
     for (int c = -1; c <= grid_.width; ++c) {
@@ -72,7 +55,7 @@ void Track::make_clearance() {
           static_cast<std::size_t>(r + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c + 1);
       const double cells = std::min(field.distance[i], 500.0);
       clearance_[i] = static_cast<std::int16_t>(cells * clearance_scale);
-      if (outside(c, r) && !options_.outside_is_wall)
+      if (outside(c, r) && !outside_is_wall_)
         clearance_[i] = exit;
       else if (stops(c, r))
         clearance_[i] = wall;
@@ -86,17 +69,16 @@ maps::Point Track::to_cells(const maps::Point& point) const noexcept {
 
 bool Track::in_wall(const maps::Point& point) const noexcept {
   const maps::Point cell = to_cells(point);
-  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height))
-    return options_.outside_is_wall;
+  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height)) return outside_is_wall_;
   return clearance_at(static_cast<int>(cell.x), static_cast<int>(cell.y)) == wall;
 }
 
 double Track::distance_to_wall(const maps::Point& point) const noexcept {
   const maps::Point cell = to_cells(point);
   if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height))
-    return options_.outside_is_wall ? 0 : std::numeric_limits<double>::infinity();
+    return outside_is_wall_ ? 0 : std::numeric_limits<double>::infinity();
   double nearest = distance_.at(static_cast<int>(cell.x), static_cast<int>(cell.y));
-  if (options_.outside_is_wall)
+  if (outside_is_wall_)
     nearest = std::min(nearest, grid_.resolution * std::min(std::min(cell.x, grid_.width - cell.x),
                                                             std::min(cell.y, grid_.height - cell.y)));
   return nearest;
@@ -112,8 +94,8 @@ bool Track::collides_with_wall(const Box& box) const noexcept {
   }
   const double yaw = box.pose.yaw - grid_.origin.yaw, c = std::cos(yaw), s = std::sin(yaw);
   const double reach_x = l * std::abs(c) + w * std::abs(s), reach_y = l * std::abs(s) + w * std::abs(c);
-  if (options_.outside_is_wall && !(middle.x - reach_x > 0 && middle.y - reach_y > 0 &&
-                                    middle.x + reach_x < grid_.width && middle.y + reach_y < grid_.height))
+  if (outside_is_wall_ && !(middle.x - reach_x > 0 && middle.y - reach_y > 0 &&
+                            middle.x + reach_x < grid_.width && middle.y + reach_y < grid_.height))
     return true;
   const int left = static_cast<int>(std::max(0.0, std::floor(middle.x - reach_x)));
   const int right = static_cast<int>(std::min(grid_.width - 1.0, std::floor(middle.x + reach_x)));

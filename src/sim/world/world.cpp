@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/validation.hpp"
-
 namespace slalom::sim {
 namespace {
 
@@ -41,26 +39,20 @@ const WorldOptions& validated(const WorldOptions& options) {
 WorldOptions WorldOptions::gym_compatible() {
   WorldOptions o;
   o.plant.dynamics.substeps = 1;
-  o.plant.dynamics.gym = GymDynamics::all();
-  o.plant.actuation.gym = GymActuation::all();
-  o.plant.gym = GymPlant::all();
+  o.plant.dynamics.gym = o.plant.actuation.gym = o.plant.gym = o.lidar.gym = o.gym = true;
   o.lidar.mount = {};
-  o.lidar.gym = GymLidar::all();
   o.body_response = CollisionResponse::count_only;
-  o.start_anywhere = true;
-  o.gym = GymWorld::all();
   return o;
 }
 
 void WorldOptions::validate() const {
-  detail::require_range("time_step", time_step, 1e-5, 0.1);
-  car.validate();
-  // The plant checks its options when it is made.
-  [[maybe_unused]] const Plant checked(car, plant, time_step);
-  lidar.validate();
-  detail::require_range("sectors", sectors, 1, 1000);
-  if (gym.wall_collision && lidar.rate > 0 && std::lround(1 / (lidar.rate * time_step)) > 1)
-    throw std::invalid_argument("gym.wall_collision: needs a scan in every step, so rate must be 0");
+  validate_options(*this, "world");
+  // Their constructors check what depends on several options.
+  [[maybe_unused]] const Plant plant_of_a_car(car, plant, time_step);
+  [[maybe_unused]] const Lidar scanner(lidar);
+  if (gym != lidar.gym) throw std::invalid_argument("world.gym: must be that of the LiDAR");
+  if (gym && lidar.rate > 0 && std::lround(1 / (lidar.rate * time_step)) > 1)
+    throw std::invalid_argument("world.gym: needs a scan in every step, so scan_rate must be 0");
 }
 
 World::World(const WorldOptions& options, std::shared_ptr<const Track> track)
@@ -75,49 +67,46 @@ World::World(const WorldOptions& options, std::shared_ptr<const Track> track)
 void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked) {
   for (const maps::Pose& pose : cars) require_finite("start of a driven car", pose);
   for (const maps::Pose& pose : parked) require_finite("pose of a parked car", pose);
-  const std::size_t beams = static_cast<std::size_t>(options_.lidar.beams);
   time_ = 0;
   steps_ = 0;
-  fixed_.clear();
-  for (const maps::Pose& pose : parked)
-    fixed_.push_back(Fixed{.box = {pose, options_.car.length, options_.car.width}});
-  // The memory of the last run is used again.
-  if (cars_.size() > cars.size())
-    cars_.erase(cars_.begin() + static_cast<std::ptrdiff_t>(cars.size()), cars_.end());
-  while (cars_.size() < cars.size())
-    cars_.emplace_back(Plant(options_.car, options_.plant, options_.time_step));
-  boxes_.assign(cars.size(), Box{{}, options_.car.length, options_.car.width});
+  const Box body{{}, options_.car.length, options_.car.width};
+  fixed_.assign(parked.size(), Fixed{.box = body});
+  for (std::size_t i = 0; i < parked.size(); ++i) fixed_[i].box.pose = parked[i];
+  boxes_.assign(cars.size(), body);
+  cars_.resize(cars.size(), Car(Plant(options_.car, options_.plant, options_.time_step)));
   for (std::size_t i = 0; i < cars.size(); ++i) {
-    Car& car = cars_[i];
-    CarState state{.x = cars[i].x, .y = cars[i].y, .yaw = cars[i].yaw};
-    car.plant.reset(state);
-    car.before = state;
-    car.zone.reset({state.x, state.y}, cars[0].yaw);
-    if (const LapPath* path = track_->lap_path()) {
-      if (!car.timer) car.timer.emplace(*path, options_.sectors);
-      car.timer->reset(*path, {state.x, state.y}, 0);
-    }
-    car.noise.reset(seed, i);
-    car.gym_noise = NumpyRandom(12345);
-    car.ranges.assign(lidar_.padded_beams(), static_cast<float>(options_.lidar.range_max));
-    if (options_.lidar.gym.ranges) car.gym_ranges.assign(beams, options_.lidar.range_max);
-    car.colliding.clear();
-    car.wall = car.away = false;
-    boxes_[i].pose = cars[i];
+    place(i, cars[i], cars[0].yaw);
+    cars_[i].noise.reset(seed, i);
   }
   flags_.assign(bodies(), 0);
   partners_.assign(bodies(), -1);
-  for (Car& car : cars_) car.colliding.reserve(bodies());
   find_fixed_partners();
-  if (!options_.start_anywhere)
-    for (std::size_t i = 0; i < cars_.size(); ++i) check_start(i);
-  if (options_.gym.reset_step) {
-    const std::vector<Command> zero(cars.size());
-    step(zero);
-  } else {
-    find_collisions();
-    scan_all();
+  if (options_.gym) {
+    step(std::vector<Command>(cars.size()));
+    return;
   }
+  for (std::size_t i = 0; i < cars_.size(); ++i) check_start(i);
+  find_collisions();
+  scan_all();
+}
+
+/// Puts a driven car at its start, where its laps begin; `heading` (rad) is the yaw of the first car.
+void World::place(std::size_t index, const maps::Pose& start, double heading) {
+  Car& car = cars_[index];
+  car.before = {.x = start.x, .y = start.y, .yaw = start.yaw};
+  car.plant.reset(car.before);
+  car.zone.reset({start.x, start.y}, heading);
+  if (const LapPath* path = track_->lap_path()) {
+    if (!car.timer) car.timer.emplace(*path);
+    car.timer->reset(*path, {start.x, start.y}, 0);
+  }
+  car.gym_noise = NumpyRandom(12345);
+  car.ranges.assign(lidar_.padded_beams(), static_cast<float>(options_.lidar.range_max));
+  if (options_.gym) car.gym_ranges.assign(lidar_.angles().size(), options_.lidar.range_max);
+  car.colliding.clear();
+  car.colliding.reserve(bodies());
+  car.wall = car.away = false;
+  boxes_[index].pose = start;
 }
 
 void World::check_start(std::size_t car) const {
@@ -135,8 +124,8 @@ void World::check_start(std::size_t car) const {
 
 int World::add(const Fixed& body) {
   require_finite("pose of a body", body.box.pose);
-  detail::require_positive("length of a body", body.box.length);
-  detail::require_positive("width of a body", body.box.width);
+  slalom::detail::check("body", {"length", "m", "", 1e-9, 1e9}, body.box.length);
+  slalom::detail::check("body", {"width", "m", "", 1e-9, 1e9}, body.box.width);
   fixed_.push_back(body);
   flags_.push_back(0);
   partners_.push_back(-1);
@@ -155,19 +144,21 @@ int World::add_disc(const Disc& disc) {
   return add({{{disc.middle.x, disc.middle.y, 0}, 2 * disc.radius, 2 * disc.radius}, disc.radius});
 }
 
+World::Fixed& World::fixed(int body) {
+  const auto driven = static_cast<int>(cars_.size());
+  if (body < driven || body >= static_cast<int>(bodies()))
+    throw std::invalid_argument("body = " + std::to_string(body) + ": must be a parked car, a box or a disc");
+  return fixed_[static_cast<std::size_t>(body - driven)];
+}
+
 void World::move_body(int body, const maps::Pose& pose) {
   require_finite("pose of a body", pose);
-  if (body < static_cast<int>(cars_.size()) || body >= static_cast<int>(bodies()))
-    throw std::invalid_argument("body = " + std::to_string(body) + ": must be a parked car, a box or a disc");
-  fixed_[static_cast<std::size_t>(body) - cars_.size()].box.pose = pose;
+  fixed(body).box.pose = pose;
   find_fixed_partners();
 }
 
 void World::remove_body(int body) {
-  const auto driven = static_cast<int>(cars_.size());
-  if (body < driven || body >= static_cast<int>(bodies()))
-    throw std::invalid_argument("body = " + std::to_string(body) + ": must be a parked car, a box or a disc");
-  fixed_.erase(fixed_.begin() + (body - driven));
+  fixed_.erase(fixed_.begin() + (&fixed(body) - fixed_.data()));
   flags_.erase(flags_.begin() + body);
   partners_.erase(partners_.begin() + body);
   for (int& partner : partners_) partner = partner == body ? -1 : partner > body ? partner - 1 : partner;
@@ -254,9 +245,9 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
   ++steps_;
   // The time is a sum, as in f1tenth_gym, whose lap times are sums.
   time_ += options_.time_step;
-  if (options_.gym.wall_collision)
+  if (options_.gym) {
     gym_scan_and_collisions();
-  else {
+  } else {
     find_collisions();
     if (options_.body_response == CollisionResponse::slide_unless_struck)
       for (std::size_t i = 0; i < cars_.size(); ++i) cars_[i].struck = was_struck(i);

@@ -62,7 +62,7 @@ void World::find_collisions() noexcept {
     if (!cars_[i].colliding.empty()) partners_[i] = cars_[i].colliding.back();
     if (cars_[i].away)
       cars_[i].wall = false;
-    else if (!options_.gym.wall_collision)
+    else if (!options_.gym)
       cars_[i].wall = track_->collides_with_wall(boxes_[i]);
   }
   for (std::size_t i = 0; i < bodies(); ++i) flags_[i] = partners_[i] >= 0 || (i < driven && cars_[i].wall);
@@ -71,7 +71,7 @@ void World::find_collisions() noexcept {
 void World::respond(std::size_t index) noexcept {
   Car& car = cars_[index];
   const bool at_bodies = !car.colliding.empty() && options_.body_response != CollisionResponse::count_only;
-  const bool zeroes = car.wall && options_.gym.wall_stop;
+  const bool zeroes = car.wall && options_.gym;
   const bool at_wall = zeroes || (car.wall && options_.wall_response != CollisionResponse::count_only);
   if ((!at_bodies && !at_wall) || car.struck) return;
   const CarState tried = car.plant.state();

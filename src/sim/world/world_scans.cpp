@@ -8,7 +8,7 @@ void World::scan_walls(Car& car) noexcept {
   const CarState& s = car.plant.state();
   car.sensor = lidar_.sensor_pose({s.x, s.y, s.yaw});
   car.scan_time = time_;
-  if (options_.lidar.gym.ranges)
+  if (options_.gym)
     lidar_.gym_scan(*track_, car.sensor, car.gym_ranges);
   else
     lidar_.scan(*track_, car.sensor, car.ranges);
@@ -17,7 +17,7 @@ void World::scan_walls(Car& car) noexcept {
 void World::cast_bodies(std::size_t index) noexcept {
   Car& car = cars_[index];
   const auto cast = [&](const auto& body) {
-    if (options_.lidar.gym.ranges)
+    if (options_.gym)
       lidar_.gym_cast(car.sensor, body, car.gym_ranges);
     else
       lidar_.cast(car.sensor, body, car.ranges);
@@ -35,11 +35,8 @@ void World::cast_bodies(std::size_t index) noexcept {
 void World::add_noise(Car& car) noexcept {
   const LidarOptions& lidar = options_.lidar;
   if (lidar.noise == 0 && lidar.dropout == 0) return;
-  if (lidar.gym.noise && lidar.gym.ranges)
+  if (options_.gym)
     for (double& range : car.gym_ranges) range += lidar.noise * car.gym_noise.normal();
-  else if (lidar.gym.noise)
-    for (int i = 0; i < lidar.beams; ++i)
-      car.ranges[static_cast<std::size_t>(i)] += static_cast<float>(lidar.noise * car.gym_noise.normal());
   else
     car.noise.add(car.ranges, lidar.beams, lidar.noise, lidar.range_max, lidar.dropout);
 }
@@ -53,10 +50,10 @@ void World::scan_all() noexcept {
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     if (!cars_[i].scans || cars_[i].away) continue;
     scan_walls(cars_[i]);
-    if (options_.lidar.gym.noise) add_noise(cars_[i]);
+    if (options_.gym) add_noise(cars_[i]);
     cast_bodies(i);
     publish(cars_[i]);
-    if (!options_.lidar.gym.noise) add_noise(cars_[i]);
+    if (!options_.gym) add_noise(cars_[i]);
   }
 }
 
@@ -71,9 +68,7 @@ void World::gym_scan_and_collisions() noexcept {
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     Car& car = cars_[i];
     if (!car.scans || car.away) continue;
-    const double speed = car.plant.state().speed;
-    car.wall = (options_.lidar.gym.ranges ? time_to_collision_.first_hit(car.gym_ranges, speed)
-                                          : time_to_collision_.first_hit(car.ranges, speed)) >= 0;
+    car.wall = time_to_collision_.first_hit(car.gym_ranges, car.plant.state().speed) >= 0;
     if (car.wall) {
       flags_[i] = 1;
       // Other cars still see the car where it drove to. The car sees them from its new yaw.

@@ -172,12 +172,12 @@ void complete_course(Course& course, std::optional<bool> closed) {
     for (const Waypoint& point : course.waypoints) course.obstacle_path.push_back({point.x, point.y});
 }
 
-Course load_course(const fs::path& folder, const maps::MapReading& reading) {
+Course load_course(const fs::path& folder, maps::MapRule rule) {
   if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is not a folder");
   const fs::path paths = path_folder(folder);
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
-  course.map = maps::load_ros_map(find_map(folder, course.notes), reading);
+  course.map = maps::load_ros_map(find_map(folder, course.notes), rule);
   load_path(course, paths);
   if (const fs::path points = paths / obstacle_file; fs::exists(points))
     course.obstacle_path = detail::read_points(points);

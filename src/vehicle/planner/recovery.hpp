@@ -11,7 +11,7 @@ namespace slalom::vehicle::detail {
 class Recovery {
  public:
   /// Largest speed in reverse, m/s. It is low because a reversing car steers with its rear. The car of
-  /// f1tenth_gym diverges above 0.5 m/s (sim::GymDynamics::reverse).
+  /// f1tenth_gym diverges above 0.5 m/s (sim::DynamicsOptions::gym).
   static constexpr double speed = 0.45;
 
   void reset() noexcept { *this = {}; }

@@ -54,7 +54,7 @@ struct Course {
 
 /// Loads and checks the course in `folder`; `reading` has the options for its map. Throws IoError naming
 /// file, line, column or key, value and rule.
-Course load_course(const std::filesystem::path& folder, const maps::MapReading& reading = {});
+Course load_course(const std::filesystem::path& folder, maps::MapRule rule = maps::MapRule::map_server);
 
 /// Computes from the waypoints' points their yaw and arc length, the course's length, its start, whether it
 /// is closed unless `closed` has a value, and its obstacle path if it has none. Throws std::invalid_argument
