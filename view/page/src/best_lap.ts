@@ -18,23 +18,15 @@ const isSame = (a: LapRow, b: LapRow) => a.lap === b.lap && a.time === b.time;
 function bestOf(laps: LapRow[]): LapRow | undefined {
   const own = laps.filter((lap) => !lap.ghost && lap.contacts === 0);
   const flying = own.filter((lap) => lap.lap > 1);
-  return (flying.length ? flying : own).reduce<LapRow | undefined>(
-    (best, lap) => (best && best.time <= lap.time ? best : lap),
-    undefined,
-  );
+  return (flying.length ? flying : own).sort((a, b) => a.time - b.time)[0];
 }
 
 /** Between two values of rising `keys`: the index before `key` and the share of the way to the next. */
 function between(keys: number[], key: number): [number, number] {
-  const after = Math.max(
-    1,
-    keys.findIndex((each) => each >= key),
-  );
-  if (key > keys.at(-1)!) return [keys.length - 2, 1];
-  return [
-    after - 1,
-    Math.min(1, Math.max(0, (key - keys[after - 1]) / (keys[after] - keys[after - 1] || 1))),
-  ];
+  const found = keys.findIndex((each) => each >= key);
+  const after = Math.max(1, found < 0 ? keys.length - 1 : found);
+  const share = (key - keys[after - 1]) / (keys[after] - keys[after - 1] || 1);
+  return [after - 1, Math.min(1, Math.max(0, share))];
 }
 
 /** The best lap of the drive, once the page knows all its steps, to compare the car with. */

@@ -1,4 +1,5 @@
 import { get } from "./dom";
+import { layers } from "./scene/layers";
 import { css, rampCss, themes, type Theme } from "./scene/palette";
 
 type Name = "dark" | "light";
@@ -36,13 +37,9 @@ export class Themes {
     const t = this.now;
     document.documentElement.dataset.theme = this.name;
     get("ramp").style.background = rampCss(t);
-    const colours = {
-      ...{ costMap: t.cost, path: t.path, scan: t.scan, guides: t.guide, nominal: t.nominal, plan: t.plan },
-      ...{ spread: t.spread, driven: t.driven, obstacles: t.obstacle, opponents: t.opponent },
-      ...{ modes: t.nominal, ghost: t.ghost },
-    };
-    for (const swatch of document.querySelectorAll<HTMLElement>("[data-swatch]")) {
-      const c = colours[swatch.dataset.swatch as keyof typeof colours];
+    for (const [name, , , colour] of layers) {
+      const c = colour && t[colour];
+      const swatch = document.querySelector<HTMLElement>(`[data-swatch=${name}]`)!;
       swatch.style.background = c ? css([c[0], c[1], c[2], Math.max(0.45, c[3])]) : rampCss(t);
     }
   }

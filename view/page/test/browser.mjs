@@ -1,4 +1,4 @@
-// Drives the page in Chromium: node test/browser.mjs PROGRAM [SCREENSHOT_FOLDER]
+// Drives the page in Chromium: node test/browser.mjs PROGRAM
 // SLALOM_SUITES=drive,save runs only these suites, SLALOM_TEST=TEXT only tests whose name contains the text.
 import { chromiumPath, Harness } from "./harness.mjs";
 import accessible from "./suites/accessible.mjs";
@@ -14,17 +14,17 @@ import save from "./suites/save.mjs";
 
 const suites = { introduction, drive, compare, panes, save, evaluation, names, layout, accessible, pages };
 const chosen = process.env.SLALOM_SUITES?.split(",") ?? Object.keys(suites);
-const [program, pictures] = process.argv.slice(2);
+const program = process.argv[2];
 if (!program) {
-  console.error("usage: browser.mjs PROGRAM [SCREENSHOT_FOLDER]");
+  console.error("usage: browser.mjs PROGRAM");
   process.exit(2);
 }
 if (!chromiumPath()) {
   console.error("skipped: Chromium is not installed (apt-get install chromium, or set SLALOM_CHROMIUM)");
   process.exit(77);
 }
-const harness = new Harness(program, pictures, process.env.SLALOM_TEST);
-await harness.open_all();
+const harness = new Harness(program, process.env.SLALOM_TEST);
+await harness.openAll();
 await harness.page.goto(harness.server.address);
 for (const name of chosen) await suites[name](harness);
 await harness.test("no errors are in the console", async () => {

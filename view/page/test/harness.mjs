@@ -51,13 +51,12 @@ export class Harness {
   problems = []; // errors in the consoles of all pages
   folder = mkdtempSync(join(tmpdir(), "slalom-view-"));
 
-  constructor(program, pictures, only) {
+  constructor(program, only) {
     this.program = program;
-    this.pictures = pictures;
     this.only = only;
   }
 
-  async open_all() {
+  async openAll() {
     this.browser = await launchChromium();
     this.server = await this.start(..."view --course stag --obstacles 4 --seed 3 --port 0".split(" "));
     this.page = await this.open();
@@ -93,9 +92,6 @@ export class Harness {
   until(what, arg, page = this.page) {
     return page.waitForFunction(what, arg, { timeout: patience });
   }
-  async picture(name, page = this.page) {
-    if (this.pictures) await page.screenshot({ path: `${this.pictures}/${name}.png` });
-  }
 
   /** Starts the drive again and waits until the page has the state of the new one. */
   async restart() {
@@ -107,11 +103,7 @@ export class Harness {
   /** Waits until the drive is paused and the page shows the server's tick. */
   async pause(page = this.page) {
     await this.send({ do: "pause" }, page);
-    await this.until(
-      () => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"),
-      undefined,
-      page,
-    );
+    await this.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"), null, page);
   }
   /** Goes on, and waits until the page knows. */
   async play() {
@@ -147,7 +139,6 @@ export class Harness {
     } catch (error) {
       this.failed += 1;
       console.log("FAIL  " + name + "\n      " + (error.stack ?? error).split("\n").join("\n      "));
-      await this.picture("failed-" + this.failed);
     }
   }
 

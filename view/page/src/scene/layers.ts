@@ -1,18 +1,23 @@
-/** A layer that can be shown: its name, its title, and its description. */
+/** A layer that can be shown: its name, its title, its description and its colour in the theme, if it has one. */
 export const layers = [
-  ["costMap", "Cost map", "where the rear axle would mean a collision, from the scan"],
-  ["path", "Course line", "the line to follow"],
-  ["scan", "LiDAR", "end points of the scan"],
-  ["candidates", "Candidates", "sampled control sequences, coloured by cost"],
-  ["guides", "Guides", "guide particles and how the solver moved them"],
-  ["nominal", "Nominal", "the sequence around which samples are weighted"],
-  ["plan", "Plan", "the sequence that is sent to the car"],
-  ["spread", "Spread", "two standard deviations of the plan, from the solver's covariance"],
-  ["driven", "Driven line", "the path of the car"],
-  ["obstacles", "Obstacles", "parked cars, boxes and poles"],
-  ["opponents", "Opponents", "other cars; outlines and dots: where the planner tracks and expects them"],
-  ["modes", "Caption", "which way around the next obstacle the samples and the plan take"],
-  ["ghost", "Ghost", "the second controller, in a world of its own; as an outline, the best lap"],
+  ["costMap", "Cost map", "where the rear axle would mean a collision, from the scan", "cost"],
+  ["path", "Course line", "the line to follow", "path"],
+  ["scan", "LiDAR", "end points of the scan", "scan"],
+  ["candidates", "Candidates", "sampled control sequences, coloured by cost", undefined],
+  ["guides", "Guides", "guide particles and how the solver moved them", "guide"],
+  ["nominal", "Nominal", "the sequence around which samples are weighted", "nominal"],
+  ["plan", "Plan", "the sequence that is sent to the car", "plan"],
+  ["spread", "Spread", "two standard deviations of the plan, from the solver's covariance", "spread"],
+  ["driven", "Driven line", "the path of the car", "driven"],
+  ["obstacles", "Obstacles", "parked cars, boxes and poles", "obstacle"],
+  [
+    "opponents",
+    "Opponents",
+    "other cars; outlines and dots: where the planner tracks and expects them",
+    "opponent",
+  ],
+  ["modes", "Caption", "which way around the next obstacle the samples and the plan take", "nominal"],
+  ["ghost", "Ghost", "the second controller, in a world of its own; as an outline, the best lap", "ghost"],
 ] as const;
 export type Layer = (typeof layers)[number][0];
 

@@ -85,16 +85,7 @@ export function rampColour(theme: Theme, value: number, alpha: number): Rgba {
 }
 
 export function rampCss(theme: Theme): string {
-  const stops = [];
-  for (let i = 0; i <= 8; ++i) {
-    const c = rampColour(theme, i / 8, 1);
-    stops.push(
-      `rgb(${c
-        .slice(0, 3)
-        .map((v) => Math.round(255 * v))
-        .join(" ")}) ${(100 * i) / 8}%`,
-    );
-  }
+  const stops = Array.from({ length: 9 }, (_, i) => css(rampColour(theme, i / 8, 1)));
   return `linear-gradient(90deg, ${stops.join(", ")})`;
 }
 

@@ -6,7 +6,7 @@ import * as draw from "./drawings";
 import { layers, type Layer, type Term } from "./layers";
 import { Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
-import { circle, corners, drawCar, drawObstacle, drawTracked, faded, usualCar } from "./shapes";
+import { carSize, circle, corners, drawCar, drawObstacle, drawTracked, faded } from "./shapes";
 import { Stage } from "./stage";
 
 /** The place of a collision of an evaluation. */
@@ -39,8 +39,8 @@ export class SceneView {
   marks: Mark[] = [];
   private scene: Scene = {};
   private readonly painter: Painter;
-  private map?: { of: unknown[]; image: HTMLCanvasElement };
-  private bounds: [number, number, number, number] = [-5, -5, 5, 5]; // m, of course line and walls
+  private map?: { grid: Grid; theme: Theme; image: HTMLCanvasElement };
+  bounds: [number, number, number, number] = [-5, -5, 5, 5]; // m, of course line and walls
   private fitted = "";
 
   constructor(canvas: HTMLCanvasElement, theme: Theme) {
@@ -48,25 +48,21 @@ export class SceneView {
     this.theme = theme;
   }
 
-  get courseBounds() {
-    return this.bounds;
-  }
   get isSideBySide() {
     return this.isSplit && page.frame?.ghostFrame !== undefined;
   }
 
   setScene(scene: Scene) {
     this.scene = scene;
-    const { path } = scene;
-    if (!path) return;
-    let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < path.xyv.length; i += 3) {
-      x0 = Math.min(x0, path.xyv[i]);
-      x1 = Math.max(x1, path.xyv[i]);
-      y0 = Math.min(y0, path.xyv[i + 1]);
-      y1 = Math.max(y1, path.xyv[i + 1]);
-    }
-    this.bounds = [x0 - 1.5, y0 - 1.5, x1 + 1.5, y1 + 1.5];
+    if (!scene.path) return;
+    const [x, y] = [0, 1].map((k) => scene.path!.xyv.filter((_, i) => i % 3 === k));
+    const room = 1.5; // m
+    this.bounds = [
+      Math.min(...x) - room,
+      Math.min(...y) - room,
+      Math.max(...x) + room,
+      Math.max(...y) + room,
+    ];
   }
 
   /** Shows the whole course. */
@@ -158,13 +154,8 @@ export class SceneView {
     if (this.probe) this.drawOutline(this.probe, theme.selected);
     if (car) {
       const steer = scalar("steer", frame.scalars) || 0;
-      const edge = car.touched ? theme.collided : theme.carEdge;
-      drawCar(painter, theme, this.size, car, steer, { body: theme.car, edge });
+      drawCar(painter, theme, car, steer, theme.car, car.touched ? theme.collided : theme.carEdge);
     }
-  }
-
-  private get size() {
-    return page.hello?.car ?? usualCar;
   }
 
   private lookOf(frame: Frame): CandidateLook {
@@ -177,9 +168,9 @@ export class SceneView {
 
   /** The image of the map; a new one for another course or theme. */
   private mapImage(grid: Grid): HTMLCanvasElement {
-    const of = [grid, this.theme];
-    if (!this.map?.of.every((each, i) => each === of[i]))
-      this.map = { of, image: draw.mapImage(this.theme, grid) };
+    const { map, theme } = this;
+    if (map?.grid === grid && map.theme === theme) return map.image;
+    this.map = { grid, theme, image: draw.mapImage(theme, grid) };
     return this.map.image;
   }
 
@@ -187,7 +178,7 @@ export class SceneView {
     const { painter, theme, visible } = this;
     for (const body of frame.bodies) {
       if (body.kind === opponent && visible.has("opponents"))
-        drawCar(painter, theme, this.size, body, 0, { body: theme.opponent, edge: theme.carEdge });
+        drawCar(painter, theme, body, 0, theme.opponent, theme.carEdge);
       else if (body.kind !== 0 && body.kind !== opponent && visible.has("obstacles"))
         drawObstacle(painter, theme, body, this.selected === body.id);
     }
@@ -198,8 +189,7 @@ export class SceneView {
     if (!ghost) return;
     const { painter, theme } = this;
     painter.dashed(ghost.plan, ghost.plan.length / 2, faded(theme.ghost, 0.9), 2.4);
-    const colours = { body: faded(theme.ghost, 0.75), edge: theme.carEdge };
-    drawCar(painter, theme, this.size, ghost, ghost.steer, colours);
+    drawCar(painter, theme, ghost, ghost.steer, faded(theme.ghost, 0.75), theme.carEdge);
   }
 
   private drawPreview({ x, y, kind }: { x: number; y: number; kind: number }) {
@@ -209,7 +199,7 @@ export class SceneView {
   }
 
   private drawOutline(at: Pose, colour: Rgba) {
-    this.painter.outline(corners({ ...at, length: this.size.length, width: this.size.width }), colour, 2);
+    this.painter.outline(corners({ ...carSize(), ...at }), colour, 2);
     this.painter.dot(at.x, at.y, 5, colour);
   }
 

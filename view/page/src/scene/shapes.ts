@@ -1,12 +1,14 @@
 import type { Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
-import type { Body, Hello, Other, Pose } from "../protocol";
+import { page } from "../page";
+import type { Body, Other, Pose } from "../protocol";
 
 /** Cars, obstacles and lines as they are seen from above. */
 
 export type Point = [number, number];
-/** The dimensions of a car, where no server has told others. */
-export const usualCar: Hello["car"] = { length: 0.58, width: 0.31, front: 0.159, rear: 0.171 };
+const usualCar = { length: 0.58, width: 0.31, front: 0.159, rear: 0.171 };
+/** The dimensions of a car, usual ones where no server has told others. */
+export const carSize = () => page.hello?.car ?? usualCar;
 
 export const faded = (c: Rgba, by: number): Rgba => [c[0], c[1], c[2], c[3] * by];
 
@@ -16,26 +18,20 @@ function placed({ x, y, yaw }: Pose, points: Point[]): Point[] {
   return points.map(([u, v]) => [x + c * u - s * v, y + s * u + c * v]);
 }
 
-/** The same points, and their mirror images on the right in reverse order. */
-const mirrored = (left: Point[]): Point[] => [...left, ...left.map(([u, v]): Point => [u, -v]).reverse()];
+/** The points x, y, x, y ..., and their mirror images on the right in reverse order. */
+function mirrored(...left: number[]): Point[] {
+  const points = left.flatMap((x, i): Point[] => (i % 2 ? [] : [[x, left[i + 1]]]));
+  return [...points, ...points.map(([u, v]): Point => [u, -v]).reverse()];
+}
 
 export function corners(b: Pose & { length: number; width: number }): Point[] {
   const [l, w] = [b.length / 2, b.width / 2];
-  return placed(
-    b,
-    mirrored([
-      [l, w],
-      [-l, w],
-    ]),
-  );
+  return placed(b, mirrored(l, w, -l, w));
 }
 
 export function circle(x: number, y: number, radius: number, n = 28): Point[] {
-  const angle = (i: number) => (2 * Math.PI * i) / n;
-  return Array.from({ length: n }, (_, i) => [
-    x + radius * Math.cos(angle(i)),
-    y + radius * Math.sin(angle(i)),
-  ]);
+  const angles = Array.from({ length: n }, (_, i) => (2 * Math.PI * i) / n);
+  return angles.map((angle) => [x + radius * Math.cos(angle), y + radius * Math.sin(angle)]);
 }
 
 export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected: boolean) {
@@ -45,17 +41,7 @@ export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected
   painter.outline(points, isSelected ? theme.selected : theme.obstacleEdge, isSelected ? 2.5 : 1.2);
   if (b.kind === 1) {
     const [l, w] = [0.12 * b.length, 0.4 * b.width];
-    painter.outline(
-      placed(
-        b,
-        mirrored([
-          [2 * l, w],
-          [0, w],
-        ]),
-      ),
-      faded(theme.obstacleEdge, 0.7),
-      1,
-    );
+    painter.outline(placed(b, mirrored(2 * l, w, 0, w)), faded(theme.obstacleEdge, 0.7), 1);
   }
 }
 
@@ -70,15 +56,8 @@ export function drawTracked(painter: Painter, theme: Theme, others: Other[]) {
 }
 
 /** A car with its front wheels turned by `steer` (rad). */
-export function drawCar(
-  painter: Painter,
-  theme: Theme,
-  size: Hello["car"],
-  at: Pose,
-  steer: number,
-  colours: { body: Rgba; edge: Rgba },
-) {
-  const { body, edge } = colours;
+export function drawCar(painter: Painter, theme: Theme, at: Pose, steer: number, body: Rgba, edge: Rgba) {
+  const size = carSize();
   const [l, w] = [size.length / 2, size.width / 2];
   const wheel = (along: number, left: number, turn: number) => {
     const [[x, y]] = placed(at, [[along, left]]);
@@ -88,21 +67,11 @@ export function drawCar(
     wheel(size.front, left, steer);
     wheel(-size.rear, left, 0);
   }
-  const half: Point[] = [
-    [1, 0.38],
-    [0.82, 0.74],
-    [-0.1, 0.74],
-    [-0.3, 0.86],
-    [-1, 0.8],
-  ];
-  const shape = placed(at, mirrored(half.map(([u, v]) => [u * l, v * w])));
+  const half = [1, 0.38, 0.82, 0.74, -0.1, 0.74, -0.3, 0.86, -1, 0.8];
+  const shape = placed(at, mirrored(...half.map((v, i) => v * (i % 2 ? w : l))));
   painter.fill(shape, body);
   painter.outline(shape, edge, 1.2);
   painter.outline(corners({ ...at, length: size.length, width: size.width }), faded(body, 0.55), 1);
-  const window = mirrored([
-    [0.42 * l, 0.4 * w],
-    [0, 0.55 * w],
-    [-0.28 * l, 0.55 * w],
-  ]);
+  const window = mirrored(0.42 * l, 0.4 * w, 0, 0.55 * w, -0.28 * l, 0.55 * w);
   painter.fill(placed(at, window), faded(edge, 0.85));
 }

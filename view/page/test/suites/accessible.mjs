@@ -74,7 +74,7 @@ export default async function (h) {
   await h.test("a long press deletes an obstacle", async () => {
     const server = await h.start(..."view --course stag --obstacles 4 --seed 3 --port 0".split(" "));
     const touch = await h.open(server.address, { hasTouch: true, viewport: { width: 400, height: 800 } });
-    await h.until(() => window.slalom?.frame?.bodies.length > 1 && slalom.state, undefined, touch);
+    await h.until(() => window.slalom?.frame?.bodies.length > 1 && slalom.state, null, touch);
     await h.pause(touch);
     await touch.evaluate(() => slalom.scene.fit());
     const tools = await touch.context().newCDPSession(touch);

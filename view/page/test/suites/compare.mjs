@@ -26,7 +26,6 @@ export default async function (h) {
     await page.click("#play");
     await h.until(isApart);
     assert.equal(await h.scalar("samples"), 640);
-    await h.picture("ghost");
     await h.send({ do: "method", method: "svg_mppi" });
     await h.send({ do: "ghost", method: "" });
     await h.until(() => !slalom.frame.ghost && slalom.state.method === "svg_mppi");
@@ -65,7 +64,6 @@ export default async function (h) {
     assert.ok(behind < 0, "a lap that begins at speed is ahead of one that began at rest");
     assert.ok(gap > 0.5, `the best lap is ${gap} m away`);
     assert.equal(await page.isVisible("#best"), true);
-    await h.picture("best-lap");
     await h.seek(100); // in the best lap itself
     assert.equal(await page.evaluate(() => document.getElementById("best").firstChild.textContent), "+0.00");
     await h.play();

@@ -58,7 +58,6 @@ export default async function (h) {
     const body = await page.evaluate(() => slalom.frame.bodies.at(-1));
     const distance = await nearest();
     assert.ok(distance > without + body.length / 2, `the plan leads within ${distance} m of the obstacle`);
-    await h.picture("avoidance");
 
     const [x, y] = await onScreen(body);
     await page.mouse.move(x, y);
@@ -108,7 +107,6 @@ export default async function (h) {
     await h.until((n) => slalom.scalar("samples") !== n, before);
     const command = /--set 'svg_mppi\.samples=\d+'/.source;
     await h.until((c) => new RegExp(c).test(document.getElementById("command").textContent), command);
-    await h.picture("options");
     await page.click("#undo");
     await h.until((n) => slalom.scalar("samples") === n, before);
     await h.send({ do: "set", key: "svg_mppi.samples", value: "0" });

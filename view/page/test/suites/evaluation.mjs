@@ -20,7 +20,6 @@ export default async function (h) {
       (t) => slalom.state.paused && slalom.scalar("tick") >= t && slalom.scalar("contacts") > 0,
       tick,
     );
-    await h.picture("evaluation", look);
     const { generation } = await h.state(look);
     // The mark on the map: a message that comes or goes above the scene moves it.
     const place = () =>

@@ -37,7 +37,6 @@ export default async function (h) {
     assert.ok(isTold(), `svg_mppi commits, mppi averages before it does: ${JSON.stringify(said)}`);
     assert.equal((await h.state(page)).rate, 0.1, "in slow motion");
     await h.drawn(page);
-    await h.picture("introduction", page);
     await page.click("#play");
     await wait(() => slalom.state.rate === 1 && slalom.scalar("tick") > 160);
     await wait(() => /^Passed: svg_mppi/.test(document.getElementById("introduction-text").textContent));

@@ -34,7 +34,7 @@ function faults([smallest, within]) {
 function covering() {
   slalom.scene.fit();
   slalom.scene.draw();
-  const [x0, y0, x1, y1] = slalom.scene.courseBounds;
+  const [x0, y0, x1, y1] = slalom.scene.bounds;
   const stage = document.getElementById("stage").getBoundingClientRect();
   const [left, bottom] = slalom.scene.camera.toScreen(x0, y0);
   const [right, top] = slalom.scene.camera.toScreen(x1, y1);
@@ -73,7 +73,6 @@ export default async function (h) {
         await check(`${width}, ${menu}`, smallest, "#" + menu);
         await click(menu + "-open");
       }
-      await h.picture(`layout-${width}`);
     }
     await page.setViewportSize({ width: 1280, height: 720 });
     await page.evaluate(() => (document.getElementById("layers").open = true));

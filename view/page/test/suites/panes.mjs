@@ -22,7 +22,7 @@ export default async function (h) {
 
   await h.test("a page that is opened later knows the minute before", async () => {
     const other = await h.open(page.url());
-    await h.until(isWhole, undefined, other);
+    await h.until(isWhole, null, other);
     await h.drawn(other);
     const [points, steps] = await other.evaluate(() => {
       const { oldest } = slalom.state;
@@ -50,7 +50,6 @@ export default async function (h) {
       [...document.querySelectorAll("#charts em")].some((e) => e.textContent === text);
     await h.until(isShown, `car ${speed.toFixed(2)}`);
     assert.equal(await page.isVisible("#timeline-mark"), true);
-    await h.picture("cursor");
     await page.mouse.click(...place);
     await h.until((t) => slalom.state.paused && slalom.scalar("tick") === t, at);
     await page.mouse.move(5, 5);
