@@ -110,14 +110,8 @@ class ViewSession : public ::testing::Test {
       if (message.empty() || is_wanted(message)) return message;
     }
   }
-  std::string step_to(int tick) {
-    const json state = last_state_ticks();
-    const int newest = state["newest"];
-    tell({{"do", "step"}, {"ticks", tick - newest}});
-    return frame(tick);
-  }
   /// Drives from the tick that is shown, which becomes the newest one, up to another.
-  std::string step_to_newest(int tick) {
+  std::string step_to(int tick) {
     const int shown = last_state_ticks()["tick"];
     tell({{"do", "step"}, {"ticks", tick - shown}});
     return frame(tick);

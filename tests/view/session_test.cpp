@@ -1,5 +1,4 @@
-// What a session does with commands: the drive of the command line, time travel that is exact, edits,
-// options.
+// Commands to a session: the drive of the command line, going back exactly, edits, options.
 #include "view/session_fixture.hpp"
 
 #include "view/protocol/frame_reader.hpp"
@@ -28,7 +27,9 @@ TEST_F(ViewSession, FirstMessagesHoldWhatThePageNeeds) {
 
 TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   // The session first: its client does not stay for as long as a lap may take.
-  const double x5 = scalar(step_to(5), "x"), x60 = scalar(step_to(60), "x");
+  const std::string fifth = step_to(5);
+  EXPECT_EQ(FrameReader(fifth).block(Block::scalars).size(), 8 * scalar_names().size());
+  const double x5 = scalar(fifth, "x"), x60 = scalar(step_to(60), "x");
   const evaluation::LapSetup setup{
       session_options().load(session_options().scenario).environment, {small()}, {.obstacles = 2}};
   std::vector<double> x;
@@ -43,7 +44,7 @@ TEST_F(ViewSession, RestoresAnEarlierStateExactly) {
   const std::string before = step_to(60);
   tell({{"do", "seek"}, {"tick", 30}});
   EXPECT_EQ(scalar(frame(30), "tick"), 30);
-  const std::string again = step_to_newest(60);
+  const std::string again = step_to(60);
   // Wall-clock figures differ; what happened does not.
   for (const char* name : {"x", "y", "yaw", "speed", "command_steer", "minimum_cost", "effective_samples"})
     EXPECT_EQ(scalar(before, name), scalar(again, name)) << name;
@@ -61,18 +62,18 @@ TEST_F(ViewSession, GoesBackToTheStateOfEveryAction) {
   const std::string_view ghost = FrameReader(before).block(Block::ghost_frame);
   ASSERT_FALSE(ghost.empty());
   tell({{"do", "seek"}, {"tick", 60}});
-  const std::string again = step_to_newest(70);
+  const std::string again = step_to(70);
   for (const char* name : {"x", "y", "speed", "samples", "minimum_cost"})
     EXPECT_EQ(scalar(before, name), scalar(again, name)) << name;
   EXPECT_EQ(scalar(ghost, "x"), scalar(FrameReader(again).block(Block::ghost_frame), "x"));
   tell({{"do", "seek"}, {"tick", 62}});
   const double shown = scalar(frame(62), "x");
   tell({{"do", "nudge"}, {"left", 0.01}});
-  EXPECT_NEAR(scalar(step_to_newest(63), "x"), shown, 0.3) << "from where the car is shown";
+  EXPECT_NEAR(scalar(step_to(63), "x"), shown, 0.3) << "from where the car is shown";
   tell({{"do", "seek"}, {"tick", 52}});
-  EXPECT_EQ(scalar(step_to_newest(58), "samples"), 128) << "before the option was set";
+  EXPECT_EQ(scalar(step_to(58), "samples"), 128) << "before the option was set";
   tell({{"do", "seek"}, {"tick", 45}});
-  EXPECT_TRUE(FrameReader(step_to_newest(46)).block(Block::ghost_frame).empty()) << "before the ghost";
+  EXPECT_TRUE(FrameReader(step_to(46)).block(Block::ghost_frame).empty()) << "before the ghost";
   EXPECT_EQ(last_state_ticks()["ghost"], "");
 }
 

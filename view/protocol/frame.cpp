@@ -1,8 +1,8 @@
 #include "view/protocol/frame.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <limits>
 #include <sstream>
@@ -29,20 +29,6 @@ std::size_t states_of(const vehicle::Planner& planner, std::span<const float> in
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
 }
 
-/// Writes the estimates of a car whose tyres slip; NaN for other cars.
-std::array<double, 6> estimates(const vehicle::PlannerOutput& out) {
-  const vehicle::ParameterEstimate& car = out.parameters;
-  if (car.friction <= 0) {
-    std::array<double, 6> none{};
-    none.fill(std::numeric_limits<double>::quiet_NaN());
-    return none;
-  }
-  const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
-  return {out.slip_estimate, turning / (car.friction * gravity),
-          car.friction,      car.cautious_friction,
-          car.steering_gain, car.delay};
-}
-
 }  // namespace
 
 const std::vector<std::string>& scalar_names() {
@@ -58,63 +44,41 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   const sim::CarState& car = world.state(0);
   const vehicle::PlannerOutput& out = tick.output;
   const SolveResult* solve = out.solve;
+  const vehicle::ParameterEstimate& estimate = out.parameters;
   const sim::LapTimer& laps = *world.laps(0);
   const StageTimes times = solve ? solve->times : StageTimes{};
   cost_ = {};
   if (solve && !out.inputs.empty()) predict(tick.planner, out.inputs);
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  const auto [slip, grip, friction, cautious, gain, delay] = estimates(out);
-  const double values[] = {static_cast<double>(tick.step),
-                           tick.time,
-                           car.x,
-                           car.y,
-                           car.yaw,
-                           car.speed,
-                           car.steer,
-                           car.yaw_rate,
-                           car.slip,
-                           out.command.steer,
-                           out.command.speed,
-                           out.steer_estimate,
-                           static_cast<double>(out.status),
-                           cost_.distance,
-                           cost_.state - cost_.distance,
-                           cost_.collision,
-                           solve ? solve->minimum_cost : none,
-                           solve ? solve->expected_cost : none,
-                           solve ? solve->effective_sample_size : none,
-                           solve && solve->samples ? static_cast<double>(solve->samples->samples()) : 0,
-                           solve ? solve->collided_share : none,
-                           solve ? solve->temperature : none,
-                           solve ? static_cast<double>(solve->iterations) : 0,
-                           1e3 * out.tick_time,
-                           1e3 * times.draw,
-                           1e3 * times.evaluate,
-                           1e3 * times.guide,
-                           1e3 * times.update,
-                           1e3 * times.total,
-                           1e3 * facts.deadline,
-                           static_cast<double>(laps.laps()),
-                           tick.time - laps.lap_start_time(),
-                           laps.progress() / world.track().lap_path()->length() - laps.laps(),
-                           laps.lateral(),
-                           clearance_of(world),
-                           tick.seen.collides() ? 1.0 : 0.0,
-                           static_cast<double>(tick.collisions),
-                           tick.cost.total(),
-                           facts.prediction_step,
-                           static_cast<double>(facts.method),
-                           slip,
-                           grip,
-                           friction,
-                           cautious,
-                           gain,
-                           delay};
-  static_assert(std::size(values) == std::ranges::count(scalar_labels, ' ') + 1u);
-
   FrameWriter to;
   to.begin(Block::scalars);
-  for (const double value : values) to.put(value);
+  const auto put = [&](std::initializer_list<double> values) {
+    for (const double value : values) to.put(value);
+  };
+  const double none = std::numeric_limits<double>::quiet_NaN(), step = tick.step;
+  put({step, tick.time, car.x, car.y, car.yaw, car.speed, car.steer, car.yaw_rate, car.slip});
+  put({out.command.steer, out.command.speed, out.steer_estimate, static_cast<double>(out.status)});
+  put({cost_.distance, cost_.state - cost_.distance, cost_.collision});
+  if (solve) {
+    const double samples = solve->samples ? solve->samples->samples() : 0;
+    put({solve->minimum_cost, solve->expected_cost, solve->effective_sample_size, samples});
+    put({solve->collided_share, solve->temperature, static_cast<double>(solve->iterations)});
+  } else {
+    put({none, none, none, 0, none, none, 0});
+  }
+  put({1e3 * out.tick_time, 1e3 * times.draw, 1e3 * times.evaluate, 1e3 * times.guide});
+  put({1e3 * times.update, 1e3 * times.total, 1e3 * facts.deadline});
+  const int lap = laps.laps();
+  put({static_cast<double>(lap), tick.time - laps.lap_start_time()});
+  put({laps.progress() / world.track().lap_path()->length() - lap, laps.lateral(), clearance_of(world)});
+  put({tick.seen.collides() ? 1.0 : 0.0, static_cast<double>(tick.collisions), tick.cost.total()});
+  put({facts.prediction_step, static_cast<double>(facts.method)});
+  if (estimate.friction > 0) {
+    const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
+    put({out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction});
+    put({estimate.cautious_friction, estimate.steering_gain, estimate.delay});
+  } else {
+    put({none, none, none, none, none, none});  // the tyres do not slip
+  }
   to.end();
   put_scan(to, tick);
   put_cost_map(to, tick);

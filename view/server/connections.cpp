@@ -101,16 +101,12 @@ void HttpConnection::answer() {
     response_.set(http::field::content_type, "text/plain; charset=utf-8");
   }
   response_.body() = {body.data(), body.size()};
-  respond();
-}
-
-void HttpConnection::respond() {
   response_.set(http::field::cache_control, "no-store");
   response_.set("X-Content-Type-Options", "nosniff");
   response_.set("Referrer-Policy", "no-referrer");
   response_.keep_alive(false);
   response_.prepare_payload();
-  if (parser_.get().method() == http::verb::head) response_.body() = {};
+  if (request.method() == http::verb::head) response_.body() = {};
   stream_.expires_after(request_time);
   http::async_write(stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {
     if (error) return;
@@ -144,23 +140,19 @@ void WebSocketClient::open(http::request<http::empty_body> request) {
   socket_.auto_fragment(false);  // each message is one WebSocket frame
   socket_.read_message_max(all_.options.max_message);
   socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
-    if (error)
+    if (error) {
       ++self->all_.refused;
-    else
-      self->opened();
+      return;
+    }
+    auto& socket = beast::get_lowest_layer(self->socket_).socket();
+    socket.set_option(tcp::no_delay(true), error);
+    socket.set_option(asio::socket_base::send_buffer_size(send_buffer), error);
+    self->is_open_ = true;
+    self->all_.clients.emplace(self->id_, self);
+    ++self->all_.client_count;
+    self->all_.deliver({Received::Kind::joined, self->id_, {}});
+    self->read();
   });
-}
-
-void WebSocketClient::opened() {
-  error_code ignored;
-  auto& socket = beast::get_lowest_layer(socket_).socket();
-  socket.set_option(tcp::no_delay(true), ignored);
-  socket.set_option(asio::socket_base::send_buffer_size(send_buffer), ignored);
-  is_open_ = true;
-  all_.clients.emplace(id_, shared_from_this());
-  ++all_.client_count;
-  all_.deliver({Received::Kind::joined, id_, {}});
-  read();
 }
 
 void WebSocketClient::send(const Message& message) {
@@ -241,8 +233,7 @@ bool WebSocketClient::is_within_rate() {
 void WebSocketClient::write_next() {
   if (is_writing_ || !is_open_) return;
   Message next;
-  const bool is_frame = queue_.empty();
-  if (!is_frame) {
+  if (!queue_.empty()) {
     next = std::move(queue_.front());
     queue_.pop_front();
     queued_bytes_ -= next.body->size();
@@ -256,10 +247,9 @@ void WebSocketClient::write_next() {
   socket_.binary(next.binary);
   const auto bytes = asio::buffer(*next.body);
   // The handler keeps the message until it is sent.
-  socket_.async_write(bytes, [self = shared_from_this(), next, is_frame](error_code error, std::size_t) {
+  socket_.async_write(bytes, [self = shared_from_this(), next](error_code error, std::size_t) {
     self->is_writing_ = false;
     if (error) return self->leave();
-    if (is_frame) ++self->all_.frames_sent;
     self->write_next();
   });
 }

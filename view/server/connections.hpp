@@ -45,7 +45,7 @@ struct Connections {
   int open = 0;  ///< connections of all kinds
 
   std::atomic<int> client_count{0};
-  std::atomic<std::uint64_t> messages{0}, frames_sent{0}, frames_dropped{0}, refused{0};
+  std::atomic<std::uint64_t> messages{0}, frames_dropped{0}, refused{0};
   std::mutex mutex{};
   std::condition_variable arrived{};
   std::vector<Received> inbox{};  ///< guarded by `mutex`
@@ -63,7 +63,6 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
  private:
   void answer();
-  void respond();
   void read_to_end();
 
   Connections& all_;
@@ -89,7 +88,6 @@ class WebSocketClient : public std::enable_shared_from_this<WebSocketClient> {
   void offer(const std::shared_ptr<const std::string>& frame);
 
  private:
-  void opened();
   void read();
   bool got_message();
   bool acknowledge();

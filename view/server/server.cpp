@@ -143,7 +143,7 @@ int Server::clients() const noexcept {
 
 ServerCounters Server::counters() const {
   const Connections& all = implementation_->all;
-  return {all.messages, all.frames_sent, all.frames_dropped, all.refused};
+  return {all.messages, all.frames_dropped, all.refused};
 }
 
 }  // namespace slalom::view

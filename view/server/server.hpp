@@ -54,7 +54,6 @@ struct Received {
 /// Numbers of messages since the start.
 struct ServerCounters {
   std::uint64_t messages = 0;        ///< delivered to `take`
-  std::uint64_t frames_sent = 0;     ///< to all clients
   std::uint64_t frames_dropped = 0;  ///< replaced by newer ones before they were sent
   std::uint64_t refused = 0;         ///< requests, connections and messages that break a rule
 };

@@ -15,25 +15,18 @@ void require(bool holds, const char* key, const char* rule) {
 
 }  // namespace
 
-double number(const Json& command, const char* key) {
+double number(const Json& command, const char* key, std::optional<double> otherwise) {
+  if (otherwise && !command.contains(key)) return *otherwise;
   const auto found = command.find(key);
   const bool is_number = found != command.end() && found->is_number();
   require(is_number && std::isfinite(found->get<double>()), key, "a finite number");
   return found->get<double>();
 }
 
-double number(const Json& command, const char* key, double otherwise) {
-  return command.contains(key) ? number(command, key) : otherwise;
-}
-
-int integer(const Json& command, const char* key) {
-  const double value = number(command, key);
+int integer(const Json& command, const char* key, std::optional<int> otherwise) {
+  const double value = number(command, key, otherwise);
   require(std::floor(value) == value && std::abs(value) <= 1e9, key, "an integer");
   return static_cast<int>(value);
-}
-
-int integer(const Json& command, const char* key, int otherwise) {
-  return command.contains(key) ? integer(command, key) : otherwise;
 }
 
 std::string text(const Json& command, const char* key) {

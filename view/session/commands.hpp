@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -19,10 +20,10 @@ struct MalformedCommand : std::invalid_argument {
 
 namespace field {
 
-double number(const nlohmann::ordered_json& command, const char* key);  ///< finite
-double number(const nlohmann::ordered_json& command, const char* key, double otherwise);
-int integer(const nlohmann::ordered_json& command, const char* key);  ///< in [-1e9, 1e9]
-int integer(const nlohmann::ordered_json& command, const char* key, int otherwise);
+/// A finite number; `otherwise` if it is missing.
+double number(const nlohmann::ordered_json& command, const char* key, std::optional<double> otherwise = {});
+/// An integer in [-1e9, 1e9]; `otherwise` if it is missing.
+int integer(const nlohmann::ordered_json& command, const char* key, std::optional<int> otherwise = {});
 std::string text(const nlohmann::ordered_json& command, const char* key);
 bool flag(const nlohmann::ordered_json& command, const char* key);
 

@@ -44,31 +44,15 @@ export class Controls {
     for (const b of all("[data-follow]")) press(b, b.dataset.follow === now);
   }
 
-  /** The keys that concern the view. */
-  get keys(): Record<string, () => void> {
-    const { scene } = this;
-    const move = (x: number, y: number) => () => {
-      scene.camera.pan(x * stride, y * stride);
-      redraw();
-    };
-    const zoom = (factor: number) => () => {
-      scene.zoom(factor);
-      redraw();
-    };
-    return {
-      f: () => this.setFollow(scene.camera.follow === "follow" ? "heading" : "follow"),
-      a: () => this.setFollow("fit"),
-      "1": () => this.setTool("disc"),
-      "2": () => this.setTool("box"),
-      "3": () => this.setTool("car"),
-      "4": () => this.setTool("pan"),
-      "+": zoom(1.2),
-      "-": zoom(1 / 1.2),
-      ArrowLeft: move(1, 0),
-      ArrowRight: move(-1, 0),
-      ArrowUp: move(0, 1),
-      ArrowDown: move(0, -1),
-      l: () => get<HTMLDetailsElement>("layers").toggleAttribute("open"),
-    };
+  follow() {
+    this.setFollow(this.scene.camera.follow === "follow" ? "heading" : "follow");
+  }
+  move(x: number, y: number) {
+    this.scene.camera.pan(x * stride, y * stride);
+    redraw();
+  }
+  zoom(factor: number) {
+    this.scene.zoom(factor);
+    redraw();
   }
 }

@@ -1,8 +1,8 @@
 import { get } from "./dom";
 import { page, scalar, send } from "./page";
 
-/** The controls of the drive: time, nudges and forks. `openFork` opens the dialog. Returns their keys. */
-export function attachDrive(openFork: () => void): Record<string, () => void> {
+/** The controls of the drive: time, nudges and forks. `openFork` opens the dialog. Returns what they do. */
+export function attachDrive(openFork: () => void) {
   const nudge = (left: number) => () => send({ do: "nudge", left });
   const step = () => send({ do: "step" });
   const restart = () => send({ do: "restart" });
@@ -22,5 +22,5 @@ export function attachDrive(openFork: () => void): Record<string, () => void> {
   const [left, right] = [nudge(0.15), nudge(-0.15)];
   const buttons = { play, step, restart, fork, "nudge-left": left, "nudge-right": right };
   for (const [id, act] of Object.entries(buttons)) get(id).onclick = act;
-  return { " ": play, ".": step, ",": back, "[": left, "]": right, r: restart, k: fork };
+  return { play, step, back, restart, fork, left, right };
 }

@@ -1,15 +1,23 @@
-import { get } from "./dom";
+import { get, make } from "./dom";
 
 /** Controls that use keys themselves. */
 const controls = "button, input, select, textarea, summary, a[href], [role=tab], [role=tabpanel]";
 
-/** Calls the function of a key, undo (Ctrl Z) or redo (Ctrl Y) unless a control or dialog has the focus. */
-export function attachKeys(keys: Record<string, () => void>, undo: () => void, redo: () => void) {
+/** Some keys as the help shows them, their meaning, and what each does; with Ctrl, its name begins with it. */
+export type Shortcut = [shown: string, meaning: string, acts: Record<string, () => void>];
+
+/** Lists the keys in the help. Calls the function of a key unless a control or a dialog has the focus. */
+export function attachKeys(shortcuts: Shortcut[]) {
+  const rows = shortcuts.flatMap(([shown, meaning]) => {
+    const names = shown.split(" ").flatMap((key) => [make("kbd", {}, key), " "]);
+    return [make("dt", {}, ...names), make("dd", {}, meaning)];
+  });
+  get("keys").prepend(...rows);
+  const keys: Record<string, () => void> = Object.assign({}, ...shortcuts.map(([, , acts]) => acts));
   addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     if (document.querySelector("dialog[open]") || target.closest(controls)) return;
-    let act = keys[event.key];
-    if (event.ctrlKey || event.metaKey) act = { z: undo, y: redo }[event.key.toLowerCase()]!;
+    const act = keys[event.ctrlKey || event.metaKey ? "Ctrl " + event.key.toLowerCase() : event.key];
     if (!act || event.altKey) return;
     act();
     event.preventDefault();

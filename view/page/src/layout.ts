@@ -15,33 +15,7 @@ export function icon(name: keyof typeof icons): string {
   return `<svg class="icon" viewBox="0 0 16 16" aria-hidden="true">${path}</svg>`;
 }
 
-const keys: [keys: string, meaning: string][] = [
-  ["Space", "pause and continue"],
-  [".", "one control step forward"],
-  [",", "one control step back"],
-  ["R", "restart from the beginning"],
-  ["F", "follow the car, heading up or not"],
-  ["A", "fit the course"],
-  ["G", "car and ghost side by side, or in one picture"],
-  ["← → ↑ ↓", "move the view"],
-  ["+ -", "zoom"],
-  ["1 2 3 4", "pole, box, parked car, select"],
-  ["[ ]", "push the car to its left or right"],
-  ["Delete", "delete the selected obstacle"],
-  ["Ctrl Z, Ctrl Y", "undo and redo a change of options or obstacles"],
-  ["K", "fork from the control step shown"],
-  ["S", "save or share: picture, replay, recording, link"],
-  ["L", "layers"],
-  ["T", "dark or light"],
-  ["?", "this help"],
-];
-const gestures: [gesture: string, meaning: string][] = [
-  ["Click", "place what is chosen below the scene; an obstacle or the car can be dragged"],
-  ["Right click, long press", "delete an obstacle"],
-  ["Drag, wheel, pinch", "move and zoom"],
-];
-
-/** Fills in the parts of the page that follow from lists: icons, layers, terms of the cost, and the help. */
+/** Fills in the parts of the page that follow from lists: icons, layers, and terms of the cost. */
 export function fillLists() {
   for (const button of document.querySelectorAll<HTMLElement>("[data-icon]"))
     button.insertAdjacentHTML("afterbegin", icon(button.dataset.icon as keyof typeof icons));
@@ -56,12 +30,6 @@ export function fillLists() {
     const text = term[0].toUpperCase() + term.slice(1) + " cost";
     get("term").append(new Option(text, term, term === "total", term === "total"));
   }
-  for (const [each, meaning] of keys) {
-    const names = each.split(" ").flatMap((key) => [make("kbd", {}, key), " "]);
-    get("keys").append(make("dt", {}, ...names), make("dd", {}, meaning));
-  }
-  for (const [gesture, meaning] of gestures)
-    get("keys").append(make("dt", {}, gesture), make("dd", {}, meaning));
 }
 
 /** Puts course, method and ghost into the header where there is room, else into the sheet of the scenario. */

@@ -7,7 +7,7 @@ import { get, press } from "./dom";
 import { attachDrive } from "./drive";
 import { ScenarioFields } from "./fields";
 import { Introduction } from "./introduction";
-import { attachKeys, attachPanes, returnFocus } from "./keys";
+import { attachKeys, attachPanes, returnFocus, type Shortcut } from "./keys";
 import { fillLists, foldHeader } from "./layout";
 import type { Handlers } from "./link";
 import { Charts } from "./panes/charts";
@@ -246,7 +246,7 @@ attachPointer(get<HTMLCanvasElement>("scene"), scene, () => controls.tool, choos
 
 const click = (id: string, act: () => void) => (get(id).onclick = act);
 const help = () => get<HTMLDialogElement>("help-box").showModal();
-const driveKeys = attachDrive(() => !isReplay && page.hello && page.state && fork.open());
+const drive = attachDrive(() => !isReplay && page.hello && page.state && fork.open());
 click("theme", () => {
   theme.toggle();
   showTheme();
@@ -266,21 +266,38 @@ function deleteSelected() {
   if (scene.selected > 0) send({ do: "remove", body: scene.selected });
   scene.selected = -1;
 }
-const keys: Record<string, () => void> = {
-  ...controls.keys,
-  ...driveKeys,
-  g: () => get("split").click(),
-  s: () => menu.toggle(),
-  t: () => get("theme").click(),
-  "?": help,
-  Delete: deleteSelected,
-  Backspace: deleteSelected,
+const arrows = {
+  ArrowLeft: () => controls.move(1, 0),
+  ArrowRight: () => controls.move(-1, 0),
+  ArrowUp: () => controls.move(0, 1),
+  ArrowDown: () => controls.move(0, -1),
 };
-attachKeys(
-  keys,
-  () => send({ do: "undo" }),
-  () => send({ do: "redo" }),
-);
+const tools = (["disc", "box", "car", "pan"] as const).map((tool) => () => controls.setTool(tool));
+const shortcuts: Shortcut[] = [
+  ["Space", "pause and continue", { " ": drive.play }],
+  [".", "one control step forward", { ".": drive.step }],
+  [",", "one control step back", { ",": drive.back }],
+  ["R", "restart from the beginning", { r: drive.restart }],
+  ["F", "follow the car, heading up or not", { f: () => controls.follow() }],
+  ["A", "fit the course", { a: () => controls.setFollow("fit") }],
+  ["G", "car and ghost side by side, or in one picture", { g: () => get("split").click() }],
+  ["← → ↑ ↓", "move the view", arrows],
+  ["+ -", "zoom", { "+": () => controls.zoom(1.2), "-": () => controls.zoom(1 / 1.2) }],
+  ["1 2 3 4", "pole, box, parked car, select", { 1: tools[0], 2: tools[1], 3: tools[2], 4: tools[3] }],
+  ["[ ]", "push the car to its left or right", { "[": drive.left, "]": drive.right }],
+  ["Delete", "delete the selected obstacle", { Delete: deleteSelected, Backspace: deleteSelected }],
+  [
+    "Ctrl Z, Ctrl Y",
+    "undo and redo a change of options or obstacles",
+    { "Ctrl z": () => send({ do: "undo" }), "Ctrl y": () => send({ do: "redo" }) },
+  ],
+  ["K", "fork from the control step shown", { k: drive.fork }],
+  ["S", "save or share: picture, replay, recording, link", { s: () => menu.toggle() }],
+  ["L", "layers", { l: () => get("layers").toggleAttribute("open") }],
+  ["T", "dark or light", { t: () => get("theme").click() }],
+  ["?", "this help", { "?": help }],
+];
+attachKeys(shortcuts);
 returnFocus(get("scene"));
 
 if (isReplay) {

@@ -1,4 +1,4 @@
-import { html, type Markup } from "./dom";
+import { make } from "./dom";
 import type { Body, Frame } from "./protocol";
 
 /** On which side of an obstacle something passes: left, right, or into it. */
@@ -67,15 +67,15 @@ export function modesOf(frame: Frame): Modes | undefined {
 }
 
 /** Says what a method does at the next obstacle: its verdict, the figures, and what follows. */
-function sentence(method: string, modes: Modes, what: Verdict): Markup {
+function sentence(method: string, modes: Modes, what: Verdict): (Node | string)[] {
   const percent = (share: number) => `${Math.round(100 * share)} %`;
   if (what === "averages") {
     const shares = `${percent(modes.left)} of the weight left, ${percent(modes.right)} right.`;
-    const outcome = "The plan between them leads into the obstacle.";
-    return html`<b>${method} averages:</b> ${shares}<span class="long"> ${outcome}</span>`;
+    const outcome = " The plan between them leads into the obstacle.";
+    return [make("b", {}, `${method} averages:`), ` ${shares}`, make("span", { className: "long" }, outcome)];
   }
   const share = percent(modes[modes.plan as "left" | "right"]);
-  return html`<b>${method} commits:</b> the plan and ${share} of the weight pass ${modes.plan}.`;
+  return [make("b", {}, `${method} commits:`), ` the plan and ${share} of the weight pass ${modes.plan}.`];
 }
 
 type Verdict = "averages" | "commits";
@@ -111,6 +111,6 @@ export class Caption {
     else if (frame && time >= this.since && time < this.since + hold) return;
     this.line.hidden = !what;
     this.line.dataset.verdict = what ?? "";
-    this.line.innerHTML = what ? sentence(method, modes!, what).text : "";
+    this.line.replaceChildren(...(what ? sentence(method, modes!, what) : []));
   }
 }

@@ -118,34 +118,21 @@ export class Player implements Link {
 
   send(command: Command) {
     const end = this.frames.length - 1;
-    switch (command.do) {
-      case "play":
-        if (this.at >= end) this.at = 0;
-        this.paused = false;
-        break;
-      case "pause":
-        this.paused = true;
-        break;
-      case "restart":
-        this.at = 0;
-        this.paused = false;
-        break;
-      case "step":
-        this.at = Math.min(end, Math.floor(this.at) + Number(command.ticks ?? 1));
-        this.paused = true;
-        break;
-      case "seek":
-        this.at = Math.min(end, Math.max(0, Number(command.tick)));
-        this.paused = true;
-        break;
-      case "rate":
-        this.rate = Number(command.rate) || 4;
-        break;
-      default:
-        return this.handlers.text({
-          type: "error",
-          message: "This is a recording, which cannot be changed.",
-        });
+    const places: Record<string, number> = {
+      play: this.at >= end ? 0 : this.at,
+      pause: this.at,
+      restart: 0,
+      step: Math.floor(this.at) + Number(command.ticks ?? 1),
+      seek: Number(command.tick),
+    };
+    const what = command.do as string;
+    if (what in places) {
+      this.at = Math.min(end, Math.max(0, places[what]));
+      this.paused = what !== "play" && what !== "restart";
+    } else if (what === "rate") this.rate = Number(command.rate) || 4;
+    else {
+      const message = "This is a recording, which cannot be changed.";
+      return this.handlers.text({ type: "error", message });
     }
     this.show();
     this.tell();

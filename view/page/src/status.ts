@@ -1,4 +1,4 @@
-import { get, html, type Markup } from "./dom";
+import { get, make } from "./dom";
 import { icon } from "./layout";
 import { isReplay } from "./page";
 import type { State } from "./protocol";
@@ -41,7 +41,11 @@ export function showStatus(state: State) {
   get("mode").className = "pill" + (state.paused ? " warn" : "");
   get("mode").title = meaning;
   get("mode-text").textContent = mode + progressOf(state);
-  get("laps").innerHTML = laps(state).text;
+  get("laps").hidden = !state.laps.length;
+  get("no-laps").hidden = state.laps.length > 0;
+  get("laps")
+    .querySelector("tbody")!
+    .replaceChildren(...lapRows(state));
   const rules =
     state.evaluation === "published" ? "evaluation of the published program" : "physical evaluation";
   const edited = state.edited ? ", edited" : "";
@@ -51,18 +55,13 @@ export function showStatus(state: State) {
   get("caption").textContent = isReplay ? parts.join(" · ") : "";
 }
 
-function laps(state: State): Markup {
-  if (!state.laps.length) return html`<p>No lap has been completed.</p>`;
+/** The rows of a table of the laps, the newest first. */
+function lapRows(state: State): HTMLElement[] {
   const best = Math.min(...state.laps.map((lap) => lap.time));
-  const rows = [...state.laps].reverse().map(
-    ({ lap, method, ghost, time, contacts }) =>
-      html`<tr class="${time === best ? "best" : ""}">
-        <td>${lap}</td><td>${method}${ghost ? " (ghost)" : ""}</td>
-        <td class="n">${time.toFixed(2)}</td><td class="n">${contacts}</td>
-      </tr>`,
-  );
-  return html`<table>
-    <thead><tr><th>Lap</th><th>Method</th><th class="n">Time, s</th><th class="n">Collisions</th></tr></thead>
-    <tbody>${rows}</tbody>
-  </table>`;
+  return [...state.laps].reverse().map(({ lap, method, ghost, time, contacts }) => {
+    const number = (text: string) => make("td", { className: "n" }, text);
+    const cells = [make("td", {}, String(lap)), make("td", {}, method + (ghost ? " (ghost)" : ""))];
+    cells.push(number(time.toFixed(2)), number(String(contacts)));
+    return make("tr", { className: time === best ? "best" : "" }, ...cells);
+  });
 }

@@ -37,9 +37,12 @@ export class Timeline {
     slider.setAttribute("aria-valuetext", this.text.textContent);
   }
 
+  private get range() {
+    return [Number(this.slider.min), Number(this.slider.max)];
+  }
+
   showCursor(position: number | undefined) {
-    const from = Number(this.slider.min);
-    const to = Number(this.slider.max);
+    const [from, to] = this.range;
     this.mark.hidden = position === undefined || position < from || position > to;
     const share = ((position ?? from) - from) / (to - from);
     this.mark.style.left = `calc(${thumb / 2}px + ${share} * (100% - ${thumb}px))`;
@@ -48,8 +51,7 @@ export class Timeline {
   private under(e: PointerEvent): number {
     const box = this.slider.getBoundingClientRect();
     const share = (e.clientX - box.left - thumb / 2) / (box.width - thumb);
-    const from = Number(this.slider.min);
-    const to = Number(this.slider.max);
+    const [from, to] = this.range;
     return Math.round(from + Math.min(1, Math.max(0, share)) * (to - from));
   }
 }

@@ -12,7 +12,7 @@ import { chromium } from "playwright-core";
 export const patience = Number(process.env.SLALOM_PATIENCE ?? 180_000);
 
 /** Starts the program and waits for its address. */
-export async function startProgram(program, args) {
+async function startProgram(program, args) {
   const child = spawn(program, args, { stdio: ["ignore", "pipe", "inherit"] });
   const address = await new Promise((resolve, reject) => {
     let said = "";
@@ -37,7 +37,7 @@ export function chromiumPath() {
   return process.env.SLALOM_CHROMIUM ?? usual.find(existsSync);
 }
 
-export function launchChromium() {
+function launchChromium() {
   const args = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"];
   args.push("--disable-background-networking", "--disable-component-update");
   // A page from a file has no local address.
@@ -56,10 +56,11 @@ export class Harness {
     this.only = only;
   }
 
-  async openAll() {
+  /** Opens a page that shows the drive of a scenario. */
+  async openAll(scenario, options) {
     this.browser = await launchChromium();
-    this.server = await this.start(..."view --course stag --obstacles 4 --seed 3 --port 0".split(" "));
-    this.page = await this.open();
+    this.server = await this.start("view", ...scenario, "--port", "0");
+    this.page = await this.open(this.server.address, options);
   }
 
   start(...args) {
