@@ -24,6 +24,8 @@ constexpr std::string_view scalar_labels =
     "prediction_step method slip_estimate grip_used friction_estimate friction_relied_on "
     "steering_gain_estimate delay_estimate";
 
+constexpr int sent_candidates = 160;  // samples that are sent
+
 /// How many states a sequence of inputs leads through.
 std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
@@ -152,7 +154,7 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   const SolveResult& solve = *tick.output.solve;
   if (!solve.samples || solve.costs.empty()) return;
   const SequenceBatch& batch = *solve.samples;
-  const int count = std::min(max_candidates_, batch.samples()), steps = batch.steps();
+  const int count = std::min(sent_candidates, batch.samples()), steps = batch.steps();
   const int inputs = batch.inputs();
   // Evenly spread over the samples, so that the picture is as dense in every region as they are.
   const auto chosen = [&](int i) {

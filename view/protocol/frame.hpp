@@ -24,9 +24,6 @@ struct StepFacts {
 /// Encodes control steps. The planner predicts where the candidates lead, outside of its measured time.
 class FrameEncoder {
  public:
-  /// `candidates`: limit of the number of samples that are sent.
-  explicit FrameEncoder(int candidates = 160) : max_candidates_(candidates) {}
-
   /// Returns the message of a control step, without its bodies.
   std::string encode(const evaluation::ControlStep& tick, const StepFacts& facts);
 
@@ -41,7 +38,6 @@ class FrameEncoder {
   void put_plan(FrameWriter& to, const evaluation::ControlStep& tick);
   static void put_others(FrameWriter& to, const evaluation::ControlStep& tick);
 
-  int max_candidates_;
   std::vector<vehicle::PredictedState> states_;
   std::vector<float> sequence_;
   vehicle::PredictedCost cost_;

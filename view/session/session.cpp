@@ -59,8 +59,7 @@ bool has_obstacle_near(const sim::World& world) {
 
 }  // namespace
 
-Session::Session(SessionOptions options, Server& server)
-    : options_(std::move(options)), server_(server), waiting_(options_.wait_for_client) {
+Session::Session(SessionOptions options, Server& server) : options_(std::move(options)), server_(server) {
   install(options_.load(options_.scenario), options_.scenario);
   if (!options_.against.empty()) set_ghost(options_.against);
   state_.introduction = options_.introduction;
@@ -126,7 +125,7 @@ void Session::restart() {
 
 void Session::begin(Drives drives) {
   drives_ = std::move(drives);
-  timeline_ = Timeline(options_.history, control_period());
+  timeline_ = Timeline(control_period());
   state_.laps.clear();
   state_.contact.fill(-1);
   ++state_.generation;

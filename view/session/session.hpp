@@ -37,8 +37,6 @@ struct SessionOptions {
   std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws errors for the user
   Choices choices;
   std::string further_arguments;  ///< arguments of the equivalent command line; begins with a space
-  double history = 60;            ///< s of the drive that are stored and can be shown again
-  bool wait_for_client = true;    ///< the drive begins when the first page is opened
   std::string evaluation{};       ///< message (JSON) of an evaluation to show
   std::function<LoadedLap(int experiment, int lap)> load_lap{};  ///< loads a lap of the evaluation
   std::string against{};                                         ///< method of a ghost from the start, if any
@@ -137,7 +135,7 @@ class Session {
   Delays last_updates_;         ///< s of wall clock
   std::size_t copy_bytes_ = 0;  ///< about the size of a copy of the drives
 
-  bool waiting_ = true;
+  bool waiting_ = true;     ///< for the first page to be opened
   int viewed_ = -1;         ///< tick that is shown while it is not the newest
   int stop_at_ = -1;        ///< tick at which to pause
   int steps_left_ = 0;      ///< ticks of a command "step" that are still to come

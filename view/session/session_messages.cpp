@@ -78,7 +78,7 @@ void Session::tell_past(std::uint64_t client, int from, int to) {
 }
 
 std::string Session::hello() const {
-  return hello_message(*setup().environment, options_.choices, options_.history, control_period());
+  return hello_message(*setup().environment, options_.choices, stored_seconds, control_period());
 }
 
 std::string Session::state() const {

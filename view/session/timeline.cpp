@@ -13,8 +13,8 @@ constexpr std::size_t max_copies = 48;
 
 }  // namespace
 
-Timeline::Timeline(double seconds, double control_period)
-    : most_steps_(static_cast<std::ptrdiff_t>(seconds / control_period)),
+Timeline::Timeline(double control_period)
+    : most_steps_(static_cast<std::ptrdiff_t>(stored_seconds / control_period)),
       ticks_per_copy_(std::max(1, static_cast<int>(std::lround(1 / control_period)))) {}
 
 void Timeline::checkpoint(const Drives& drives, std::size_t copy_bytes) {

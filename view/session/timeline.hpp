@@ -11,6 +11,8 @@
 
 namespace slalom::view {
 
+constexpr double stored_seconds = 60;  ///< s of a drive that can be shown again
+
 /// The past of a drive: the frame of each tick, the actions of the user, and a copy of the drives every
 /// second, from which any stored tick is reached again exactly.
 class Timeline {
@@ -22,8 +24,8 @@ class Timeline {
     std::shared_ptr<const std::string> frame;  ///< message to the page
   };
 
-  /// `seconds`: the time that is stored; `control_period`: s per tick.
-  explicit Timeline(double seconds = 0, double control_period = 1);
+  /// `control_period`: s per tick.
+  explicit Timeline(double control_period = 1);
 
   /// Keeps a copy of the drives if the last one is a second old. To be called before each tick;
   /// `copy_bytes`: about the size of a copy, of which 1 GiB is kept at most.

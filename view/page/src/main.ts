@@ -22,7 +22,7 @@ import type { State, Text } from "./protocol";
 import { Readout } from "./readout";
 import { attachSaveMenu, saveFile } from "./save";
 import { Lanes } from "./scene/lanes";
-import { coveredBy, place, showRuler } from "./scene/overlay";
+import { coveredByPanels, place, showRuler } from "./scene/overlay";
 import { attachPointer } from "./scene/pointer";
 import { SceneView } from "./scene/scene";
 import { showConnection, showRole, showStatus } from "./status";
@@ -195,7 +195,7 @@ function showFrame(at?: number) {
 /** Lays the scene out for the size of the stage and what panels cover of it. */
 function resize() {
   const stage = get("stage");
-  const covered = coveredBy(stage, get<HTMLDetailsElement>("layers"), get("readout"));
+  const covered = coveredByPanels();
   const box = get("introduction");
   if (introduction.isOpen) covered.top = Math.max(covered.top, box.offsetTop + box.offsetHeight);
   scene.setStage(stage.clientWidth, stage.clientHeight, covered);
@@ -220,7 +220,7 @@ function draw() {
     place(get("label"), car, scene.camera);
     const isNear = car && ghost && Math.hypot(car.x - ghost.x, car.y - ghost.y) < 1.2;
     place(get("ghost-label"), ghost, scene.camera, isNear ? 1 : 0);
-    showRuler(scene.camera, get("ruler-text"), get("ruler-bar"));
+    showRuler(scene.camera);
     controls.showFollow();
     get("scale-low").textContent = scene.costRange[0].toPrecision(3);
     get("scale-high").textContent = scene.costRange[1].toPrecision(3);

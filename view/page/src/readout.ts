@@ -10,38 +10,33 @@ function signed(value: number, digits: number) {
   return (value >= 0 || Number(amount) === 0 ? "+" : "−") + amount;
 }
 
+const fixed = (value: number, digits: number) => (Number.isFinite(value) ? value.toFixed(digits) : "–");
+
 /** Sets the value of a figure, which stands before its unit. */
-function figure(
-  id: string,
-  value: number,
-  digits: number,
-  text = Number.isFinite(value) ? value.toFixed(digits) : "–",
-) {
-  get(id).firstChild!.textContent = text;
-}
+const figure = (id: string, text: string) => (get(id).firstChild!.textContent = text);
 
 /** The figures over the scene, and the labels of car and ghost. */
 export class Readout {
   private frames = 0; // with few samples, in a row
 
   show(best: BestLap) {
-    figure("speed", scalar("speed"), 1);
-    figure("lap-time", scalar("lap_time"), 1);
-    figure("clearance", scalar("clearance"), 2);
-    figure("solve", scalar("tick_ms"), 2);
-    figure("contacts", scalar("contacts"), 0);
+    figure("speed", fixed(scalar("speed"), 1));
+    figure("lap-time", fixed(scalar("lap_time"), 1));
+    figure("clearance", fixed(scalar("clearance"), 2));
+    figure("solve", fixed(scalar("tick_ms"), 2));
+    figure("contacts", fixed(scalar("contacts"), 0));
     get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
     get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
     this.label();
     const behind = best.behind(scalar("progress"), scalar("lap_time"));
     get("best").hidden = get("best-label").hidden = behind === undefined;
     get("best-label").textContent = `to best lap (${best.number})`;
-    if (behind !== undefined) figure("best", behind, 2, signed(behind, 2));
+    if (behind !== undefined) figure("best", signed(behind, 2));
     const ghost = page.frame?.ghost;
     get("gap").hidden = get("gap-label").hidden = !ghost;
     if (!ghost || !page.state) return;
     const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * page.state.length;
-    figure("gap", ahead, 1, signed(ahead, 1));
+    figure("gap", signed(ahead, 1));
     get("ghost-label").textContent = "ghost · " + (page.state.ghost_label || page.state.ghost);
   }
 

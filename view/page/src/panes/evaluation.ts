@@ -61,9 +61,8 @@ export class EvaluationPane {
     get("evaluation-counts").textContent =
       `${laps.length} laps, ${finished} finished, ${contacts} collisions`;
     const names = evaluation.experiments.map((e) => `${e.label} · ${e.scenario}`);
-    this.select.replaceChildren(
-      ...names.map((n, i) => new Option(n, String(i), false, i === this.experiment)),
-    );
+    this.select.replaceChildren(...names.map((name, i) => new Option(name, String(i))));
+    this.select.value = String(this.experiment);
     const shown = laps.filter((lap) => lap.points.length || !this.only.checked);
     get("evaluation-laps").replaceChildren(...shown.map((lap) => this.row(lap)));
     this.changed();

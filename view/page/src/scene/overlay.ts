@@ -1,3 +1,4 @@
+import { get } from "../dom";
 import type { Pose } from "../protocol";
 import type { Camera } from "./camera";
 
@@ -5,13 +6,10 @@ const captionRoom = 44; // pixels, where the caption is as wide as the stage
 const margin = 8; // pixels between a panel and what is fitted
 
 /** The pixels at the edges of the stage that panels cover: at its sides if there is room, else at its top. */
-export function coveredBy(
-  stage: HTMLElement,
-  layers: HTMLDetailsElement,
-  readout: HTMLElement,
-): Camera["covered"] {
-  const box = stage.getBoundingClientRect();
-  const figures = readout.getBoundingClientRect();
+export function coveredByPanels(): Camera["covered"] {
+  const layers = get<HTMLDetailsElement>("layers");
+  const box = get("stage").getBoundingClientRect();
+  const figures = get("readout").getBoundingClientRect();
   const right = figures.width ? box.right - figures.left + margin : 0;
   const panel = layers.getBoundingClientRect();
   const left = layers.open ? panel.right - box.left + margin : 0;
@@ -45,9 +43,9 @@ export function place(label: HTMLElement, at: Pose | undefined, camera: Camera, 
   label.style.transform = `translate(${left}px, ${top}px)`;
 }
 
-/** The length of the ruler, m, and its text. */
-export function showRuler(camera: Camera, text: HTMLElement, bar: HTMLElement) {
+/** Shows the ruler and its length. */
+export function showRuler(camera: Camera) {
   const metres = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((m) => m * camera.zoom >= 48) ?? 20;
-  text.textContent = metres + " m";
-  bar.style.width = metres * camera.zoom + "px";
+  get("ruler-text").textContent = metres + " m";
+  get("ruler-bar").style.width = metres * camera.zoom + "px";
 }
