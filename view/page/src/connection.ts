@@ -96,7 +96,7 @@ export class Connection implements Link {
     if (message.file) this.handlers.file(message.file.name, message.file.content);
     else if (message.past) this.handlers.past(message.past);
     else if (message.grid) this.handlers.scene(message);
-    else {
+    else if (message.scalars) {
       this.received += 1;
       this.arrived += 1;
       this.handlers.frame(message as Frame);

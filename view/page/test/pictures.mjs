@@ -45,7 +45,7 @@ async function drawOvertake() {
   // The overtake is over when the opponent that was ahead is 1.5 m behind.
   let wasAhead = false;
   for (let last = {}; !(wasAhead && last.apart < 2.5 && last.ahead < -1.5); last = await opponent()) {
-    await h.step(20);
+    await h.step(5);
     wasAhead ||= last.apart < 3 && last.ahead > 0.5;
   }
   await page.addStyleTag({ content: ".card, .tag, header { visibility: hidden !important }" });

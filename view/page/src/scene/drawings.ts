@@ -1,8 +1,7 @@
-import type { CostMap, Frame, Grid, Guides, Hello, Path, PlanState, Scan } from "../protocol";
-import type { CandidateLook } from "./candidates";
+import type { CostMap, Grid, Guides, Hello, Path, PlanState, Scan } from "../protocol";
 import { imageOf, type Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
-import { faded, type Point } from "./shapes";
+import { faded, placed, type Point } from "./shapes";
 
 const mapPixels = 6e6; // pixels of the image of a map at most
 const rim = 0.6; // half the width of the line around the free space, in pixels of the image
@@ -36,26 +35,15 @@ export function mapImage(theme: Theme, grid: Grid): HTMLCanvasElement {
   });
 }
 
-export function drawMap(painter: Painter, image: HTMLCanvasElement, grid: Grid) {
-  painter.image(image, grid, grid.width * grid.resolution, grid.height * grid.resolution);
-}
-
-/** The cells of a cost map as an image: from the smallest x and y, with x along a row. */
-export function costMapImage(theme: Theme, { rows, columns, cells }: CostMap): HTMLCanvasElement {
+export function drawCostMap(painter: Painter, theme: Theme, map: CostMap) {
+  const { rows, columns, resolution, cells } = map;
   const none: Rgba = [0, 0, 0, 0];
-  return imageOf(rows, columns, (x, y) =>
-    cells[(rows - 1 - x) * columns + (columns - 1 - y)] ? theme.cost : none,
-  );
-}
-
-export function drawCostMap(painter: Painter, image: HTMLCanvasElement, map: CostMap) {
-  const { x, y, yaw, resolution } = map;
-  const width = map.rows * resolution;
-  const height = map.columns * resolution;
-  const u = map.centerX - width / 2;
-  const v = map.centerY - height / 2;
-  const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
-  painter.image(image, { x: x + c * u - s * v, y: y + s * u + c * v, yaw }, width, height);
+  // The image begins with the smallest x and y, with x along a row.
+  const isFree = (x: number, y: number) => cells[(rows - 1 - x) * columns + (columns - 1 - y)] === 0;
+  const image = imageOf(rows, columns, (x, y) => (isFree(x, y) ? none : theme.cost));
+  const [width, height] = [rows * resolution, columns * resolution];
+  const [[x, y]] = placed(map, [[map.centerX - width / 2, map.centerY - height / 2]]);
+  painter.image(image, { x, y, yaw: map.yaw }, width, height);
 }
 
 export function drawPath(painter: Painter, theme: Theme, { xyv, closed }: Path) {
@@ -65,12 +53,6 @@ export function drawPath(painter: Painter, theme: Theme, { xyv, closed }: Path) 
     const j = (i + 1) % n;
     painter.segment(xyv[3 * i], xyv[3 * i + 1], xyv[3 * j], xyv[3 * j + 1], theme.path, 1.3);
   }
-}
-
-export function drawCandidates(painter: Painter, { candidates }: Frame, look: CandidateLook) {
-  if (!candidates) return;
-  const { xy, points } = candidates;
-  for (const i of look.order) painter.polyline(xy, i * points, points, look.colours[i], look.widths[i]);
 }
 
 /** The guide particles in all iterations, and how their ends moved; the last iteration is bright. */

@@ -1,7 +1,7 @@
 import { page, scalar } from "../page";
 import type { Body, Frame, Grid, Pose, Scene } from "../protocol";
 import type { Camera } from "./camera";
-import { lookOf, type CandidateLook } from "./candidates";
+import { drawCandidates } from "./candidates";
 import * as draw from "./drawings";
 import { layers, type Layer, type Term } from "./layers";
 import { Painter } from "./painter";
@@ -130,15 +130,15 @@ export class SceneView {
     const end = frame?.plan?.at(-1);
     if (car) camera.track(car.x, car.y, car.yaw, end ? Math.hypot(end.x - car.x, end.y - car.y) : 0);
     painter.look(camera);
-    if (this.scene.grid) draw.drawMap(painter, this.mapImage(this.scene.grid), this.scene.grid);
+    if (this.scene.grid) this.drawMap(this.scene.grid);
     if (!frame) return;
-    const { costMap } = frame;
-    if (visible.has("costMap") && costMap)
-      draw.drawCostMap(painter, draw.costMapImage(theme, costMap), costMap);
+    if (visible.has("costMap") && frame.costMap) draw.drawCostMap(painter, theme, frame.costMap);
     if (visible.has("path") && this.scene.path) draw.drawPath(painter, theme, this.scene.path);
     if (visible.has("driven")) painter.polyline(driven, 0, driven.length / 2, theme.driven, 2);
-    if (visible.has("candidates") && frame.candidates)
-      draw.drawCandidates(painter, frame, this.lookOf(frame));
+    if (visible.has("candidates") && frame.candidates) {
+      const range = frame === page.frame ? undefined : this.costRange; // both lanes have one scale
+      this.costRange = drawCandidates(painter, theme, frame.candidates, this.term, range);
+    }
     if (visible.has("spread") && frame.plan) draw.drawSpread(painter, theme, frame.plan);
     if (visible.has("guides") && frame.guides) draw.drawGuides(painter, theme, frame.guides);
     if (visible.has("scan") && frame.scan && page.hello)
@@ -158,20 +158,12 @@ export class SceneView {
     }
   }
 
-  private lookOf(frame: Frame): CandidateLook {
-    // Both lanes have one scale.
-    const range = frame === page.frame ? undefined : this.costRange;
-    const look = lookOf(frame.candidates!, this.theme, this.term, range);
-    this.costRange = look.range;
-    return look;
-  }
-
-  /** The image of the map; a new one for another course or theme. */
-  private mapImage(grid: Grid): HTMLCanvasElement {
-    const { map, theme } = this;
-    if (map?.grid === grid && map.theme === theme) return map.image;
-    this.map = { grid, theme, image: draw.mapImage(theme, grid) };
-    return this.map.image;
+  /** Draws the map with an image that is made once for each course and theme. */
+  private drawMap(grid: Grid) {
+    const { painter, theme } = this;
+    if (this.map?.grid !== grid || this.map.theme !== theme)
+      this.map = { grid, theme, image: draw.mapImage(theme, grid) };
+    painter.image(this.map.image, grid, grid.width * grid.resolution, grid.height * grid.resolution);
   }
 
   private drawBodies(frame: Frame) {

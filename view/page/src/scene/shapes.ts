@@ -13,7 +13,7 @@ export const carSize = () => page.hello?.car ?? usualCar;
 export const faded = (c: Rgba, by: number): Rgba => [c[0], c[1], c[2], c[3] * by];
 
 /** The places of points (m, forwards and to the left) that are seen from a pose. */
-function placed({ x, y, yaw }: Pose, points: Point[]): Point[] {
+export function placed({ x, y, yaw }: Pose, points: Point[]): Point[] {
   const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
   return points.map(([u, v]) => [x + c * u - s * v, y + s * u + c * v]);
 }
