@@ -28,7 +28,7 @@ std::string_view ghost_of(const std::string& frame) {
   return FrameReader(frame).block(Block::ghost_frame);
 }
 
-/// How far the parked car lies ahead of the car of a frame, m.
+/// Returns the distance by which the parked car lies ahead of the car of a frame, m.
 double parked_ahead(std::string_view frame) {
   PayloadReader bodies(FrameReader(frame).block(Block::bodies));
   bodies.take(4 + 4);  // the count, and the number and kind of the car

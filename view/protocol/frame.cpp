@@ -26,7 +26,7 @@ constexpr std::string_view scalar_labels =
 
 constexpr int sent_candidates = 160;  // samples that are sent
 
-/// How many states a sequence of inputs leads through.
+/// Returns the number of states that a sequence of inputs leads through.
 std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
 }
@@ -203,8 +203,8 @@ void FrameEncoder::put_guides(FrameWriter& to, const ControlStep& tick) {
   to.end();
 }
 
-/// The plan with its lateral standard deviation: the solver's variances of the inputs, carried through the
-/// model to first order, by a difference quotient for each input.
+/// Writes the plan with its lateral standard deviation: the solver's variances of the inputs, carried through
+/// the model to first order, by a difference quotient for each input.
 void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
   const auto inputs = tick.output.inputs;
   const auto& plan = tick.output.predicted;
@@ -237,7 +237,7 @@ void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
   to.end();
 }
 
-/// The cars that are tracked: the box of now, and the places of all hypotheses.
+/// Writes the cars that are tracked: the box of now, and the places of all hypotheses.
 void FrameEncoder::put_others(FrameWriter& to, const ControlStep& tick) {
   if (tick.others.empty()) return;
   to.begin(Block::others);

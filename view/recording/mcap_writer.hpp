@@ -49,7 +49,7 @@ class Writer {
   std::uint64_t offset_ = 0;
   std::uint32_t crc_ = 0;  ///< checksum of all that was written
   Bytes chunk_;
-  std::map<std::uint16_t, Times> chunk_times_;                  ///< of each channel
+  std::map<std::uint16_t, Times> chunk_times_;                  ///< times of each channel
   std::uint64_t chunk_first_ = 0, first_ = 0, last_ = 0;        ///< ns
   Bytes schemas_, channels_, chunks_, attachments_, metadata_;  ///< records of the summary
   std::uint16_t schema_count_ = 0;

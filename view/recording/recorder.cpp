@@ -41,7 +41,7 @@ Recorder::Recorder(std::ostream& stream, RecorderOptions options)
       replay_([this](const std::string& segment) { attach(segment); }) {
   writer_.add_metadata("slalom", options_.settings);
   const Json schemas = Json::parse(foxglove_schemas());
-  std::map<std::string, std::uint16_t> ids;  // of the schemas that are in the file
+  std::map<std::string, std::uint16_t> ids;  // schemas that are in the file
   const auto add_channel = [&](const char* topic, const std::string& schema, const Json& content) {
     auto& id = ids[schema];
     if (id == 0) id = writer_.add_schema(schema, "jsonschema", content.dump());

@@ -38,7 +38,7 @@ struct Body {
   double length = 0.3, width = 0.3;  ///< m; the length of a disc is its diameter
   bool is_disc = false;
 };
-/// The bodies of a world that do not drive, in the order of their numbers.
+/// Returns the bodies of a world that do not drive, in the order of their numbers.
 std::vector<Body> bodies_of(const sim::World& world);
 
 // These change the worlds of car and ghost.

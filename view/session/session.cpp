@@ -26,7 +26,7 @@ std::shared_ptr<const std::string> shared(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
 }
 
-/// About the bytes that a copy of a controller needs: the batch of samples, and other arrays of that order.
+/// Estimates the bytes of a copy of a controller: the batch of samples, and other arrays of that order.
 std::size_t bytes_of(const SolveResult* solve) {
   if (!solve || !solve->samples) return 0;
   const SequenceBatch& batch = *solve->samples;
@@ -236,7 +236,7 @@ void Session::slow_down() {
   state_.rate = rate;
 }
 
-/// A copy of the drives as they were after the tick that is shown.
+/// Returns a copy of the drives as they were after the tick that is shown.
 Drives Session::shown() const {
   return viewed_ >= 0 ? timeline_.after(viewed_) : *drives_;
 }

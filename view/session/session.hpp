@@ -126,7 +126,7 @@ class Session {
   std::shared_ptr<const std::string> scene_;  ///< message with the course
   std::optional<Drives> drives_;
   Timeline timeline_;
-  std::vector<Change> undo_, redo_;  ///< what can be undone and done again, newest last
+  std::vector<Change> undo_, redo_;  ///< changes to undo and to do again, newest last
   int drag_ = 0;                     ///< the drag of the last change
   /// The drive as pages are told of it. `state` fills in what follows from drives and timeline.
   DriveState state_;
@@ -139,7 +139,7 @@ class Session {
   int viewed_ = -1;         ///< tick that is shown while it is not the newest
   int stop_at_ = -1;        ///< tick at which to pause
   int steps_left_ = 0;      ///< ticks of a command "step" that are still to come
-  int passing_ticks_ = -1;  ///< of the introduction, since the cars came to the obstacle; -1 before
+  int passing_ticks_ = -1;  ///< ticks of the introduction since the cars came to the obstacle; -1 before
   Clock::time_point due_ = Clock::now(), last_state_ = Clock::now(), last_frame_ = Clock::now();
   bool is_newest_sent_ = true;  ///< false if the newest tick came too early for a frame
   bool is_state_changed_ = true, are_options_changed_ = false;

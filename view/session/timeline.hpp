@@ -39,12 +39,12 @@ class Timeline {
   int oldest() const noexcept { return empty() ? -1 : steps_.front().tick; }
   int newest() const noexcept { return empty() ? -1 : steps_.back().tick; }
   const std::deque<Step>& steps() const noexcept { return steps_; }
-  /// A stored tick.
+  /// Returns a stored tick.
   const Step& at(int tick) const { return steps_.at(static_cast<std::size_t>(tick - oldest())); }
   /// Replaces the frame of the newest tick.
   void show(std::shared_ptr<const std::string> frame);
 
-  /// The drives as they were right after a stored tick: the copy before it, driven on.
+  /// Returns the drives as they were right after a stored tick: the copy before it, driven on.
   Drives after(int tick) const;
   /// Forgets everything after a tick.
   void forget_after(int tick);
@@ -55,7 +55,7 @@ class Timeline {
 
   std::ptrdiff_t most_steps_;
   int ticks_per_copy_;
-  std::size_t bytes_ = 0;                        ///< of the frames
+  std::size_t bytes_ = 0;                        ///< size of the frames
   std::deque<Step> steps_;                       ///< from the first tick after the oldest copy on
   std::vector<std::pair<int, Action>> actions_;  ///< after how many ticks, in order
   std::deque<Drives> copies_;                    ///< by age

@@ -4,7 +4,7 @@ import type { Body, Frame } from "./protocol";
 /** On which side of an obstacle something passes: left, right, or into it. */
 type Side = "left" | "right" | "into";
 
-/** How a controller passes the next obstacle: the way of its plan, and the weight of the samples. */
+/** The way in which a controller passes the next obstacle: that of its plan, and the weight of the samples. */
 interface Modes {
   plan: Side;
   left: number; // share of the weight, 0 ... 1
@@ -41,7 +41,7 @@ function nextObstacle({ bodies, plan }: Frame, beside: number): Body | undefined
     .sort((a, b) => distance(a, car) - distance(b, car))[0];
 }
 
-/** How a frame's controller passes the next obstacle; undefined if the plan reaches none. */
+/** Returns how the controller of a frame passes the next obstacle; undefined if the plan reaches none. */
 export function modesOf(frame: Frame): Modes | undefined {
   const obstacle = nextObstacle(frame, 1.2);
   const plan = frame.plan;

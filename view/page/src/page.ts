@@ -3,7 +3,7 @@ import type { Frame, Hello, Options, State } from "./protocol";
 
 export type Command = Record<string, unknown>;
 
-/** What all parts of the page know: what came last, and where it comes from. */
+/** The facts that all parts of the page share: the newest messages, and the link that they come from. */
 export const page = {
   link: undefined as unknown as Link, // set before anything is sent
   hello: undefined as Hello | undefined,

@@ -18,7 +18,7 @@ export function showRole(drives: boolean) {
   for (const id of ["primary", "scenario-menu", "options", "bar"]) get(id).inert = !drives;
 }
 
-/** How the time of a drive passes: its name and what it means. */
+/** Returns the name of the way in which the time of a drive passes, and its meaning. */
 function modeOf(state: State): [name: string, meaning: string] {
   if (isReplay) return ["replay", "A recording of an earlier drive"];
   if (state.real_time)

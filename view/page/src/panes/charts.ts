@@ -7,7 +7,7 @@ import { isEstimate, strips, type Strip } from "./strips";
 const span = 20; // s that the strips show
 const max_ticks = 500; // ticks in the histogram
 const bins = 36; // bins of the histogram
-const none = new Float64Array(); // of a step that is not known
+const none = new Float64Array(); // scalars of a step that is not known
 
 /** A strip chart with its columns of values. */
 interface Plotted {
