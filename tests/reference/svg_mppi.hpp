@@ -6,7 +6,7 @@
 #include <vector>
 
 /// SVG-MPPI as Honda et al. print it (ICRA 2024), in plain loops, with their symbols and, in brackets, their
-/// equation numbers. Tests compare the solver with it.
+/// equation numbers, except for the square root of (13). Tests compare the solver with it.
 namespace slalom::reference {
 
 /// A control sequence, or one value for each of its entries. Entry tau * m + i is input i of step tau.

@@ -7,8 +7,8 @@
 #include "slalom/problems/passing_point.hpp"
 #include "slalom/slalom.hpp"
 
-/// The paper's claim as figures: with two ways round an obstacle, forward KL (mppi) averages them, SVG-MPPI
-/// commits to one. A point passes a disc that lies on its way; left and right are equally good.
+/// The claim of Honda et al. as figures: with two ways round an obstacle, forward KL (mppi) averages them,
+/// SVG-MPPI commits to one. A point passes a disc that lies on its way; left and right are equally good.
 namespace slalom {
 namespace {
 
@@ -17,9 +17,9 @@ using problems::PassingPoint;
 constexpr int seeds = 200, solves = 5;
 
 struct Outcome {
-  int collided = 0, left = 0, right = 0;  // plans
+  int collided = 0, left = 0, right = 0;  // number of plans
   double offset = 0;                      // m, mean distance from the disc's centre when beside it
-  double deviation = 0;                   // m, of the distribution there
+  double deviation = 0;                   // m, standard deviation of the distribution there
 };
 
 template <class Options>
@@ -68,8 +68,10 @@ TEST_P(ModeSeeking, SvgMppiCommitsWhereMppiAverages) {
                                                .guides = {.count = 1,
                                                           .gradient_samples = 100,
                                                           .gradient_temperature = temperature,
+                                                          .weight = GuideWeight::importance,
                                                           .restart = false,
-                                                          .sample_around = SampleCentre::solution}});
+                                                          .sample_around = SampleCentre::solution},
+                                               .published = {.fit_standard_deviation = true}});
   const Outcome nominal = outcome(SvgMppiOptions{.temperature = temperature,
                                                  .guides = {.gradient_temperature = temperature},
                                                  .adapt_covariance = false});
@@ -77,7 +79,7 @@ TEST_P(ModeSeeking, SvgMppiCommitsWhereMppiAverages) {
       .temperature = temperature, .guides = {.gradient_temperature = temperature}, .use_nominal = false});
   print("mppi", mppi);
   print("svg_mppi", both);
-  print("svg_mppi, the paper's form", paper);
+  print("svg_mppi as printed", paper);
   print("svg_mppi, nominal only", nominal);
   print("svg_mppi, covariance only", covariance);
   print("reverse_mppi", outcome(ReverseMppiOptions{.temperature = temperature}));

@@ -136,7 +136,7 @@ const std::vector<PaperRow>& paper_rows() {
       PaperRow row{.table = table,
                    .name = name,
                    .method = "svg_mppi",
-                   // The authors vary one parameter, steer_cov, which is both (docs/published-parameters.md).
+                   // The authors vary one parameter, steer_cov, which is both (docs/paper.md).
                    .set = {{"svg_mppi.adapt_covariance", "false"},
                            {"svg_mppi.variance", variance},
                            {"svg_mppi.guide_variance", variance}},

@@ -19,7 +19,7 @@ namespace slalom::tools {
 /// Help of --config.
 inline constexpr const char* config_help =
     "Configuration: default, race, race_obstacles, racing_benchmark, default_kinematic, default_speed, "
-    "passenger_car, published, hardware, or a file";
+    "passenger_car, published, paper, hardware, or a file";
 
 /// The folder of the running program.
 std::filesystem::path program_folder();

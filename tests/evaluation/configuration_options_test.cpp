@@ -1,0 +1,123 @@
+// Every option of svg_mppi that a configuration sets changes what it drives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "slalom/core/option_access.hpp"
+#include "slalom/evaluation/lap.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+const std::string method = "svg_mppi";
+
+/// Options that change nothing in some configurations, and the reason. A row that is no longer true fails.
+struct Inert {
+  std::set<std::string> options, configurations;
+  const char* reason;
+};
+const std::vector<Inert>& inert() {
+  const std::set<std::string> one_guide = {"paper", "published", "hardware"};
+  const std::set<std::string> fixed_variance = {"race", "race_obstacles", "racing_benchmark"};
+  static const std::vector<Inert> rows = {
+      {{"restart_guides", "fit_all_guides"}, one_guide, "there is one guide"},
+      {{"fit_temperature"}, {"paper"}, "the temperature of q* is that of the samples"},
+      {{"variance"},
+       {"paper", "published", "hardware", "default", "default_kinematic", "default_speed", "passenger_car"},
+       "the variance of the samples is adapted"},
+      {{"use_nominal"},
+       {"default", "passenger_car", "race", "race_obstacles", "racing_benchmark"},
+       "control_cost_discount: 1 cancels the control term, where alone the nominal sequence acts"},
+      {{"guides", "guide_iterations", "guide_step", "guide_variance", "gradient_samples", "gradient_variance",
+        "gradient_temperature", "guide_weight", "restart_guides", "restart_variance", "variance_max",
+        "inverse_variance_offset", "fit_target", "fit_temperature", "fit_all_guides",
+        "fit_standard_deviation", "fit_absolute_curvature"},
+       fixed_variance,
+       "neither the nominal sequence nor the covariance of the guides acts: this is MPPI"},
+  };
+  return rows;
+}
+
+/// Options that act only where a guide leaves its bounds, all its samples are bad, or a limit is reached.
+const std::set<std::string> seldom = {"clamp_guides", "subtract_minimum", "gradient_floor", "variance_min",
+                                      "normaliser_offset"};
+
+bool is_inert(const std::string& option, const std::string& configuration) {
+  return std::any_of(inert().begin(), inert().end(), [&](const Inert& row) {
+    return row.options.contains(option) && row.configurations.contains(configuration);
+  });
+}
+
+/// The names of the options of the method that a configuration or its bases set.
+std::set<std::string> options_set(const std::string& name) {
+  std::set<std::string> options;
+  std::ifstream file(SLALOM_CONFIGS "/" + name + ".yaml");
+  bool inside = false;
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("base: ", 0) == 0) options.merge(options_set(line.substr(6)));
+    if (!line.empty() && line[0] != ' ' && line[0] != '#') inside = line == method + ":";
+    if (inside && line.rfind("  ", 0) == 0) options.insert(line.substr(2, line.find(':') - 2));
+  }
+  return options;
+}
+
+/// Another value of an option, which its range allows.
+std::string changed(const OptionEntry& entry) {
+  OptionValue value = entry.value;
+  if (auto* flag = std::get_if<bool>(&value)) *flag = !*flag;
+  if (auto* count = std::get_if<int>(&value)) *count += 1;
+  if (auto* number = std::get_if<double>(&value)) *number = *number == 0 ? 0.1 : 0.7 * *number;
+  if (auto* numbers = std::get_if<std::vector<double>>(&value))
+    for (double& number : *numbers) number *= 0.7;
+  if (auto* choice = std::get_if<std::string>(&value))
+    *choice = entry.choices[*choice == entry.choices[0] ? 1 : 0];
+  return to_text(value);
+}
+
+/// The commands of a second among parked cars.
+std::vector<double> drive(const vehicle::Configuration& configuration) {
+  static const auto environment = load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {});
+  LapDrive drive({environment, {configuration, method}, {.obstacles = 5}}, 4);
+  std::vector<double> commands;
+  for (int step = 0; step < 25; ++step)
+    drive.step([&](const ControlStep& tick) {
+      commands.push_back(tick.output.command.steer);
+      commands.push_back(tick.output.command.speed);
+    });
+  return commands;
+}
+
+class ConfigurationOptions : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ConfigurationOptions, ActOnTheDrive) {
+  vehicle::Configuration configuration =
+      vehicle::load_configuration(SLALOM_CONFIGS "/" + std::string(GetParam()) + ".yaml");
+  for (const char* fewer : {"samples", "gradient_samples"})  // the test would take minutes
+    vehicle::set_option(configuration, fewer, fewer == std::string("samples") ? "128" : "12", method);
+  const std::vector<double> before = drive(configuration);
+  const std::set<std::string> options = options_set(GetParam());
+  EXPECT_GT(options.size(), 10u);
+  for (const SolverOptions& solver : configuration.methods) {
+    if (solver.method() != method) continue;
+    for (const OptionEntry& entry : list_options(solver)) {
+      const std::string option = entry.declaration.name;
+      if (!options.contains(option) || seldom.contains(option)) continue;
+      if (changed(entry) == to_text(entry.value)) continue;  // 0, which other options may require
+      vehicle::Configuration other = configuration;
+      vehicle::set_option(other, method + "." + option, changed(entry), method);
+      EXPECT_EQ(drive(other) == before, is_inert(option, GetParam()))
+          << GetParam() << ": " << option << " " << to_text(entry.value) << " -> " << changed(entry);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Names, ConfigurationOptions,
+                         ::testing::Values("paper", "published", "hardware", "default", "default_kinematic",
+                                           "default_speed", "race", "race_obstacles", "racing_benchmark",
+                                           "passenger_car"));
+
+}  // namespace
+}  // namespace slalom::evaluation
