@@ -16,13 +16,8 @@ SLALOM_INLINE F minus_two_log(const F& x) {
   const I e = (bits - 0x3f3504f3) >> 23;
   const F m = F(reinterpret_cast<V>(bits - (e << 23))) - F(1.0f);
   const F n = F(__builtin_convertvector(e, V));
-  F p = F(-0.24422094f);
-  p = p * m + F(0.37565732f);
-  p = p * m + F(-0.40909559f);
-  p = p * m + F(0.4979356f);
-  p = p * m + F(-0.66632055f);
-  p = p * m + F(1.00002797f);
-  p = p * m + F(-2.00000176f);
+  const F p = polynomial(m, -0.24422094f, 0.37565732f, -0.40909559f, 0.4979356f, -0.66632055f, 1.00002797f,
+                         -2.00000176f);
   return p * m + n * F(-1.38629436f);
 }
 

@@ -57,6 +57,47 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+void check_range(const Declaration& declaration, double value) {
+  if (!(value >= declaration.min && value <= declaration.max)) refuse(shown(value), range_rule(declaration));
+}
+
+template <class Integer>
+void parse_whole(std::string_view text, const Declaration& declaration, const char* rule, Integer& field) {
+  Integer value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range && end == text.data() + text.size())
+    refuse(text, "must be an integer from " + std::to_string(std::numeric_limits<Integer>::min()) + " to " +
+                     std::to_string(std::numeric_limits<Integer>::max()));
+  if (error != std::errc{} || end != text.data() + text.size()) refuse(text, rule);
+  check_range(declaration, static_cast<double>(value));
+  field = value;
+}
+
+double number_of(std::string_view text) {
+  if (text == ".inf" || text == "inf") return std::numeric_limits<double>::infinity();
+  if (text == "-.inf" || text == "-inf") return -std::numeric_limits<double>::infinity();
+  const std::string_view digits = !text.empty() && text.front() == '+' ? text.substr(1) : text;
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
+    refuse(text, "must be a number");
+  return value;
+}
+
+std::vector<double> numbers_of(std::string_view text) {
+  const std::string_view all = trimmed(text);
+  if (all.empty() || all.front() != '[') return {number_of(all)};
+  if (all.back() != ']') refuse(text, "must be a number or a list of numbers, [a, b]");
+  std::vector<double> values;
+  std::string_view rest = all.substr(1, all.size() - 2);
+  while (true) {
+    const auto comma = rest.find(',');
+    values.push_back(number_of(trimmed(rest.substr(0, comma))));
+    if (comma == std::string_view::npos) return values;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
 }  // namespace
 
 const char* type_name(const OptionEntry& entry) {
@@ -124,66 +165,38 @@ void throw_wrong_count(std::string_view where, const Declaration& d, std::size_t
                               rule);
 }
 
-bool parse_flag(std::string_view text) {
-  if (text == "true") return true;
-  if (text == "false") return false;
-  refuse(text, "must be true or false");
+void parse(std::string_view text, const Declaration&, bool& field) {
+  if (text != "true" && text != "false") refuse(text, "must be true or false");
+  field = text == "true";
 }
 
-template <class Integer>
-Integer parse_whole(std::string_view text, const char* rule) {
-  Integer value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range && end == text.data() + text.size())
-    refuse(text, "must be an integer from " + std::to_string(std::numeric_limits<Integer>::min()) + " to " +
-                     std::to_string(std::numeric_limits<Integer>::max()));
-  if (error != std::errc{} || end != text.data() + text.size()) refuse(text, rule);
-  return value;
+void parse(std::string_view text, const Declaration& declaration, int& field) {
+  parse_whole(text, declaration, "must be an integer", field);
 }
 
-int parse_integer(std::string_view text) {
-  return parse_whole<int>(text, "must be an integer");
-}
-std::uint64_t parse_count(std::string_view text) {
-  return parse_whole<std::uint64_t>(text, "must be an integer from 0 to 18446744073709551615");
+void parse(std::string_view text, const Declaration& declaration, std::uint64_t& field) {
+  parse_whole(text, declaration, "must be an integer from 0 to 18446744073709551615", field);
 }
 
-double parse_number(std::string_view text) {
-  if (text == ".inf" || text == "inf") return std::numeric_limits<double>::infinity();
-  if (text == "-.inf" || text == "-inf") return -std::numeric_limits<double>::infinity();
-  const std::string_view digits = !text.empty() && text.front() == '+' ? text.substr(1) : text;
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-    refuse(text, "must be a number");
-  return value;
+void parse(std::string_view text, const Declaration& declaration, double& field) {
+  const double value = number_of(text);
+  check_range(declaration, value);
+  field = value;
 }
 
-std::vector<double> parse_numbers(std::string_view text) {
-  const std::string_view all = trimmed(text);
-  if (all.empty() || all.front() != '[') return {parse_number(all)};
-  if (all.back() != ']') refuse(text, "must be a number or a list of numbers, [a, b]");
-  std::vector<double> values;
-  std::string_view rest = all.substr(1, all.size() - 2);
-  while (true) {
-    const auto comma = rest.find(',');
-    values.push_back(parse_number(trimmed(rest.substr(0, comma))));
-    if (comma == std::string_view::npos) return values;
-    rest.remove_prefix(comma + 1);
-  }
+void parse(std::string_view text, const Declaration& declaration, PerInput& field) {
+  std::vector<double> values = numbers_of(text);
+  for (const double value : values) check_range(declaration, value);
+  field = PerInput(std::move(values));
 }
 
-int parse_choice(std::string_view text, const char* const* names) {
+void parse(std::string_view text, const Declaration&, const Choice& field) {
   std::string all;
-  for (int i = 0; names[i]; ++i) {
-    if (text == names[i]) return i;
-    all.append(i > 0 ? ", " : "").append(names[i]);
+  for (int i = 0; field.names()[i]; ++i) {
+    if (text == field.names()[i]) return field.set(i);
+    all.append(i > 0 ? ", " : "").append(field.names()[i]);
   }
   refuse(text, "must be one of " + all);
-}
-
-void check_range(const Declaration& declaration, double value) {
-  if (!(value >= declaration.min && value <= declaration.max)) refuse(shown(value), range_rule(declaration));
 }
 
 }  // namespace detail

@@ -46,7 +46,6 @@ template <class Target>
 inline constexpr bool is_pair<PackPair<Target>> = true;
 
 // --- scalars
-// -------------------------------------------------------------------------------------------------------
 template <class T>
 concept Scalar = std::is_same_v<T, float> || std::is_same_v<T, double>;  ///< `float` and `double`
 
@@ -62,41 +61,44 @@ T cos(T x) {
   if constexpr (detail::gpu::computes<T>) return detail::gpu::cos(x);
   return std::cos(x);
 }
-/// Tangent of an angle, rad.
-template <Scalar T>
-T tan(T x) {
-  return std::tan(x);
-}
-/// The exponential e^x.
-template <Scalar T>
-T exp(T x) {
-  return std::exp(x);
-}
-/// Natural logarithm.
-template <Scalar T>
-T log(T x) {
-  return std::log(x);
-}
-/// Arc tangent, rad.
-template <Scalar T>
-T atan(T x) {
-  return std::atan(x);
-}
-/// Square root.
-template <Scalar T>
-T sqrt(T x) {
-  return std::sqrt(x);
-}
-/// Absolute value.
-template <Scalar T>
-T abs(T x) {
-  return std::abs(x);
-}
-/// Rounds to the nearest integer, ties to even.
-template <Scalar T>
-T round(T x) {
-  return std::nearbyint(x);
-}
+/// Functions of one number that the standard library has.
+#define SLALOM_STANDARD_FUNCTION(name, standard) \
+  template <Scalar T>                            \
+  T name(T x) {                                  \
+    return std::standard(x);                     \
+  }
+SLALOM_STANDARD_FUNCTION(tan, tan)          // tangent of an angle, rad
+SLALOM_STANDARD_FUNCTION(exp, exp)          // e^x
+SLALOM_STANDARD_FUNCTION(log, log)          // natural logarithm
+SLALOM_STANDARD_FUNCTION(atan, atan)        // arc tangent, rad
+SLALOM_STANDARD_FUNCTION(sqrt, sqrt)        // square root
+SLALOM_STANDARD_FUNCTION(abs, abs)          // absolute value
+SLALOM_STANDARD_FUNCTION(round, nearbyint)  // nearest integer, ties to even
+SLALOM_STANDARD_FUNCTION(tanh, tanh)        // hyperbolic tangent
+SLALOM_STANDARD_FUNCTION(sinh, sinh)        // hyperbolic sine
+SLALOM_STANDARD_FUNCTION(cosh, cosh)        // hyperbolic cosine
+SLALOM_STANDARD_FUNCTION(asin, asin)        // arc sine, rad
+SLALOM_STANDARD_FUNCTION(acos, acos)        // arc cosine, rad
+SLALOM_STANDARD_FUNCTION(cbrt, cbrt)        // cube root
+SLALOM_STANDARD_FUNCTION(exp2, exp2)        // 2^x
+SLALOM_STANDARD_FUNCTION(log1p, log1p)      // log(1 + x), accurate near 0 as well
+SLALOM_STANDARD_FUNCTION(floor, floor)      // largest integer that is not above x
+SLALOM_STANDARD_FUNCTION(ceil, ceil)        // smallest integer that is not below x
+#undef SLALOM_STANDARD_FUNCTION
+
+/// Functions of two numbers that the standard library has.
+#define SLALOM_STANDARD_FUNCTION(name)     \
+  template <Scalar T>                      \
+  T name(T x, std::type_identity_t<T> y) { \
+    return std::name(x, y);                \
+  }
+SLALOM_STANDARD_FUNCTION(atan2)     // angle of the vector (y, x), rad
+SLALOM_STANDARD_FUNCTION(pow)       // x^y
+SLALOM_STANDARD_FUNCTION(hypot)     // length of (x, y)
+SLALOM_STANDARD_FUNCTION(fmod)      // remainder of x / y with the sign of x
+SLALOM_STANDARD_FUNCTION(copysign)  // x with the sign of y
+#undef SLALOM_STANDARD_FUNCTION
+
 /// 1 / sqrt(x).
 template <Scalar T>
 T reciprocal_sqrt(T x) {
@@ -116,81 +118,6 @@ T max(T a, std::type_identity_t<T> b) {
 template <Scalar T>
 T select(bool condition, T a, std::type_identity_t<T> b) {
   return condition ? a : b;
-}
-/// Hyperbolic tangent.
-template <Scalar T>
-T tanh(T x) {
-  return std::tanh(x);
-}
-/// Hyperbolic sine.
-template <Scalar T>
-T sinh(T x) {
-  return std::sinh(x);
-}
-/// Hyperbolic cosine.
-template <Scalar T>
-T cosh(T x) {
-  return std::cosh(x);
-}
-/// Arc sine, rad.
-template <Scalar T>
-T asin(T x) {
-  return std::asin(x);
-}
-/// Arc cosine, rad.
-template <Scalar T>
-T acos(T x) {
-  return std::acos(x);
-}
-/// Cube root.
-template <Scalar T>
-T cbrt(T x) {
-  return std::cbrt(x);
-}
-/// 2^x.
-template <Scalar T>
-T exp2(T x) {
-  return std::exp2(x);
-}
-/// log(1 + x), accurate near 0 as well.
-template <Scalar T>
-T log1p(T x) {
-  return std::log1p(x);
-}
-/// The largest integer that is not above x.
-template <Scalar T>
-T floor(T x) {
-  return std::floor(x);
-}
-/// The smallest integer that is not below x.
-template <Scalar T>
-T ceil(T x) {
-  return std::ceil(x);
-}
-/// The angle of the vector (x, y), rad.
-template <Scalar T>
-T atan2(T y, std::type_identity_t<T> x) {
-  return std::atan2(y, x);
-}
-/// x^y.
-template <Scalar T>
-T pow(T x, std::type_identity_t<T> y) {
-  return std::pow(x, y);
-}
-/// The length of (x, y).
-template <Scalar T>
-T hypot(T x, std::type_identity_t<T> y) {
-  return std::hypot(x, y);
-}
-/// The remainder of x / y with the sign of x.
-template <Scalar T>
-T fmod(T x, std::type_identity_t<T> y) {
-  return std::fmod(x, y);
-}
-/// `magnitude` with the sign of `sign`.
-template <Scalar T>
-T copysign(T magnitude, std::type_identity_t<T> sign) {
-  return std::copysign(magnitude, sign);
 }
 /// a b + c, rounded once.
 template <Scalar T>
@@ -225,7 +152,6 @@ void sin_cos_half_turn(T x, T& s, T& c) {
 }
 
 // --- scalars and packs
-// ----------------------------------------------------------------------------------------------------
 /// `x`, limited to the bounds.
 template <class T>
 SLALOM_INLINE T clamp(const T& x, const std::type_identity_t<T>& low, const std::type_identity_t<T>& high) {

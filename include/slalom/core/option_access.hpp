@@ -37,13 +37,14 @@ std::string range_rule(const Declaration& declaration);
 
 namespace detail {
 
-bool parse_flag(std::string_view text);
-int parse_integer(std::string_view text);
-std::uint64_t parse_count(std::string_view text);
-double parse_number(std::string_view text);
-std::vector<double> parse_numbers(std::string_view text);
-int parse_choice(std::string_view text, const char* const* names);
-void check_range(const Declaration& declaration, double value);
+/// Reads a value of the type of the field. Throws std::invalid_argument if the text has another form, or if
+/// the value is out of the declared range; the field is unchanged then.
+void parse(std::string_view text, const Declaration& declaration, bool& field);
+void parse(std::string_view text, const Declaration& declaration, int& field);
+void parse(std::string_view text, const Declaration& declaration, std::uint64_t& field);
+void parse(std::string_view text, const Declaration& declaration, double& field);
+void parse(std::string_view text, const Declaration& declaration, PerInput& field);
+void parse(std::string_view text, const Declaration& declaration, const Choice& field);
 
 template <class Field>
 OptionValue value_of(const Field& field) {
@@ -55,34 +56,6 @@ OptionValue value_of(const Field& field) {
     return std::string(enum_names(field)[static_cast<int>(field)]);
   } else {
     return field;
-  }
-}
-
-template <class Field>
-void parse_into(Field& field, const Declaration& declaration, std::string_view text) {
-  if constexpr (std::is_same_v<Field, bool>) {
-    field = parse_flag(text);
-  } else if constexpr (std::is_enum_v<Field>) {
-    field = static_cast<Field>(parse_choice(text, enum_names(field)));
-  } else if constexpr (std::is_same_v<Field, Choice>) {
-    field.set(parse_choice(text, field.names()));
-  } else if constexpr (std::is_same_v<Field, PerInput>) {
-    std::vector<double> values = parse_numbers(text);
-    for (const double value : values) check_range(declaration, value);
-    field = PerInput(std::move(values));
-  } else if constexpr (std::is_same_v<Field, int>) {
-    const int value = parse_integer(text);
-    check_range(declaration, value);
-    field = value;
-  } else if constexpr (std::is_same_v<Field, std::uint64_t>) {
-    const std::uint64_t value = parse_count(text);
-    check_range(declaration, static_cast<double>(value));
-    field = value;
-  } else {
-    static_assert(std::is_same_v<Field, double>, "a type that options do not have");
-    const double value = parse_number(text);
-    check_range(declaration, value);
-    field = value;
   }
 }
 
@@ -112,7 +85,11 @@ bool set_option(Options& options, std::string_view name, std::string_view text) 
   visit_options(options, [&](auto& field, const Declaration& declaration) {
     if (name != declaration.name) return;
     found = true;
-    detail::parse_into(field, declaration, text);
+    if constexpr (std::is_enum_v<std::remove_reference_t<decltype(field)>>) {
+      detail::parse(text, declaration, Choice(field));
+    } else {
+      detail::parse(text, declaration, field);
+    }
   });
   return found;
 }

@@ -48,7 +48,7 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
     }
   }
 
-  /// Where the next rollouts start: the state, then what was applied before if the problem limits rates.
+  /// The start of the next rollouts: the state, then the inputs applied before if the problem limits rates.
   std::span<const float> start() const noexcept { return state_; }
 
   int inputs() const noexcept override { return P::inputs; }

@@ -88,40 +88,35 @@ SLALOM_INLINE_CALLS RolloutStart<P, F> rollout_start(const P& problem, const flo
 }
 
 /// Computes the rollouts of `packs` packs of samples, beginning at `sample`. The packs advance together, so
-/// that each computes while others wait. With `ahead` 1, the look-up of a pack is made while the pack before
-/// it takes its step: a processor does not look so far ahead by itself.
+/// that each computes while others wait. With `ahead` 1, the look-up of a pack is made before the step of the
+/// pack before it: a processor does not look so far ahead by itself.
 template <int packs, int ahead, class P, class F>
 SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& start, const InputRows& rows,
                                   int sample, float* costs, std::uint8_t* collided) {
-  const int steps = rows.steps;
-  const std::ptrdiff_t stride = rows.stride;
   Rollout<P, F> r[packs];
+  SeenOf<P, F> seen[packs];  // look-ups of the packs that take their step next
   SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
     r[j].x = start.x;
     r[j].total = F(0.0f);
     r[j].hit = mask_t<F>(false);
     if constexpr (limits_rates<P>) r[j].previous = start.previous;
   }
-  SeenOf<P, F> seen = start.seen;
+  seen[0] = start.seen;
   const float* row = rows.values + sample;
-  for (int k = 0; k < steps; ++k, row += P::inputs * stride) {
+  for (int k = 0; k < rows.steps; ++k, row += P::inputs * rows.stride) {
     SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
-      SeenOf<P, F> looked =
-          k == 0 && j + ahead < packs ? start.seen : look_up<P, F>(problem, r[(j + ahead) % packs].x);
-      const SeenOf<P, F>& now = ahead ? seen : looked;
+      const int next = (j + ahead) % packs;
+      seen[next] = k == 0 && j + ahead < packs ? start.seen : look_up<P, F>(problem, r[next].x);
       InputOf<P, F> u;
-      SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * stride + j * F::lanes);
+      SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * rows.stride + j * F::lanes);
       if constexpr (limits_rates<P>) hold_rate(u, r[j].previous, start.reach);
-      accumulate<F>(stage_cost<P, F>(problem, r[j].x, now, u, k), r[j].total, r[j].hit);
-      r[j].x = step<P, F>(problem, r[j].x, now, u, k);
-      if constexpr (ahead != 0) seen = looked;
+      accumulate<F>(stage_cost<P, F>(problem, r[j].x, seen[j], u, k), r[j].total, r[j].hit);
+      r[j].x = step<P, F>(problem, r[j].x, seen[j], u, k);
     }
   }
   SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
-    SeenOf<P, F> looked = j + ahead < packs ? look_up<P, F>(problem, r[(j + ahead) % packs].x) : start.seen;
-    const SeenOf<P, F>& now = ahead ? seen : looked;
-    accumulate<F>(terminal_cost<P, F>(problem, r[j].x, now), r[j].total, r[j].hit);
-    if constexpr (ahead != 0) seen = looked;
+    if (j + ahead < packs) seen[j + ahead] = look_up<P, F>(problem, r[j + ahead].x);
+    accumulate<F>(terminal_cost<P, F>(problem, r[j].x, seen[j]), r[j].total, r[j].hit);
     r[j].total.store(costs + sample + j * F::lanes);
     r[j].hit.store(collided + sample + j * F::lanes);
   }

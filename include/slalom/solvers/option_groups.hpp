@@ -15,7 +15,7 @@ struct NoiseOptions {
   int knots = 0;
 };
 
-/// How costs become weights.
+/// The conversion of costs to weights.
 /// `visit_weighting_options` below describes the fields.
 struct WeightingOptions {
   double target_ess_fraction = 0;

@@ -57,8 +57,7 @@ class SolverOptions {
   /// The aggregate itself; null if it is of another type.
   template <MethodOptions Options>
   const Options* get_if() const noexcept {
-    const auto* held = dynamic_cast<const Held<Options>*>(held_.get());
-    return held ? &held->options : nullptr;
+    return const_cast<SolverOptions*>(this)->get_if<Options>();
   }
 
   /// The option of that name and type (`bool`, `int`, `std::uint64_t`, `double` or `PerInput`); null if there

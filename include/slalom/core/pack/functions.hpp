@@ -113,11 +113,8 @@ template <class Target>
 SLALOM_INLINE Pack<Target> tanh(const Pack<Target>& x) {
   using F = Pack<Target>;
   const F a = abs(x), z = x * x;
-  F p = F(-5.70498872745e-3f);
-  p = p * z + F(2.06390887954e-2f);
-  p = p * z + F(-5.37397155531e-2f);
-  p = p * z + F(1.33314422036e-1f);
-  p = p * z + F(-3.33332819422e-1f);
+  const F p = polynomial(z, -5.70498872745e-3f, 2.06390887954e-2f, -5.37397155531e-2f, 1.33314422036e-1f,
+                         -3.33332819422e-1f);
   const F near = x + x * z * p;
   const F far = F(1.0f) - F(2.0f) / (exp(a + a) + F(1.0f));
   return select(a < F(0.625f), near, copysign(far, x));
@@ -127,9 +124,7 @@ template <class Target>
 SLALOM_INLINE Pack<Target> sinh(const Pack<Target>& x) {
   using F = Pack<Target>;
   const F a = abs(x), z = x * x, e = exp(a);
-  F p = F(2.03721912945e-4f);
-  p = p * z + F(8.33028376239e-3f);
-  p = p * z + F(1.66667160211e-1f);
+  const F p = polynomial(z, 2.03721912945e-4f, 8.33028376239e-3f, 1.66667160211e-1f);
   const F near = x + x * z * p;
   return select(a < F(1.0f), near, copysign(F(0.5f) * (e - F(1.0f) / e), x));
 }
@@ -148,11 +143,8 @@ SLALOM_INLINE Pack<Target> asin(const Pack<Target>& x) {
   const F a = abs(x);
   const auto steep = a > F(0.5f);
   const F z = select(steep, F(0.5f) * (F(1.0f) - a), a * a), s = select(steep, sqrt(z), a);
-  F p = F(4.2163199048e-2f);
-  p = p * z + F(2.4181311049e-2f);
-  p = p * z + F(4.5470025998e-2f);
-  p = p * z + F(7.4953002686e-2f);
-  p = p * z + F(1.6666752422e-1f);
+  const F p =
+      polynomial(z, 4.2163199048e-2f, 2.4181311049e-2f, 4.5470025998e-2f, 7.4953002686e-2f, 1.6666752422e-1f);
   const F angle = s + s * z * p;
   return copysign(select(steep, F(1.57079632679f) - (angle + angle), angle), x);
 }

@@ -9,47 +9,38 @@ namespace slalom {
 
 using simd::Pack;
 
-/// The smaller value in each lane.
-template <class Target>
-SLALOM_INLINE_CALLS Pack<Target> min(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
-  Pack<Target> r;
-  simd::Operations<Target>::min(a.v, b.v, r.v);
-  return r;
-}
-/// The larger value in each lane.
-template <class Target>
-SLALOM_INLINE_CALLS Pack<Target> max(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
-  Pack<Target> r;
-  simd::Operations<Target>::max(a.v, b.v, r.v);
-  return r;
-}
+/// Functions of packs that compilers need to be told, lane by lane.
+#define SLALOM_PACK_FUNCTION(name)                               \
+  template <class Target>                                        \
+  SLALOM_INLINE_CALLS Pack<Target> name(const Pack<Target>& x) { \
+    Pack<Target> r;                                              \
+    simd::Operations<Target>::name(x.v, r.v);                    \
+    return r;                                                    \
+  }
+SLALOM_PACK_FUNCTION(sqrt)
+SLALOM_PACK_FUNCTION(reciprocal_sqrt)  // 4 units in the last place; x > 0; bits depend on the instruction set
+SLALOM_PACK_FUNCTION(round)            // nearest integer, ties to even; |x| < 2^22
+#undef SLALOM_PACK_FUNCTION
+
+/// Functions of two packs, lane by lane.
+#define SLALOM_PACK_FUNCTION(name)                                                     \
+  template <class Target>                                                              \
+  SLALOM_INLINE_CALLS Pack<Target> name(const Pack<Target>& a,                         \
+                                        const std::type_identity_t<Pack<Target>>& b) { \
+    Pack<Target> r;                                                                    \
+    simd::Operations<Target>::name(a.v, b.v, r.v);                                     \
+    return r;                                                                          \
+  }
+SLALOM_PACK_FUNCTION(min)
+SLALOM_PACK_FUNCTION(max)
+#undef SLALOM_PACK_FUNCTION
+
 /// `a` in lanes where the condition is true, else `b`.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> select(const simd::Mask<Target>& condition, const Pack<Target>& a,
                                         const std::type_identity_t<Pack<Target>>& b) {
   Pack<Target> r;
   simd::Operations<Target>::select(condition.v, a.v, b.v, r.v);
-  return r;
-}
-/// Square root, lane by lane.
-template <class Target>
-SLALOM_INLINE_CALLS Pack<Target> sqrt(const Pack<Target>& x) {
-  Pack<Target> r;
-  simd::Operations<Target>::sqrt(x.v, r.v);
-  return r;
-}
-/// 1/sqrt(x), within 4 units in the last place; x > 0. Its bits depend on the instruction set.
-template <class Target>
-SLALOM_INLINE_CALLS Pack<Target> reciprocal_sqrt(const Pack<Target>& x) {
-  Pack<Target> r;
-  simd::Operations<Target>::reciprocal_sqrt(x.v, r.v);
-  return r;
-}
-/// Nearest integer in each lane, ties to even; |x| < 2^22.
-template <class Target>
-SLALOM_INLINE_CALLS Pack<Target> round(const Pack<Target>& x) {
-  Pack<Target> r;
-  simd::Operations<Target>::round(x.v, r.v);
   return r;
 }
 /// Absolute value, lane by lane.
@@ -148,6 +139,14 @@ SLALOM_INLINE Pack<Target> tan(const Pack<Target>& x) {
   return s / c;
 }
 
+/// The polynomial of x with these coefficients, that of the highest power first.
+template <class F, class... Coefficients>
+SLALOM_INLINE F polynomial(const F& x, float highest, Coefficients... others) {
+  F sum(highest);
+  ((sum = sum * x + F(others)), ...);
+  return sum;
+}
+
 /// e^x; 0 below -87.3, e^88.3 between 88.3 and 88.7, infinite above 88.7.
 template <class Target>
 SLALOM_INLINE Pack<Target> exp(const Pack<Target>& x) {
@@ -158,12 +157,8 @@ SLALOM_INLINE Pack<Target> exp(const Pack<Target>& x) {
   const F n = round(bounded * F(1.44269504f));
   F r = bounded - n * F(0.693359375f);
   r = r - n * F(-2.12194440e-4f);
-  F p = F(1.9875691500e-4f);
-  p = p * r + F(1.3981999507e-3f);
-  p = p * r + F(8.3334519073e-3f);
-  p = p * r + F(4.1665795894e-2f);
-  p = p * r + F(1.6666665459e-1f);
-  p = p * r + F(5.0000001201e-1f);
+  const F p = polynomial(r, 1.9875691500e-4f, 1.3981999507e-3f, 8.3334519073e-3f, 4.1665795894e-2f,
+                         1.6666665459e-1f, 5.0000001201e-1f);
   const F e = r * r * p + r + F(1.0f);
   const I exponent = __builtin_convertvector(n.v, I) << 23;
   const F scaled = F(reinterpret_cast<V>(reinterpret_cast<I>(e.v) + exponent));
@@ -183,15 +178,9 @@ SLALOM_INLINE Pack<Target> log(const Pack<Target>& x) {
   const F m = F(reinterpret_cast<V>(bits - (reinterpret_cast<U>(e) << 23))) - F(1.0f);
   const F n = F(__builtin_convertvector(e, V));
   const F m2 = m * m;
-  F p = F(7.0376836292e-2f);
-  p = p * m + F(-1.1514610310e-1f);
-  p = p * m + F(1.1676998740e-1f);
-  p = p * m + F(-1.2420140846e-1f);
-  p = p * m + F(1.4249322787e-1f);
-  p = p * m + F(-1.6668057665e-1f);
-  p = p * m + F(2.0000714765e-1f);
-  p = p * m + F(-2.4999993993e-1f);
-  p = p * m + F(3.3333331174e-1f);
+  const F p =
+      polynomial(m, 7.0376836292e-2f, -1.1514610310e-1f, 1.1676998740e-1f, -1.2420140846e-1f,
+                 1.4249322787e-1f, -1.6668057665e-1f, 2.0000714765e-1f, -2.4999993993e-1f, 3.3333331174e-1f);
   const F y = m * m2 * p + n * F(-2.12194440e-4f) - F(0.5f) * m2;
   const F result = m + y + n * F(0.693359375f);
   const F at_zero = select(x <= F(0.0f), F(-__builtin_inff()), result);
