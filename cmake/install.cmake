@@ -27,7 +27,7 @@ if(SLALOM_BUILD_MAPS AND NOT BUILD_SHARED_LIBS)
 endif()
 configure_package_config_file(cmake/slalom-config.cmake.in slalom-config.cmake INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(slalom-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/slalom-config.cmake ${PROJECT_BINARY_DIR}/slalom-config-version.cmake
+install(FILES ${PROJECT_BINARY_DIR}/slalom-config.cmake ${PROJECT_BINARY_DIR}/slalom-config-version.cmake cmake/warn_unoptimised.cmake
   DESTINATION ${package_folder})
 
 # pkg-config: the layers, uppermost first, in the order that the linker needs.

@@ -24,3 +24,8 @@
 #include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/solver.hpp"
 #include "slalom/solvers/solver_base.hpp"
+
+// A warning for a source file that is compiled without optimisation.
+#if !defined(__OPTIMIZE__) && !defined(SLALOM_ALLOW_UNOPTIMISED)
+#warning "slalom: rollouts without optimisation are about 40 times slower: -O2, or define SLALOM_ALLOW_UNOPTIMISED"
+#endif
