@@ -19,7 +19,7 @@ class Fuzz : public ::testing::TestWithParam<const Target*> {
     try {
       return GetParam()->run(bytes);
     } catch (const std::exception& error) {
-      ADD_FAILURE() << GetParam()->name() << ", " << which << ": " << error.what();
+      ADD_FAILURE() << GetParam()->name << ", " << which << ": " << error.what();
       return false;
     }
   }
@@ -58,7 +58,7 @@ TEST_P(Fuzz, TakesItsSeeds) {
   const auto seeds = GetParam()->seeds();
   ASSERT_FALSE(seeds.empty());
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    EXPECT_LE(seeds[i].size(), GetParam()->max_bytes());
+    EXPECT_LE(seeds[i].size(), GetParam()->max_bytes);
     const bool valid = run(seeds[i], "seed " + std::to_string(i));
     if (i == 0) {
       EXPECT_TRUE(valid);
@@ -78,21 +78,21 @@ TEST_P(Fuzz, TakesChangedSeeds) {
 
 TEST_P(Fuzz, TakesEarlierFindings) {
   run("", "nothing");
-  const auto folder = std::filesystem::path(SLALOM_FUZZ_REGRESSIONS) / GetParam()->name();
+  const auto folder = std::filesystem::path(SLALOM_FUZZ_REGRESSIONS) / GetParam()->name;
   if (!std::filesystem::exists(folder)) return;
   for (const auto& file : std::filesystem::directory_iterator(folder))
     run(testing::content(file.path()), file.path().filename().string());
 }
 
 INSTANTIATE_TEST_SUITE_P(Target, Fuzz, ::testing::ValuesIn(targets()),
-                         [](const auto& each) { return std::string(each.param->name()); });
+                         [](const auto& each) { return std::string(each.param->name); });
 
 TEST(FuzzRegressions, HaveATargetForEachFolder) {
   if (!std::filesystem::exists(SLALOM_FUZZ_REGRESSIONS)) return;
   for (const auto& folder : std::filesystem::directory_iterator(SLALOM_FUZZ_REGRESSIONS)) {
     const std::string name = folder.path().filename().string();
     EXPECT_TRUE(std::any_of(targets().begin(), targets().end(), [&](const Target* target) {
-      return name == target->name();
+      return name == target->name;
     })) << folder.path();
   }
 }

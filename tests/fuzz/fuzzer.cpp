@@ -1,8 +1,10 @@
-// The two functions that libFuzzer calls, for the one target of this program.
+// The two functions that libFuzzer calls.
 //
-//   fuzz_NAME CORPUS [options of libFuzzer]
+//   fuzzer targets                            prints the names of the targets
+//   fuzzer TARGET CORPUS [options of libFuzzer]
 //
 // If the folder CORPUS does not exist, it is made, with the target's seeds.
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -12,15 +14,15 @@
 
 #include "fuzz/target.hpp"
 
-using slalom::fuzz::targets;
-
 namespace {
+
+const slalom::fuzz::Target* target = nullptr;
 
 void write_seeds(const std::filesystem::path& corpus) {
   if (std::filesystem::exists(corpus)) return;
   std::filesystem::create_directories(corpus);
   int number = 0;
-  for (const std::string& seed : targets().front()->seeds())
+  for (const std::string& seed : target->seeds())
     std::ofstream(corpus / ("seed_" + std::to_string(number++)), std::ios::binary) << seed;
 }
 
@@ -28,10 +30,15 @@ void write_seeds(const std::filesystem::path& corpus) {
 
 extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
   static std::vector<char*> changed(*arguments, *arguments + *count);
-  static std::string max_bytes = "-max_len=" + std::to_string(targets().front()->max_bytes());
-  if (changed.size() > 1 && changed[1][0] != '-') write_seeds(changed[1]);
-  changed.insert(changed.begin() + 1, max_bytes.data());
-  *count = static_cast<int>(changed.size());
+  const std::string name = *count > 1 ? changed[1] : "";
+  for (const slalom::fuzz::Target* each : slalom::fuzz::targets()) {
+    if (name == "targets") std::puts(each->name);
+    if (name == each->name) target = each;
+  }
+  if (target == nullptr) std::exit(name == "targets" ? 0 : 2);
+  static std::string max_bytes = "-max_len=" + std::to_string(target->max_bytes);
+  if (*count > 2 && changed[2][0] != '-') write_seeds(changed[2]);
+  changed[1] = max_bytes.data();
   changed.push_back(nullptr);
   *arguments = changed.data();
   return 0;
@@ -39,9 +46,9 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    targets().front()->run({reinterpret_cast<const char*>(data), size});
+    target->run({reinterpret_cast<const char*>(data), size});
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "finding of %s: %s\n", targets().front()->name(), error.what());
+    std::fprintf(stderr, "finding of %s: %s\n", target->name, error.what());
     std::abort();
   }
   return 0;

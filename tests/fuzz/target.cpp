@@ -13,7 +13,7 @@ std::vector<const Target*>& all_targets() {
   return all;
 }
 
-/// Removed with its files when the process ends.
+/// A folder that is removed with its files when the process ends.
 struct Folder {
   Folder() { std::filesystem::create_directories(path); }
   ~Folder() {
@@ -29,9 +29,15 @@ struct Folder {
 
 }  // namespace
 
-Target::Target(const char* target_name, std::size_t longest, Seeds make_seeds, Run take)
-    : name_(target_name), max_bytes_(longest), seeds_(make_seeds), run_(take) {
+Target::Target(const char* target_name, std::size_t longest, Seeds (*make_seeds)(),
+               bool (*take_bytes)(std::string_view bytes))
+    : name(target_name), max_bytes(longest), seeds(make_seeds), take(take_bytes) {
   all_targets().push_back(this);
+}
+
+bool Target::run(std::string_view bytes) const {
+  bool accepted = false;
+  return is_valid([&] { accepted = take(bytes); }) && accepted;
 }
 
 const std::vector<const Target*>& targets() {

@@ -6,50 +6,55 @@
 #include <string_view>
 #include <vector>
 
+#include "slalom/core/error.hpp"
 #include "support/promise.hpp"
 
-/// Fuzz targets: each hands bytes to a part of Slalom that takes something from outside, and checks what
-/// comes back. A target is compiled twice: into a fuzzer (libFuzzer), and into `fuzz_test`, which needs no
+/// Fuzz targets: each hands bytes to a part of Slalom that takes something from outside, and checks the
+/// result. All targets are compiled twice: into a fuzzer (libFuzzer), and into `fuzz_test`, which needs no
 /// clang and replays seeds, changed seeds and earlier findings.
 namespace slalom::fuzz {
 
-/// A target; it registers itself.
-class Target {
- public:
-  using Seeds = std::vector<std::string> (*)();
-  using Run = bool (*)(std::string_view bytes);
+using testing::require;
+using Seeds = std::vector<std::string>;
 
-  /// `longest`: bytes of an input that a fuzzer makes. `make_seeds` makes valid inputs, with the writers of
-  /// Slalom where there are any. `take` throws if the part under test breaks its promise, or throws what it
-  /// does not document; it returns whether the input was valid. The first seed is.
-  Target(const char* target_name, std::size_t longest, Seeds make_seeds, Run take);
+/// Calls `read` and returns whether it accepts its input: it throws no IoError.
+template <class Read>
+bool is_valid(Read&& read) {
+  try {
+    read();
+    return true;
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
+/// A target; it registers itself.
+struct Target {
+  Target(const char* target_name, std::size_t longest, Seeds (*make_seeds)(),
+         bool (*take_bytes)(std::string_view bytes));
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
 
-  const char* name() const noexcept { return name_; }
-  std::size_t max_bytes() const noexcept { return max_bytes_; }
-  std::vector<std::string> seeds() const { return seeds_(); }
-  bool run(std::string_view bytes) const { return run_(bytes); }
+  /// Takes an input and returns whether it is valid. Throws if the part under test breaks its promise, or
+  /// throws an error that it does not document.
+  bool run(std::string_view bytes) const;
 
- private:
-  const char* name_;
-  std::size_t max_bytes_;
-  Seeds seeds_;
-  Run run_;
+  const char* name;
+  std::size_t max_bytes;  ///< bytes of the longest input that a fuzzer makes
+  Seeds (*seeds)();  ///< makes inputs, with the writers of Slalom where there are any; the first is valid
+  bool (*take)(std::string_view bytes);  ///< as `run`, and may throw IoError for an input that is not valid
 };
 
-/// The targets of this program.
+/// All targets.
 const std::vector<const Target*>& targets();
-
-using testing::require;
 
 /// The folder of this process for files of targets.
 const std::string& scratch_folder();
 
-/// Writes a file in the scratch folder; its path.
+/// Writes a file in the scratch folder; returns its path.
 std::string scratch_file(const std::string& name, std::string_view bytes);
 
-/// An input that stands for several texts has this byte between them: the separator of records in ASCII.
+/// The byte between the texts of an input that stands for several: the separator of records in ASCII.
 inline constexpr char separator = '\x1e';
 
 /// The first `count` texts of an input; those that it lacks are empty.

@@ -83,16 +83,11 @@ TEST_F(IdentifyCommand, FindsTheFrictionOfASimulatedCarWhoseTyresSlip) {
 
 TEST_F(IdentifyCommand, RejectsInvalidInput) {
   expect_refused("identify nothing.jsonl", {"nothing.jsonl", "cannot be read"});
-  std::ofstream(folder_ / "text.jsonl") << "hello\n";
-  expect_refused("identify text.jsonl", {"text.jsonl:1", "must be a record"});
-  std::ofstream(folder_ / "other.jsonl") << "{\"type\":\"tick\"}\n";
-  expect_refused("identify other.jsonl", {"other.jsonl:1", "must be the first line of a recording"});
-  std::ofstream(folder_ / "torn.jsonl")
-      << "{\"type\":\"recording\",\"version\":1}\n{\"type\":\"tick\",\"time\":0}\n";
-  expect_refused("identify torn.jsonl", {"torn.jsonl:2", "odometry"});
+  expect_refused("identify .", {".: is a folder"});
+  std::ofstream(folder_ / "a.mcap") << "\x89MCAP0\r\n";
+  expect_refused("identify a.mcap", {"a.mcap", "must be JSON lines"});
   std::ofstream(folder_ / "empty.jsonl") << "{\"type\":\"recording\",\"version\":1}\n";
-  expect_refused("identify empty.jsonl", {"200"});
-  expect_refused("identify empty.jsonl --wheelbase -1", {"wheelbase"});
+  expect_refused("identify empty.jsonl", {"empty.jsonl: ", "200", "usable samples"});
 }
 
 }  // namespace

@@ -11,7 +11,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::contains;
 using testing::content;
-using testing::write_settings;
 
 const std::string wren = SLALOM_COURSES "/wren";
 
@@ -84,7 +83,10 @@ TEST_F(CommandLine, EveryNumberIsCheckedInTheSameWords) {
       ++options;
       const std::string begin = command + " " + option;
       const std::string refused = timed(begin + " abc").output;
-      refuses(begin + " abc", {"slalom: " + option + ": 'abc' must be a "}, 2);
+      for (const std::string value : {"abc", "nan", "99999999999999999999e999"})
+        refuses(begin + " " + value, {"slalom: " + option + ": '" + value + "' must be a "}, 2);
+      if (contains(refused, "must be a whole number from 0"))
+        refuses(begin + " -1", {option + ": '-1' must be a whole number from 0"}, 2);
       EXPECT_EQ(std::count(refused.begin(), refused.end(), '\n'), 1) << refused;
       std::smatch found;
       if (!std::regex_search(refused, found, range)) continue;
@@ -168,18 +170,12 @@ TEST_F(CommandLine, RejectsOneFileForTwoOutputs) {
   EXPECT_EQ(timed("explain --method mppi --solves 1 --json /dev/null --plot /dev/null").status, 0);
 }
 
-TEST_F(CommandLine, RejectsEmptyNegativeAndUndefinedValues) {
+TEST_F(CommandLine, RejectsEmptyValues) {
   for (const std::string arguments :
        {"drive --json ''", "drive --plot ''", "drive --record ''", "drive --start ''", "view --token ''",
         "track --out ''", "eval --methods '' --out e", "compare '' ''"})
     refuses(arguments, {"the value must not be empty"}, 2);
-  for (const std::string arguments : {"drive --seed -1", "explain --seed -1", "track --out t --seed -1",
-                                      "view --seed -1", "drive --seed 99999999999999999999"})
-    refuses(arguments, {"--seed", "must be a whole number from 0"}, 2);
-  refuses("eval --out e --seed0 -1", {"--seed0: '-1' must be a whole number from 0"}, 2);
-  refuses("bench --seconds nan", {"--seconds: 'nan' must be a number in ["}, 2);
-  refuses("drive --latency-ms -1", {"--latency-ms", "-1", "1000"}, 2);
-  refuses("eval --out e --latency-ms -1", {"--latency-ms", "-1", "1000"}, 2);
+  refuses("drive --seed 99999999999999999999", {"--seed", "must be a whole number from 0"}, 2);
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
@@ -217,7 +213,7 @@ TEST_F(CommandLine, ReplayIgnoresNoOption) {
   refuses("replay ev --lap 0", {"ev/settings.json"});
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
   refuses("replay ev", {"--lap: is required"}, 2);
-  refuses("replay ev --lap -1", {"--lap: '-1' must be in [0, 0]"}, 2);
+  refuses("replay ev --lap 1", {"--lap: '1' must be in [0, 0]"}, 2);
   for (const std::string option : {"--html x.html", "--port 0"})
     refuses("replay ev --lap 0 " + option,
             {option.substr(0, option.find(' ')) + ": has no effect when a lap of an evaluation is repeated"},
@@ -234,35 +230,13 @@ TEST_F(CommandLine, ReplayIgnoresNoOption) {
 TEST_F(CommandLine, NamesEmptyEvaluations) {
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
   fs::copy(folder_ / "ev", folder_ / "none");
-  const std::string table = content(folder_ / "ev/laps.csv"),
-                    settings = content(folder_ / "ev/settings.json");
+  const std::string table = content(folder_ / "ev/laps.csv");
   std::ofstream(folder_ / "none/laps.csv") << table.substr(0, table.find('\n') + 1);
   refuses("compare ev none", {"none", "has no lap of mppi"});
   refuses("compare none ev", {"none", "has no lap of mppi"});
   std::ofstream(folder_ / "ev/settings.json") << "[]";
   refuses(evaluation("ev") + " --resume", {"ev/settings.json: ", "is not a JSON object"});
   refuses("replay ev --lap 0", {"ev/settings.json: ", "is not a JSON object"});
-  std::ofstream(folder_ / "ev/settings.json") << settings;
-  const auto changed = [&](const std::string& pattern, const std::string& to) {
-    write_settings(folder_ / "ev", std::regex_replace(settings, std::regex(pattern), to));
-  };
-  changed(R"re("experiments": \[[^\]]*\])re", R"("experiments": [])");
-  refuses("view --eval ev", {"ev/settings.json: is invalid: experiments: must be at least one"});
-  changed(R"re("laps": \d+)re", R"("laps": 4294967298)");
-  refuses("view --eval ev", {"ev/settings.json: is invalid: key 'laps': 4294967298 must be a whole number"});
-  changed(R"re("seed0": \d+)re", R"("seed0": 1e30)");
-  refuses("compare ev ev", {"ev/settings.json: is invalid: key 'seed0': 1e+30 must be a whole number"});
-}
-
-TEST_F(CommandLine, IdentifyPrintsItsInputs) {
-  ASSERT_EQ(timed("drive --course wren --config default_kinematic --method mppi --set samples=64 --record "
-                  "a.mcap --record-times")
-                .status,
-            0);
-  refuses("identify a.mcap", {"a.mcap", "must be JSON lines"});
-  refuses("identify .", {".: is a folder"});
-  std::ofstream(folder_ / "empty.jsonl") << "{\"type\":\"recording\",\"version\":1}\n";
-  refuses("identify empty.jsonl", {"empty.jsonl: ", "usable samples"});
 }
 
 TEST_F(CommandLine, PicturesAreWrittenInTheFormatOfTheirEnding) {

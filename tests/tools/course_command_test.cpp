@@ -110,8 +110,6 @@ TEST_F(CourseCommand, SaysWhatIsWrong) {
                  {"room.yaml", "start: (8.00, 4.00)", "free space"});
   expect_refused("course room.yaml --out x --start 8", {"--start", "x,y,yaw"});
   expect_refused("course room.yaml --out x --start 8,8,0 --reverse", {"--reverse", "--start"});
-  expect_refused("course room.yaml --out x --margin -1", {"--margin: '-1' must be a number in [0, 10]"});
-  expect_refused("course room.yaml --out x --friction 0", {"--friction: '0' must be a number in [0.01, 10]"});
   expect_refused("course points.csv --out x", {"points.csv", "no widths", "--line"});
   expect_refused("course points.csv --line points.csv --out x", {"--line", "needs a map"});
   EXPECT_FALSE(fs::exists(folder_ / "x")) << "nothing is written";

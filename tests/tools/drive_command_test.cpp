@@ -194,13 +194,8 @@ TEST_F(DriveCommand, RejectsInvalidArguments) {
   expect_refused("drive --start 0,0", {"--start", "x,y,yaw"});
   expect_refused("drive --start 0,0,nan", {"--start", "finite"});
   expect_refused("drive --course wren --start 1e6,0,0", {"start", "on the map"});
-  expect_refused("drive --obstacles -1", {"obstacles", "[0, 1000]"});
   expect_refused("drive --obstacles 900", {"parked cars could be placed"});
-  expect_refused("drive --laps 0", {"--laps", "[1, 100000]"});
-  expect_refused("drive --threads 0", {"threads", "[1, 1024]"});
-  expect_refused("drive --latency-ms -5", {"latency"});
   expect_refused("drive --evaluation published --latency-ms 5", {"latency", "published"});
-  expect_refused("drive --seed many", {"--seed"});
   expect_refused("drive --record /proc/none/x", {"/proc/none/x", "cannot be written"});
 }
 

@@ -70,7 +70,6 @@ TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
                  {"--methods", "'dwa' must be one of mppi, svg_mppi"});
   expect_refused("navigate --scenario no-way --methods mppi,svg_mppi,mppi",
                  {"--methods", "mppi", "is given twice"});
-  expect_refused("navigate --seeds 0", {"--seeds"});
   expect_refused("navigate --scenario no-way --table /no/such/folder/out.md",
                  {"out.md", "cannot be written"});
 }

@@ -1,5 +1,5 @@
 // Progress bars fit the terminal and never promise a time that is over.
-#include "tools/terminal/progress_text.hpp"
+#include "tools/terminal/progress.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,29 +11,24 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 evaluation::EvaluationProgress progress(int done, int total, double seconds_left) {
-  evaluation::EvaluationProgress p;
-  p.laps_done = done;
-  p.laps_total = total;
-  p.seconds_left = seconds_left;
-  return p;
+  return {.laps_done = done, .laps_total = total, .seconds_left = seconds_left};
 }
 
 TEST(ProgressText, AnEvaluationFitsAnyTerminal) {
   for (const int columns : {10, 20, 40, 60, 80, 120}) {
     for (const int done : {0, 1, 999, 1000}) {
-      const std::string text =
-          evaluation_text("candidate 12 of 64", progress(done, 1000, 7384), columns, false);
+      const std::string text = evaluation_text(progress(done, 1000, 7384), columns, false);
       EXPECT_LT(text.size(), static_cast<std::size_t>(columns)) << text;
     }
   }
-  EXPECT_EQ(evaluation_text("", progress(5, 10, 62), 80, false),
+  EXPECT_EQ(evaluation_text(progress(5, 10, 62), 80, false),
             "[###############...............] 5 of 10 laps, 1 min 02 s left");
 }
 
 TEST(ProgressText, NoTimeIsLeftThatIsNotKnownOrOver) {
-  EXPECT_FALSE(contains(evaluation_text("", progress(0, 10, 0), 80, false), "left"));
-  EXPECT_FALSE(contains(evaluation_text("", progress(10, 10, 0), 80, false), "left"));
-  EXPECT_TRUE(contains(evaluation_text("", progress(9, 10, 0.2), 80, false), "1 s left"));
+  EXPECT_FALSE(contains(evaluation_text(progress(0, 10, 0), 80, false), "left"));
+  EXPECT_FALSE(contains(evaluation_text(progress(10, 10, 0), 80, false), "left"));
+  EXPECT_TRUE(contains(evaluation_text(progress(9, 10, 0.2), 80, false), "1 s left"));
 }
 
 TEST(ProgressText, ALapShowsWhatThereIsRoomFor) {
@@ -49,9 +44,8 @@ TEST(ProgressText, ALapShowsWhatThereIsRoomFor) {
 }
 
 TEST(ProgressText, ColourTakesNoRoom) {
-  std::string coloured = progress_bar(0.5, 10, true);
-  EXPECT_TRUE(contains(coloured, "\033[32m#####\033[0m....."));
-  EXPECT_EQ(progress_bar(0.5, 10, false), "[#####.....]");
+  EXPECT_TRUE(contains(evaluation_text(progress(5, 10, 62), 80, true),
+                       "[\033[32m###############\033[0m...............]"));
 }
 
 }  // namespace

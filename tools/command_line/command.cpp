@@ -16,75 +16,60 @@
 
 namespace slalom::tools {
 
-struct NumberRule {
-  bool is_whole = false;
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-
-  /// "must be a whole number in [1, 10]"
-  std::string text() const {
-    std::string text = is_whole ? "must be a whole number" : "must be a number";
-    if (std::isinf(least)) return text;
-    if (std::isinf(most)) return text + " from " + range_number(least);
-    return text + " in [" + range_number(least) + ", " + range_number(most) + "]";
-  }
-
- private:
-  static std::string range_number(double value) {
-    const bool is_short = std::abs(value) < 1e15 && value == std::floor(value);
-    return is_short ? std::to_string(static_cast<std::int64_t>(value)) : to_text(value);
-  }
-};
-
 namespace {
 
-template <class T>
-bool is_number(const std::string& text, const NumberRule& allowed) {
-  T value{};
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value);
-  return parsed.ec == std::errc{} && parsed.ptr == end && static_cast<double>(value) >= allowed.least &&
-         static_cast<double>(value) <= allowed.most;
+std::string range_number(double value) {
+  const bool is_short = std::abs(value) < 1e15 && value == std::floor(value);
+  return is_short ? std::to_string(static_cast<std::int64_t>(value)) : to_text(value);
+}
+
+/// "must be a whole number in [1, 10]"
+std::string rule_text(bool is_whole, const Range& range) {
+  const std::string text = is_whole ? "must be a whole number" : "must be a number";
+  if (std::isinf(range.least)) return text;
+  if (std::isinf(range.most)) return text + " from " + range_number(range.least);
+  return text + " in [" + range_number(range.least) + ", " + range_number(range.most) + "]";
+}
+
+bool contains(const Range& range, double value) {
+  return value >= range.least && value <= range.most;
 }
 
 /// Declares an option. The parser converts its value only after this check.
 template <class T, class Stored>
-Option declare_number(CLI::App& parser, const std::string& name, Stored& value, const std::string& help) {
-  const auto numbers = std::make_shared<NumberRule>();
-  numbers->is_whole = std::is_integral_v<T>;
-  if constexpr (std::is_unsigned_v<T>) numbers->least = 0;
-  if constexpr (sizeof(T) < sizeof(int)) numbers->most = std::numeric_limits<T>::max();
+Option declare_number(CLI::App& parser, const std::string& name, Stored& value, const std::string& help,
+                      Range range = {}) {
+  constexpr bool is_whole = std::is_integral_v<T>;
+  if constexpr (std::is_unsigned_v<T>) range.least = 0;
+  if constexpr (sizeof(T) < sizeof(int)) range.most = std::numeric_limits<T>::max();
   CLI::Option* parsed = parser.add_option(name, value, help);
-  parsed->type_name(numbers->is_whole ? "INT" : "NUMBER");
-  parsed->check([numbers](const std::string& text) {
-    return is_number<T>(text, *numbers) ? "" : "'" + text + "' " + numbers->text();
+  parsed->type_name(is_whole ? "INT" : "NUMBER");
+  if constexpr (std::is_same_v<T, Stored>)
+    if (contains(range, static_cast<double>(value))) parsed->capture_default_str();
+  parsed->check([range](const std::string& text) {
+    T number{};
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, number);
+    const bool accepted =
+        read.ec == std::errc{} && read.ptr == end && contains(range, static_cast<double>(number));
+    return accepted ? "" : "'" + text + "' " + rule_text(is_whole, range);
   });
-  return {parsed, numbers};
+  return Option(parsed);
 }
 
 template <class T>
 Option declare_text(CLI::App& parser, const std::string& name, T& value, const std::string& help) {
   CLI::Option* parsed = parser.add_option(name, value, help);
+  if (!value.empty()) parsed->capture_default_str();
   // An empty value usually comes from a shell variable that is not set.
   parsed->check([](const std::string& text) { return text.empty() ? "the value must not be empty" : ""; });
-  return {parsed, nullptr};
+  return Option(parsed);
 }
 
 }  // namespace
 
-Option& Option::required(bool needed) {
-  parsed_->required(needed);
-  return *this;
-}
-
-Option& Option::show_default() {
-  parsed_->capture_default_str();
-  return *this;
-}
-
-Option& Option::range(double least, double most) {
-  numbers_->least = least;
-  numbers_->most = most;
+Option& Option::required() {
+  parsed_->required();
   return *this;
 }
 
@@ -124,8 +109,8 @@ Option Subcommand::option(const std::string& name, std::vector<std::string>& val
   return declare_text(parser_, name, value, help);
 }
 
-Option Subcommand::option(const std::string& name, int& value, const std::string& help) {
-  return declare_number<int>(parser_, name, value, help);
+Option Subcommand::option(const std::string& name, int& value, const std::string& help, Range range) {
+  return declare_number<int>(parser_, name, value, help, range);
 }
 
 Option Subcommand::option(const std::string& name, std::uint16_t& value, const std::string& help) {
@@ -136,22 +121,21 @@ Option Subcommand::option(const std::string& name, std::uint64_t& value, const s
   return declare_number<std::uint64_t>(parser_, name, value, help);
 }
 
-Option Subcommand::option(const std::string& name, double& value, const std::string& help) {
-  return declare_number<double>(parser_, name, value, help);
+Option Subcommand::option(const std::string& name, double& value, const std::string& help, Range range) {
+  return declare_number<double>(parser_, name, value, help, range);
 }
 
-Option Subcommand::option(const std::string& name, std::optional<double>& value, const std::string& help) {
-  return declare_number<double>(parser_, name, value, help);
+Option Subcommand::option(const std::string& name, std::optional<double>& value, const std::string& help,
+                          Range range) {
+  return declare_number<double>(parser_, name, value, help, range);
 }
 
 Option Subcommand::flag(const std::string& name, bool& value, const std::string& help) {
-  return {parser_.add_flag(name, value, help), nullptr};
+  return Option(parser_.add_flag(name, value, help));
 }
 
-Option Subcommand::find(const std::string& name) {
-  CLI::Option* found = parser_.get_option_no_throw(name);
-  if (found == nullptr) throw std::invalid_argument("unknown option " + name);
-  return {found, nullptr};
+Option Subcommand::json(std::string& file, const std::string& what) {
+  return option("--json", file, "Write " + what + " as JSON to this file, or to standard output: -");
 }
 
 bool Subcommand::given(const std::string& name) const {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -40,21 +40,19 @@ auto for_option(const std::string& option, Action&& action) {
   }
 }
 
-/// The numbers that an option accepts.
-struct NumberRule;
+/// The numbers that an option accepts: all in [least, most].
+struct Range {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+};
 
 /// An option of a command while it is declared. It refers to the command, which must outlive it.
 class Option {
  public:
-  Option(CLI::Option* parsed, std::shared_ptr<NumberRule> numbers)
-      : parsed_(parsed), numbers_(std::move(numbers)) {}
+  explicit Option(CLI::Option* parsed) : parsed_(parsed) {}
 
   /// The command cannot run without the option.
-  Option& required(bool needed = true);
-  /// Shows the present value of the variable in the help, as the default.
-  Option& show_default();
-  /// Rejects numbers outside [least, most].
-  Option& range(double least, double most);
+  Option& required();
   /// Reads a list from one text with commas between its values.
   Option& comma_separated();
   /// Reads a list from several uses of the option, one value each.
@@ -66,7 +64,6 @@ class Option {
 
  private:
   CLI::Option* parsed_;
-  std::shared_ptr<NumberRule> numbers_;  ///< null for texts and flags
 };
 
 /// A command of the program: its options and its action.
@@ -83,19 +80,21 @@ class Subcommand {
   void footer(const std::string& text);
 
   /// Declares an option whose value goes to `value`, which must live as long as the action. A name without
-  /// dashes declares a positional argument. Every value that is not a number, not in the range, or empty is
-  /// rejected in the same words.
+  /// dashes declares a positional argument. The help shows the present value as the default, unless it is
+  /// empty or outside the range. Every value that is not a number, not in the range, or empty is rejected in
+  /// the same words.
   Option option(const std::string& name, std::string& value, const std::string& help);
   Option option(const std::string& name, std::vector<std::string>& value, const std::string& help);
-  Option option(const std::string& name, int& value, const std::string& help);
+  Option option(const std::string& name, int& value, const std::string& help, Range range = {});
   Option option(const std::string& name, std::uint16_t& value, const std::string& help);
   Option option(const std::string& name, std::uint64_t& value, const std::string& help);
-  Option option(const std::string& name, double& value, const std::string& help);
-  Option option(const std::string& name, std::optional<double>& value, const std::string& help);
+  Option option(const std::string& name, double& value, const std::string& help, Range range = {});
+  Option option(const std::string& name, std::optional<double>& value, const std::string& help,
+                Range range = {});
+  /// Declares --json, the file to which the command writes `what`.
+  Option json(std::string& file, const std::string& what);
   Option flag(const std::string& name, bool& value, const std::string& help);
 
-  /// The option of this name. Throws std::invalid_argument if there is none.
-  Option find(const std::string& name);
   /// Whether the user gave the option.
   bool given(const std::string& name) const;
   /// Whether the user gave no options but some of these.

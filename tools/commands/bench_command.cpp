@@ -239,12 +239,10 @@ void declare_bench(Subcommand& command) {
   command.option("--set", arguments->set, "section.option=value; may be repeated").repeatable();
   command.option("--methods", arguments->methods, "Methods to measure, separated by commas [all]")
       .comma_separated();
-  command.option("--seconds", arguments->seconds, "Duration of each measurement, s")
-      .range(0.01, 600.0)
-      .show_default();
+  command.option("--seconds", arguments->seconds, "Duration of each measurement, s", {0.01, 600.0});
   command.flag("--scaling", arguments->scaling,
                "Also measure over samples, horizon, threads and instruction sets");
-  command.option("--json", arguments->json, "Write JSON to this file, or to standard output: -");
+  command.json(arguments->json, "the figures");
   command.footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
   command.action([arguments] { return Bench(*arguments).run(); });
 }

@@ -278,7 +278,7 @@ void declare_compare(Subcommand& command) {
               "Output folder of the other evaluation, or a folder of several; evaluations of equal name are "
               "compared")
       .required();
-  command.option("--json", arguments->json, "Write the comparison to this file, or to standard output: -");
+  command.json(arguments->json, "the comparison");
   command.action([arguments] { return compare(*arguments); });
 }
 

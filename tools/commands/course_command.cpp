@@ -14,8 +14,8 @@
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/drawing/course_picture.hpp"
-#include "tools/recording/driven_line.hpp"
+#include "tools/drawing/course_pictures.hpp"
+#include "tools/recording/driven_recording.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -167,14 +167,11 @@ void declare_course(Subcommand& command) {
   command.option(
       "--line", arguments->line,
       "Line to drive along: .csv with x and y, or a recorded drive; else the program finds a loop");
-  command.option("--car", arguments->car, "Car: f1tenth, passenger, or a YAML file (docs/courses.md)")
-      .show_default();
-  command
-      .option("--friction", arguments->friction,
-              "Friction coefficient: acceleration in every direction, in g")
-      .range(0.01, 10);
-  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s").range(0.1, 200);
-  command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m").range(0, 10);
+  command.option("--car", arguments->car, "Car: f1tenth, passenger, or a YAML file (docs/courses.md)");
+  command.option("--friction", arguments->friction,
+                 "Friction coefficient: acceleration in every direction, in g", {0.01, 10});
+  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s", {0.1, 200});
+  command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m", {0, 10});
   const Option start =
       command.option("--start", arguments->start,
                      "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if "
@@ -182,7 +179,7 @@ void declare_course(Subcommand& command) {
   command.flag("--reverse", arguments->reverse, "Drive the other way round").excludes(start);
   command.option("--name", arguments->name, "Name of the course [name of the folder]");
   command.option("--description", arguments->description, "Description for course.yaml");
-  command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");
+  command.json(arguments->json, "a summary");
   command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
   command.action([arguments] {
     course(*arguments);

@@ -7,13 +7,13 @@
 #include "slalom/evaluation/statistics.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/drawing/lap_picture.hpp"
+#include "tools/drawing/course_pictures.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/report/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
-#include "tools/terminal/progress_line.hpp"
+#include "tools/terminal/progress.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -99,10 +99,6 @@ class DriveJob {
         std::count_if(laps_.begin(), laps_.end(), [](const auto& l) { return l.finished; }));
   }
 
-  static const char* outcome(const LapResult& lap) {
-    return lap.finished ? "finished" : lap.cancelled ? "interrupted" : "timeout";
-  }
-
   void say(const LapResult& lap) const {
     auto times = lap.solve_ms;
     std::sort(times.begin(), times.end());
@@ -110,7 +106,7 @@ class DriveJob {
         words_,
         "lap %zu: %s, %.2f s, %d steps, %d collision%s, cost %.3f (state %.3f, collision %.3f), mean "
         "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
-        laps_.size(), outcome(lap), lap.time, lap.steps, lap.collisions, lap.collisions == 1 ? "" : "s",
+        laps_.size(), end_name(lap), lap.time, lap.steps, lap.collisions, lap.collisions == 1 ? "" : "s",
         lap.mean_sequence_cost, lap.state_cost, lap.collision_cost, lap.mean_speed,
         times.empty() ? 0.0 : evaluation::percentile(times, 0.5),
         times.empty() ? 0.0 : evaluation::percentile(times, 0.99));
@@ -156,7 +152,9 @@ class DriveJob {
     }
     if (!arguments_.json.empty()) write_json(results(total), arguments_.json);
     if (!arguments_.plot.empty()) {
-      plot();
+      // The published evaluation treats unknown cells as free; the picture shows them as unknown.
+      draw_lap(vehicle::load_course(scenario_.folder).map, setup_, driven_, laps_.back(),
+               arguments_.method + " on " + scenario_.environment->course.name, arguments_.plot);
       std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
     }
   }
@@ -172,28 +170,6 @@ class DriveJob {
             {"summary", total},
             {"laps", laps},
             {"solve_ms", times_json(solve_times(laps_))}};
-  }
-
-  void plot() const {
-    const LapResult& lap = laps_.back();
-    char facts[200];
-    std::snprintf(
-        facts, sizeof facts,
-        "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collision%s \xC2\xB7 cost %.2f \xC2\xB7 %d "
-        "obstacles, seed %llu",
-        outcome(lap), lap.time, lap.mean_speed, lap.collisions, lap.collisions == 1 ? "" : "s",
-        lap.mean_sequence_cost, scenario_.lap.obstacles, static_cast<unsigned long long>(lap.seed));
-    // The published evaluation treats unknown cells as free; the picture shows them as unknown.
-    const auto map = vehicle::load_course(scenario_.folder).map;
-    draw_lap({.map = map,
-              .path = scenario_.environment->path,
-              .closed = scenario_.environment->course.closed,
-              .driven = driven_,
-              .lap = lap,
-              .start = setup_.start(),
-              .title = arguments_.method + " on " + scenario_.environment->course.name,
-              .facts = facts},
-             arguments_.plot);
   }
 
   const DriveArguments& arguments_;
@@ -213,13 +189,9 @@ void declare_drive(Subcommand& command) {
   const auto arguments = std::make_shared<DriveArguments>();
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
-  command.option("--seed", arguments->seed, "Seed of lap 1; lap k has SEED + (k - 1) (obstacles + 5)")
-      .show_default();
-  command.option("--laps", arguments->laps, "Number of laps; each starts from standstill")
-      .range(1, 100000)
-      .show_default();
-  command.option("--json", arguments->json,
-                 "Write the results as JSON to this file, or to standard output: -");
+  command.option("--seed", arguments->seed, "Seed of lap 1; lap k has SEED + (k - 1) (obstacles + 5)");
+  command.option("--laps", arguments->laps, "Number of laps; each starts from standstill", {1, 100000});
+  command.json(arguments->json, "the results");
   const Option record = command.option(
       "--record", arguments->record,
       "Record every control step to this file: MCAP if its name ends in .mcap, otherwise JSON lines");

@@ -1,9 +1,12 @@
+#include <algorithm>
+#include <cstdio>
 #include <memory>
 
+#include "slalom/core/error.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/evaluation/evaluation_check.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
+#include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -19,6 +22,35 @@ struct EvalArguments {
   std::string check;
   int again = 3;
 };
+
+/// Verifies an evaluation's folder: settings and rows are those that were written, every lap is there once
+/// and with its seed, and `again` of the laps, spread over the table, repeat bit for bit. Prints the
+/// findings. Returns the exit status: 0 only if all of it holds. Throws IoError that names what is damaged.
+int check_evaluation(const std::string& folder, int again) {
+  const StoredEvaluation stored = load_evaluation(folder);
+  std::size_t laps = 0;
+  for (const auto& e : stored.experiments) laps += static_cast<std::size_t>(e.laps);
+  std::printf("%zu of %zu laps: seeds as expected, checksums correct\n", stored.rows.size(), laps);
+  if (stored.rows.size() != laps)
+    throw IoError(folder, 0,
+                  std::to_string(laps - stored.rows.size()) + " laps are missing: continue it with --resume");
+  Scenario scenario;
+  const evaluation::Evaluation evaluation = rebuild_evaluation(stored, "", scenario);
+  const auto repeats = std::min(laps, static_cast<std::size_t>(again));
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < repeats; ++i) {
+    const evaluation::LapRow& kept = stored.rows[repeats == 1 ? 0 : i * (laps - 1) / (repeats - 1)];
+    const auto result = run_lap(lap_setup(evaluation, kept.experiment), kept.seed);
+    const bool equal = same_lap(make_row(kept.experiment, kept.lap, result, 0), kept, stored.experiments);
+    same += equal;
+    if (!equal)
+      std::printf(
+          "lap %d of %s is NOT identical: it was changed, or another version or instruction set drove it\n",
+          kept.lap, stored.experiments[static_cast<std::size_t>(kept.experiment)].label().c_str());
+  }
+  std::printf("%zu of %zu laps driven again are identical, bit for bit\n", same, repeats);
+  return same == repeats ? 0 : 1;
+}
 
 int eval(const EvalArguments& arguments) {
   if (!arguments.check.empty()) return check_evaluation(arguments.check, arguments.again);
@@ -51,19 +83,12 @@ int eval(const EvalArguments& arguments) {
 void declare_eval(Subcommand& command) {
   command.summary("Evaluate methods over many laps, with confidence intervals and paired tests");
   const auto arguments = std::make_shared<EvalArguments>();
-  command.option("--methods", arguments->methods, "Methods, separated by commas")
-      .comma_separated()
-      .show_default();
+  command.option("--methods", arguments->methods, "Methods, separated by commas").comma_separated();
   command
       .option("--scenario", arguments->scenarios, "pt: path tracking, oa: obstacle avoidance; or both: pt,oa")
-      .comma_separated()
-      .show_default();
-  command.option("--laps", arguments->laps, "Number of laps of each method in each scenario")
-      .range(1, 1000000)
-      .show_default();
-  command.option("--obstacles", arguments->obstacles, "Number of parked cars in scenario oa")
-      .range(1, 1000)
-      .show_default();
+      .comma_separated();
+  command.option("--laps", arguments->laps, "Number of laps of each method in each scenario", {1, 1000000});
+  command.option("--obstacles", arguments->obstacles, "Number of parked cars in scenario oa", {1, 1000});
   command
       .option("--set", arguments->sweeps,
               "key=v1,v2,...: one experiment for each value, and for each combination of values if --set is "
@@ -71,15 +96,14 @@ void declare_eval(Subcommand& command) {
               "options lists them")
       .repeatable();
   command.flag("--report", arguments->report, "Also write report.html and its figures");
-  add_evaluation_options(command, arguments->evaluation);
+  Option out = add_evaluation_options(command, arguments->evaluation);
   const Option check =
       command.option("--check", arguments->check,
                      "Verify this folder of an evaluation instead: checksums, seeds, and that laps repeat");
-  command.option("--again", arguments->again, "With --check: number of laps that are driven again")
-      .range(0, 1000000)
-      .show_default()
+  command
+      .option("--again", arguments->again, "With --check: number of laps that are driven again", {0, 1000000})
       .needs(check);
-  command.find("--out").required(false).excludes(check);
+  out.excludes(check);
   command.action([arguments] { return eval(*arguments); });
 }
 

@@ -129,20 +129,17 @@ void declare_explain(Subcommand& command) {
       .option("--method", arguments->methods,
               "Methods, separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, "
               "reverse_mppi, sv_mpc, cem, icem, dial_mpc; or all")
-      .comma_separated()
-      .show_default();
+      .comma_separated();
   command
       .option("--set", arguments->set,
               "option=value of the methods, or problem.option=value; may be repeated")
       .repeatable();
-  command.option("--solves", arguments->solves, "Number of solves from the same state; the last is shown")
-      .range(1, 100000)
-      .show_default();
-  command.option("--seed", arguments->seed, "Seed of the random numbers").show_default();
+  command.option("--solves", arguments->solves, "Number of solves from the same state; the last is shown",
+                 {1, 100000});
+  command.option("--seed", arguments->seed, "Seed of the random numbers");
   command.option("--plot", arguments->plot,
                  "Write a picture of the methods side by side to this PNG, SVG or PDF");
-  command.option("--json", arguments->json,
-                 "Write everything as JSON to this file, or to standard output: -");
+  command.json(arguments->json, "everything");
   command.action([arguments] {
     explain(*arguments);
     return 0;

@@ -5,7 +5,7 @@
 #include "slalom/vehicle/model/tyre_identification.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recording/driven_recording.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -154,22 +154,19 @@ void declare_identify(Subcommand& command) {
   const auto arguments = std::make_shared<IdentifyArguments>();
   command.option("recording", arguments->recording, "Recording of slalom drive --record in JSON lines")
       .required();
-  command.option("--least-speed", arguments->options.min_speed, "Samples below this speed are ignored, m/s")
-      .range(0.01, 100.0)
-      .show_default();
+  command.option("--least-speed", arguments->options.min_speed, "Samples below this speed are ignored, m/s",
+                 {0.01, 100.0});
   const auto tyres =
       command.flag("--tyres", arguments->tyres,
                    "Find friction and cornering stiffness, of a drive close to the limit of grip");
-  command.option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]")
-      .range(0.01, 20.0)
+  command
+      .option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]", {0.01, 20.0})
       .excludes(tyres);
   command
       .option("--config", arguments->config,
               "With --tyres: configuration with the lengths, mass and inertia of the car")
-      .show_default()
       .needs(tyres);
-  command.option("--json", arguments->json,
-                 "Write the estimates as JSON to this file, or to standard output: -");
+  command.json(arguments->json, "the estimates");
   command.action([arguments] { return identify(*arguments); });
 }
 

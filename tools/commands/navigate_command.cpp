@@ -11,6 +11,7 @@
 #include "tools/commands/commands.hpp"
 #include "tools/commands/navigate_picture.hpp"
 #include "tools/commands/navigate_report.hpp"
+#include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
@@ -54,12 +55,6 @@ RoomDriver driver_of(const NamedDriver& named, const RoomScenario& scenario) {
   if (int* const samples = driver.solver.find<int>("samples"))
     *samples = rollouts(navigation::svg_mppi_options(scenario.base)) / rollouts_per_sample(driver.solver);
   return driver;
-}
-
-std::string method_names() {
-  std::string names;
-  for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
-  return names;
 }
 
 std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
@@ -138,23 +133,18 @@ int navigate(const NavigateArguments& arguments) {
 void declare_navigate(Subcommand& command) {
   command.summary("Drive a mobile robot through rooms, with several methods on the same seeds");
   const auto arguments = std::make_shared<NavigateArguments>();
-  command.option("--scenario", arguments->scenario, "Name of a scenario, or all").show_default();
-  command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names())
-      .show_default();
+  command.option("--scenario", arguments->scenario, "Name of a scenario, or all");
+  command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names());
   command.flag("--without-detours", arguments->without_detours,
                "Also drive with each method without the search for detours");
-  command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario")
-      .range(1, 100000)
-      .show_default();
-  command.option("--first-seed", arguments->first_seed, "Seed of the first drive").show_default();
-  command.option("--threads", arguments->threads, "Number of drives that run in parallel")
-      .range(1, 1024)
-      .show_default();
+  command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario",
+                 {1, 100000});
+  command.option("--first-seed", arguments->first_seed, "Seed of the first drive");
+  command.option("--threads", arguments->threads, "Number of drives that run in parallel", {1, 1024});
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
   command.option("--table", arguments->table,
                  "Write a table in Markdown with 95 % intervals to this file, after each seed");
-  command.option("--json", arguments->json,
-                 "Write the results as JSON to this file, or to standard output: -");
+  command.json(arguments->json, "the results");
   std::string names = "Scenarios:\n";
   for (const RoomScenario& each : evaluation::room_scenarios())
     names += std::string("  ") + each.name + ": " + each.summary + "\n";

@@ -89,12 +89,11 @@ void options(const OptionsArguments& arguments) {
 void declare_options(Subcommand& command) {
   command.summary("List all options with values, units and ranges");
   const auto arguments = std::make_shared<OptionsArguments>();
-  command.option("--config", arguments->scenario.config, config_help).show_default();
+  command.option("--config", arguments->scenario.config, config_help);
   command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
   const Option method = command.option("--method", arguments->method,
                                        "Only the options of this method, vehicle, planner and world");
-  const Option json = command.option("--json", arguments->json,
-                                     "Write the options as JSON to this file, or to standard output: -");
+  const Option json = command.json(arguments->json, "the options");
   command.flag("--yaml", arguments->yaml, "Print the complete configuration as YAML")
       .excludes(method)
       .excludes(json);

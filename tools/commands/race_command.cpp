@@ -18,7 +18,7 @@
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
-#include "tools/terminal/progress_line.hpp"
+#include "tools/terminal/progress.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -248,24 +248,20 @@ int run_race(const Subcommand& command, const RaceArguments& arguments) {
 
 /// The options of races of several cars.
 void add_grid_options(Subcommand& command, GridRaceArguments& several) {
-  command
-      .option("--cars", several.cars,
-              "A race of so many cars, each with its own planner, LiDAR and tracker of the others")
-      .range(2, evaluation::most_race_cars);
+  command.option("--cars", several.cars,
+                 "A race of so many cars, each with its own planner, LiDAR and tracker of the others",
+                 {2, evaluation::most_race_cars});
   command
       .option(
           "--against", several.against,
           "METHOD, CONFIG or CONFIG:METHOD of another car; may be repeated. If --cars is more, the own car "
           "and these follow again in turn. --set applies to the configuration of --config and to the world")
       .repeatable();
-  command
-      .option("--races", several.races,
-              "Number of races; the cars move by one place of the grid from each to the next")
-      .range(1, 100000)
-      .show_default();
-  command.option("--jobs", several.jobs, "Number of races driven in parallel; results do not depend on it")
-      .range(1, 1024)
-      .show_default();
+  command.option("--races", several.races,
+                 "Number of races; the cars move by one place of the grid from each to the next",
+                 {1, 100000});
+  command.option("--jobs", several.jobs, "Number of races driven in parallel; results do not depend on it",
+                 {1, 1024});
 }
 
 }  // namespace
@@ -279,34 +275,26 @@ void declare_race(Subcommand& command) {
   arguments->scenario.saturating_tyres = true;
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
-  command
-      .option(
-          "--seed", arguments->race.seed,
-          "Seed of lap 1; a standing start in lap k has the seed SEED + (k - 1) (obstacles + 5), and race k "
-          "SEED + k - 1")
-      .show_default();
-  command
-      .option(
-          "--laps", arguments->race.laps,
-          "Number of laps: a standing start, then flying laps; after a collision, a standing start again. "
-          "In a race, those of each car")
-      .range(1, 100000)
-      .show_default();
+  command.option(
+      "--seed", arguments->race.seed,
+      "Seed of lap 1; a standing start in lap k has the seed SEED + (k - 1) (obstacles + 5), and race k "
+      "SEED + k - 1");
+  command.option(
+      "--laps", arguments->race.laps,
+      "Number of laps: a standing start, then flying laps; after a collision, a standing start again. "
+      "In a race, those of each car",
+      {1, 100000});
   add_grid_options(command, arguments->race);
   command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
   command.flag("--learn", arguments->learn,
                "After each lap, a standing start, use more grip where the lap stayed inside the friction "
                "circle, and less where it left it, until nothing is gained");
-  command
-      .option("--friction", arguments->friction,
-              "Radius of the friction circle with which accelerations are compared, in g")
-      .range(0.01, 10.0)
-      .show_default();
+  command.option("--friction", arguments->friction,
+                 "Radius of the friction circle with which accelerations are compared, in g", {0.01, 10.0});
   command.option(
       "--compare", arguments->compare,
       "JSON file of another slalom race on the same course: shows where the best lap gains or loses time");
-  command.option("--json", arguments->race.json,
-                 "Write the results as JSON to this file, or to standard output: -");
+  command.json(arguments->race.json, "the results");
   command.option("--plot", arguments->plot,
                  "Write a picture of the best lap to this PNG, SVG or PDF: speed and profile, time behind, "
                  "accelerations");

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <span>
 
@@ -8,22 +10,28 @@
 #include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/drawing/lap_picture.hpp"
+#include "tools/drawing/course_pictures.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
+#include "tools/live_view/view_setup.hpp"
 #include "tools/recording/recording.hpp"
-#include "tools/recording/replay_recording.hpp"
 #include "tools/report/lap_json.hpp"
+#include "tools/terminal/interrupt.hpp"
+#include "view/embedded.hpp"
+#include "view/recording/encodings.hpp"
+#include "view/recording/replay.hpp"
+#include "view/server/server.hpp"
 
 namespace slalom::tools {
 namespace {
 
 using namespace evaluation;
 
-struct ReplayCommandArguments {
-  ReplayArguments recording;
-  std::string folder, method, scenario, course, plot, record;
-  int lap = 0;
-  bool lap_given = false;
+struct ReplayArguments {
+  std::string source;  ///< a recording in MCAP, or the output folder of an evaluation
+  std::string html, host = "127.0.0.1";
+  std::uint16_t port = 8400;
+  std::string method, scenario, course, plot, record;
+  int lap = -1;  ///< -1: not given
 };
 
 /// The options of a lap of an evaluation, and those of a recording.
@@ -36,33 +44,13 @@ void reject_options(const Subcommand& command, std::span<const char* const> opti
     if (command.given(option)) throw CommandLineError(option, std::string("has no effect ") + when);
 }
 
-void plot(const ReplayCommandArguments& arguments, const Scenario& scenario, const LapSetup& setup,
-          const DrivenLine& driven, const LapResult& lap, const std::string& label) {
-  char facts[200];
-  std::snprintf(
-      facts, sizeof facts,
-      "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collisions \xC2\xB7 cost %.2f \xC2\xB7 seed %llu",
-      lap.finished ? "finished" : "timeout", lap.time, lap.mean_speed, lap.collisions, lap.mean_sequence_cost,
-      static_cast<unsigned long long>(lap.seed));
-  const auto map = vehicle::load_course(scenario.folder).map;
-  draw_lap({.map = map,
-            .path = scenario.environment->path,
-            .closed = scenario.environment->course.closed,
-            .driven = driven,
-            .lap = lap,
-            .start = setup.start(),
-            .title = label,
-            .facts = facts},
-           arguments.plot);
-}
-
 /// Drives the lap again. The exit status: 1 if it differs from the lap of the evaluation.
-int replay_lap(const ReplayCommandArguments& arguments) {
-  const StoredEvaluation stored = load_evaluation(arguments.folder);
-  if (!arguments.lap_given) throw CommandLineError("--lap", "is required to repeat a lap of an evaluation");
+int replay_lap(const ReplayArguments& arguments) {
+  const StoredEvaluation stored = load_evaluation(arguments.source);
+  if (arguments.lap < 0) throw CommandLineError("--lap", "is required to repeat a lap of an evaluation");
   const int index = stored.find(arguments.method, arguments.scenario);
   const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
-  if (arguments.lap < 0 || arguments.lap >= experiment.laps)
+  if (arguments.lap >= experiment.laps)
     throw CommandLineError("--lap", std::to_string(arguments.lap),
                            "must be in [0, " + std::to_string(experiment.laps - 1) + "]");
   Scenario scenario;
@@ -89,15 +77,15 @@ int replay_lap(const ReplayCommandArguments& arguments) {
   });
   std::printf("%s, %s, lap %d, seed %llu: %s, %.2f s, %d collisions, cost %.3f\n", experiment.label().c_str(),
               experiment.scenario.c_str(), arguments.lap, static_cast<unsigned long long>(seed),
-              lap.finished ? "finished" : "timeout", lap.time, lap.collisions, lap.mean_sequence_cost);
+              end_name(lap), lap.time, lap.collisions, lap.mean_sequence_cost);
   if (recording) {
     recording->end_lap(lap, arguments.lap);
     recording->close();
     std::printf("recording: %s\n", arguments.record.c_str());
   }
   if (!arguments.plot.empty()) {
-    plot(arguments, scenario, setup, driven, lap,
-         experiment.label() + " on " + evaluation.environment->course.name);
+    draw_lap(vehicle::load_course(scenario.folder).map, setup, driven, lap,
+             experiment.label() + " on " + evaluation.environment->course.name, arguments.plot);
     std::printf("picture: %s\n", arguments.plot.c_str());
   }
   const LapRow now = make_row(index, arguments.lap, lap, 0);
@@ -115,31 +103,53 @@ int replay_lap(const ReplayCommandArguments& arguments) {
   return same ? 0 : 1;
 }
 
-int replay(ReplayCommandArguments& arguments, const Subcommand& command) {
-  if (std::filesystem::is_directory(arguments.folder)) {
+/// Serves a recording in the page of the live view until it is interrupted, or writes it as an HTML page.
+int replay_recording(const ReplayArguments& arguments) {
+  std::uint64_t lost = 0;
+  const std::string page =
+      view::replay_page(view::gunzip(view::page_gzip()), view::load_replay(arguments.source, &lost));
+  if (lost > 0)
+    std::fprintf(stderr, "note: %s was cut: its last %llu bytes cannot be read\n", arguments.source.c_str(),
+                 static_cast<unsigned long long>(lost));
+  if (!arguments.html.empty()) {
+    std::ofstream stream(arguments.html, std::ios::binary);
+    stream << page;
+    stream.close();
+    if (!stream) throw IoError(arguments.html, 0, "cannot be written");
+    std::printf("replay: %s, opens in any browser\n", arguments.html.c_str());
+    return 0;
+  }
+  view::ServerOptions options = server_options(arguments.host, arguments.port, "");
+  view::Server server(options, {{"/", {"text/html; charset=utf-8", page}}});
+  const InterruptFlag interrupt;
+  print_address(server, options);
+  while (!interrupt.raised()) {
+    server.wait(std::chrono::milliseconds(100));
+    server.take();
+  }
+  return 0;
+}
+
+int replay(const ReplayArguments& arguments, const Subcommand& command) {
+  if (std::filesystem::is_directory(arguments.source)) {
     reject_options(command, recording_options, "when a lap of an evaluation is repeated");
-    arguments.lap_given = command.given("--lap");
     return replay_lap(arguments);
   }
   reject_options(command, lap_options, "when a recording is replayed");
-  arguments.recording.file = arguments.folder;
-  return replay_recording(arguments.recording);
+  return replay_recording(arguments);
 }
 
 }  // namespace
 
 void declare_replay(Subcommand& command) {
   command.summary("Show a recording in the browser, or repeat a lap of an evaluation");
-  const auto arguments = std::make_shared<ReplayCommandArguments>();
-  command.option("what", arguments->folder, "MCAP recording, or output folder of an evaluation").required();
-  const Option html = command.option("--html", arguments->recording.html,
-                                     "Write the recording as an HTML page instead of serving it");
-  const Option host =
-      command.option("--host", arguments->recording.host, "Address to listen on").show_default();
-  const Option port =
-      command.option("--port", arguments->recording.port, "Port to listen on; 0 means any free port")
-          .show_default();
-  command.option("--lap", arguments->lap, "Evaluation: number of the lap, from 0");
+  const auto arguments = std::make_shared<ReplayArguments>();
+  command.option("what", arguments->source, "MCAP recording, or output folder of an evaluation").required();
+  const Option html =
+      command.option("--html", arguments->html, "Write the recording as an HTML page instead of serving it");
+  const Option host = command.option("--host", arguments->host, "Address to listen on");
+  const Option port = command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
+  command.option("--lap", arguments->lap, "Evaluation: number of the lap, from 0", {0, 999999});
   command.option("--method", arguments->method,
                  "Evaluation: method, or method and options as in the results");
   command.option("--scenario", arguments->scenario, "Evaluation: pt or oa");

@@ -176,40 +176,29 @@ void declare_reproduce(Subcommand& command) {
   scenario.course = paper_course;
   scenario.config = scenario.evaluation = "published";
   add_evaluation_options(command, arguments->evaluation);
-  command.find("--out").required(false);
   command.option(
       "--benchmark", arguments->benchmark,
       "racing: the benchmark of Evans et al. (arXiv 2402.18558) instead; --course is the folder of its "
       "maps aut, esp, gbr and mco, and no --out is needed");
-  command
-      .option(
-          "--driver", arguments->driver,
-          "With --benchmark: follow_the_gap, or a method: the planner of --config [racing_benchmark] then "
-          "drives along the minimum-time raceline")
-      .show_default();
-  command
-      .option("--margin", arguments->margin,
-              "With --benchmark: distance that the raceline keeps between the car and walls, m")
-      .range(0, 10)
-      .show_default();
-  command
-      .option("--car", arguments->car,
-              "With --benchmark: car of the raceline: f1tenth, passenger, or a YAML file (docs/courses.md)")
-      .show_default();
+  command.option(
+      "--driver", arguments->driver,
+      "With --benchmark: follow_the_gap, or a method: the planner of --config [racing_benchmark] then "
+      "drives along the minimum-time raceline");
+  command.option("--margin", arguments->margin,
+                 "With --benchmark: distance that the raceline keeps between the car and walls, m", {0, 10});
+  command.option(
+      "--car", arguments->car,
+      "With --benchmark: car of the raceline: f1tenth, passenger, or a YAML file (docs/courses.md)");
   command.option(
       "--paper", arguments->paper,
       "Clone of the authors' repository, github.com/kohonda/proj-svg_mppi, for its courses and logs; "
       "without it, the laps are driven on stag, unless --course is given, and compared with nothing");
   for (const PaperTable& table : paper_tables) arguments->tables.push_back(table.name);
   command.option("--tables", arguments->tables, "Tables, separated by commas: table1, table2, covariances")
-      .comma_separated()
-      .show_default();
-  command.option("--laps-pt", arguments->laps_pt, "Number of path-tracking laps of each row")
-      .range(1, 1000000)
-      .show_default();
-  command.option("--laps-oa", arguments->laps_oa, "Number of obstacle-avoidance laps of each row")
-      .range(1, 1000000)
-      .show_default();
+      .comma_separated();
+  command.option("--laps-pt", arguments->laps_pt, "Number of path-tracking laps of each row", {1, 1000000});
+  command.option("--laps-oa", arguments->laps_oa, "Number of obstacle-avoidance laps of each row",
+                 {1, 1000000});
   command.flag("--quick", arguments->quick, "Drive a tenth of the laps");
   command.flag("--claims", arguments->claims,
                "Only test the paper's claims on the logs of --paper, without driving");

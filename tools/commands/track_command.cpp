@@ -11,7 +11,7 @@
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/drawing/track_picture.hpp"
+#include "tools/drawing/course_pictures.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
@@ -105,31 +105,23 @@ void declare_track(Subcommand& command) {
   const auto arguments = std::make_shared<TrackArguments>();
   TrackGeneratorOptions& options = arguments->options;
   command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
-  command.option("--seed", options.seed, "Seed; the same options and seed give the same files")
-      .show_default();
-  command.option("--length", options.length, "Length of the centre line, m").range(20, 1000).show_default();
-  command.option("--width", arguments->width, "Width from wall to wall, m [by character: 2.2, 2.6, 2.2, 1.5]")
-      .range(1.2, 10);
-  command.option("--character", arguments->character, "balanced, fast, twisty or narrow").show_default();
-  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s [by character: 6, 7, 5, 4.5]")
-      .range(0.5, 20);
-  command
-      .option("--lateral-acceleration", options.limits.lateral_acceleration,
-              "Limit of the speed profile, m/s^2")
-      .range(0.5, 15)
-      .show_default();
-  command.option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2")
-      .range(0.5, 15)
-      .show_default();
-  command.option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2")
-      .range(0.5, 15)
-      .show_default();
-  command.option("--wall-margin", options.wall_margin, "Minimum distance of the raceline from the walls, m")
-      .range(0.3, 4.9)
-      .show_default();
+  command.option("--seed", options.seed, "Seed; the same options and seed give the same files");
+  command.option("--length", options.length, "Length of the centre line, m", {20, 1000});
+  command.option("--width", arguments->width, "Width from wall to wall, m [by character: 2.2, 2.6, 2.2, 1.5]",
+                 {1.2, 10});
+  command.option("--character", arguments->character, "balanced, fast, twisty or narrow");
+  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s [by character: 6, 7, 5, 4.5]",
+                 {0.5, 20});
+  command.option("--lateral-acceleration", options.limits.lateral_acceleration,
+                 "Limit of the speed profile, m/s^2", {0.5, 15});
+  command.option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2",
+                 {0.5, 15});
+  command.option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2", {0.5, 15});
+  command.option("--wall-margin", options.wall_margin, "Minimum distance of the raceline from the walls, m",
+                 {0.3, 4.9});
   command.option("--name", arguments->name, "Name of the course [name of the folder]");
   command.option("--description", arguments->description, "Description for course.yaml");
-  command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");
+  command.json(arguments->json, "a summary");
   command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
   command.action([arguments] {
     track(*arguments);

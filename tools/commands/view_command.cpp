@@ -82,17 +82,15 @@ void declare_view(Subcommand& command) {
   arguments->scenario.obstacles = 8;
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
-  command.option("--seed", arguments->seed, "Seed of the drive").show_default();
+  command.option("--seed", arguments->seed, "Seed of the drive");
   command.option("--against", arguments->against, "Second method, driven as a ghost with the same seed");
   command.option("--eval", arguments->evaluation,
                  "Open an evaluation (output folder of slalom eval): its laps and the collisions in them");
   command.flag("--record-times", arguments->record_times,
                "Recordings saved from the page contain wall-clock times");
-  command
-      .option("--host", arguments->host,
-              "Address to listen on; addresses other than loopback require a token")
-      .show_default();
-  command.option("--port", arguments->port, "Port to listen on; 0 means any free port").show_default();
+  command.option("--host", arguments->host,
+                 "Address to listen on; addresses other than loopback require a token");
+  command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
   command.option("--token", arguments->token,
                  "Token that the page must present; random if --host is not a loopback address");
   command.footer(

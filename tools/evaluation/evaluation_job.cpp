@@ -13,9 +13,9 @@
 #include "tools/command_line/command.hpp"
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/terminal/evaluation_progress.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
+#include "tools/terminal/progress.hpp"
 
 namespace slalom::tools {
 
@@ -120,24 +120,15 @@ std::string course_hash(const Environment& environment) {
   return text;
 }
 
-void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
-  command.option("--course", a.scenario.course, "Course name or folder").show_default();
-  command.option("--config", a.scenario.config, config_help).show_default();
-  command
-      .option("--evaluation", a.scenario.evaluation,
-              "true: physically correct world; published: world, clock and counting of the paper's program")
-      .show_default();
-  add_latency_option(command, a.scenario.latency_ms);
-  add_hardware_option(command, a.scenario.hardware);
-  command.option("--seed0", a.seed0, "Seed of lap 0; lap k has seed0 + k (obstacles + 5)").show_default();
-  command.option("--jobs", a.jobs, "Number of laps driven in parallel; 0: one per processor core")
-      .range(0, 1024)
-      .show_default();
-  command.option("--out", a.out, "Output folder for laps.csv and summary.json").required();
+Option add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
+  add_world_options(command, a.scenario);
+  command.option("--seed0", a.seed0, "Seed of lap 0; lap k has seed0 + k (obstacles + 5)");
+  command.option("--jobs", a.jobs, "Number of laps driven in parallel; 0: one per processor core", {0, 1024});
   command.flag("--resume", a.resume, "Continue the evaluation in --out; finished laps are kept");
   command.flag("--any-build", a.any_build,
                "With --resume: continue even if another build of the program drove the earlier laps");
-  command.option("--json", a.json, "Write the summary to this file, too, or to standard output: -");
+  command.json(a.json, "the summary");
+  return command.option("--out", a.out, "Output folder for laps.csv and summary.json");
 }
 
 std::vector<int> Evaluated::laps_begun_in_contact(int experiment) const {
@@ -217,41 +208,38 @@ Evaluation make_evaluation(const EvaluationArguments& arguments, const Scenario&
           .any_build = arguments.any_build};
 }
 
-bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& arguments,
-                      const std::string& title, const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int jobs = arguments.jobs > 0 ? arguments.jobs : cores;
-  // Do not create a folder for an evaluation that cannot be driven.
-  for (const Experiment& e : evaluation.experiments) {
-    vehicle::Configuration trial = evaluation.configuration;
-    LapSettings world;
-    for (const auto& [key, value] : e.set) apply_setting(key, value, e.method, trial, world);
-  }
-  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i)
-    lap_setup(evaluation, i).validate();
-  require_object(std::filesystem::path(arguments.out) / "settings.json");
-  LapStore store(arguments.out, evaluation, arguments.resume);
-  EvaluationProgressBar bar(title);
-  EvaluationQueue work(
-      evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);
-  drive_laps(evaluation, work, jobs, cancel);
-  if (!work.finish()) {
-    std::fprintf(stderr, "interrupted after %zu laps; --resume continues\n", store.rows().size());
-    return false;
-  }
-  rows = store.rows();
-  return true;
-}
-
 bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Experiment>& experiments,
                     Evaluated& evaluated) {
   if (experiments.empty()) throw CommandLineError("--methods", "must name at least one method");
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   print_notes(stderr, scenario);
   evaluated.evaluation = make_evaluation(arguments, scenario, experiments);
+  // Do not create a folder for an evaluation that cannot be driven.
+  for (const Experiment& e : experiments) {
+    vehicle::Configuration trial = scenario.configuration;
+    LapSettings world;
+    for (const auto& [key, value] : e.set) apply_setting(key, value, e.method, trial, world);
+  }
+  for (int i = 0; i < static_cast<int>(experiments.size()); ++i)
+    lap_setup(evaluated.evaluation, i).validate();
+  require_object(std::filesystem::path(arguments.out) / "settings.json");
+  LapStore store(arguments.out, evaluated.evaluation, arguments.resume);
   const InterruptFlag interrupt;
-  if (!drive_evaluation(evaluated.evaluation, arguments, "", interrupt.raised(), evaluated.rows))
+  bool is_whole = false;
+  {
+    ProgressLine progress(stderr);
+    EvaluationQueue work(
+        evaluated.evaluation, store, [&](const EvaluationProgress& p) { progress.show(p); },
+        interrupt.raised());
+    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    drive_laps(evaluated.evaluation, work, arguments.jobs > 0 ? arguments.jobs : cores, interrupt.raised());
+    is_whole = work.finish();
+  }
+  if (!is_whole) {
+    std::fprintf(stderr, "interrupted after %zu laps; --resume continues\n", store.rows().size());
     return false;
+  }
+  evaluated.rows = store.rows();
   evaluated.results = summarise(evaluated.rows, evaluated.evaluation.experiments);
   return true;
 }

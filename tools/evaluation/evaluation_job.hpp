@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -23,16 +22,9 @@ struct EvaluationArguments {
   std::string json;  ///< a copy of the summary: a file, or - for standard output
 };
 
-/// Adds --course, --config, --evaluation, --latency-ms, --hardware, --seed0, --jobs, --out, --resume,
-/// --any-build and --json.
-void add_evaluation_options(Subcommand& command, EvaluationArguments& arguments);
-
-/// Whether an option affects laps of a method: an option of the method, vehicle, planner or world.
-bool applies_to(const std::string& key, const std::string& method);
-/// Throws IoError if it affects none of the methods.
-void require_driven(const std::string& key, const std::vector<std::string>& methods);
-/// Throws IoError where both keys are the same option of one of them.
-void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods);
+/// Adds the options of add_world_options, and --seed0, --jobs, --resume, --any-build, --json and --out, which
+/// it returns.
+Option add_evaluation_options(Subcommand& command, EvaluationArguments& arguments);
 
 /// Hash (FNV-1a) of everything in a course that affects a lap.
 std::string course_hash(const evaluation::Environment& environment);
@@ -58,18 +50,12 @@ struct Evaluated {
 evaluation::Evaluation make_evaluation(const EvaluationArguments& arguments, const Scenario& scenario,
                                        const std::vector<evaluation::Experiment>& experiments);
 
-/// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
-/// it was interrupted.
-/// Throws IoError and what a lap throws.
-bool drive_evaluation(const evaluation::Evaluation& evaluation, const EvaluationArguments& arguments,
-                      const std::string& title, const std::atomic<bool>& cancel,
-                      std::vector<evaluation::LapRow>& rows);
-
-/// Drives it with a progress line; false (and no summary) where drive_evaluation is. Throws what that throws.
+/// Drives what is still missing in `arguments.out`, with a progress line. False, without results, if it was
+/// interrupted. Throws CommandLineError, IoError and the errors of a lap.
 bool run_evaluation(const EvaluationArguments& arguments,
                     const std::vector<evaluation::Experiment>& experiments, Evaluated& evaluated);
 
-/// A table of the results for people.
+/// Prints a table of the results.
 void print_results(const Evaluated& evaluated, std::FILE* out);
 
 }  // namespace slalom::tools

@@ -38,7 +38,36 @@ Sweep parse_sweep(const std::string& text) {
   return sweep;
 }
 
-/// The sweeps, each of which does something to a method that is driven.
+/// Whether an option affects laps of a method: an option of the method, vehicle, planner or world.
+bool applies_to(const std::string& key, const std::string& method) {
+  const auto dot = key.find('.');
+  if (dot == std::string::npos) return true;
+  const std::string section = key.substr(0, dot);
+  return section == method || section == "vehicle" || section == "planner" || section == "world";
+}
+
+/// Throws CommandLineError if an option affects none of the methods.
+void require_driven(const std::string& key, const std::vector<std::string>& methods) {
+  std::string names;
+  for (const std::string& method : methods) {
+    if (applies_to(key, method)) return;
+    names += (names.empty() ? "" : ", ") + method;
+  }
+  throw CommandLineError("--set", key, "must be an option of a method in this evaluation (" + names + ")");
+}
+
+/// Throws CommandLineError if both keys are the same option of one of the methods.
+void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods) {
+  const auto full = [](const std::string& name, const std::string& method) {
+    return name.find('.') == std::string::npos ? method + "." + name : name;
+  };
+  for (const std::string& method : methods)
+    if (full(key, method) == full(other, method))
+      throw CommandLineError("--set", key,
+                             "is given twice; separate several values by commas: " + key + "=v1,v2,...");
+}
+
+/// Parses the sweeps. Each must affect one of the methods, and no two the same option.
 std::vector<Sweep> parse_sweeps(const std::vector<std::string>& texts,
                                 const std::vector<std::string>& methods) {
   std::vector<Sweep> sweeps;
@@ -52,32 +81,6 @@ std::vector<Sweep> parse_sweeps(const std::vector<std::string>& texts,
 }
 
 }  // namespace
-
-bool applies_to(const std::string& key, const std::string& method) {
-  const auto dot = key.find('.');
-  if (dot == std::string::npos) return true;
-  const std::string section = key.substr(0, dot);
-  return section == method || section == "vehicle" || section == "planner" || section == "world";
-}
-
-void require_driven(const std::string& key, const std::vector<std::string>& methods) {
-  std::string names;
-  for (const std::string& method : methods) {
-    if (applies_to(key, method)) return;
-    names += (names.empty() ? "" : ", ") + method;
-  }
-  throw CommandLineError("--set", key, "must be an option of a method in this evaluation (" + names + ")");
-}
-
-void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods) {
-  const auto full = [](const std::string& name, const std::string& method) {
-    return name.find('.') == std::string::npos ? method + "." + name : name;
-  };
-  for (const std::string& method : methods)
-    if (full(key, method) == full(other, method))
-      throw CommandLineError("--set", key,
-                             "is given twice; separate several values by commas: " + key + "=v1,v2,...");
-}
 
 std::vector<Experiment> make_experiments(const std::vector<std::string>& methods,
                                          const std::vector<std::string>& scenarios, int laps, int obstacles,

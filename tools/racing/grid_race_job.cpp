@@ -14,7 +14,7 @@
 #include "tools/report/lap_json.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
-#include "tools/terminal/progress_line.hpp"
+#include "tools/terminal/progress.hpp"
 
 namespace slalom::tools {
 namespace {

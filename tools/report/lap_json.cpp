@@ -65,6 +65,10 @@ double root_mean_square(const std::vector<float>& values) {
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+const char* end_name(const evaluation::LapResult& lap) {
+  return lap.finished ? "finished" : lap.cancelled ? "interrupted" : "timeout";
+}
+
 Json lap_json(const evaluation::LapResult& lap, int number) {
   Json status = Json::object();
   for (std::size_t i = 0; i < lap.planner_status.size(); ++i)

@@ -7,6 +7,9 @@
 
 namespace slalom::tools {
 
+/// "finished", "interrupted" or "timeout".
+const char* end_name(const evaluation::LapResult& lap);
+
 /// A lap as results have it. Nothing in it depends on the clock of the wall.
 Json lap_json(const evaluation::LapResult& lap, int number);
 

@@ -16,25 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Json number_json(double value) {
-  if (std::isfinite(value)) return value;
-  return to_text(value);
-}
-
+/// A value as JSON; numbers that are not finite as text, and a list of one number as that number.
 Json value_json(const OptionValue& value) {
-  struct Convert {
-    Json operator()(bool v) const { return v; }
-    Json operator()(int v) const { return v; }
-    Json operator()(std::uint64_t v) const { return v; }
-    Json operator()(double v) const { return number_json(v); }
-    Json operator()(const std::vector<double>& v) const {
-      Json list = Json::array();
-      for (const double each : v) list.push_back(number_json(each));
-      return v.size() == 1 ? list[0] : list;
-    }
-    Json operator()(const std::string& v) const { return v; }
-  };
-  return std::visit(Convert{}, value);
+  const auto number = [](double each) { return std::isfinite(each) ? Json(each) : Json(to_text(each)); };
+  if (const auto* one = std::get_if<double>(&value)) return number(*one);
+  if (const auto* several = std::get_if<std::vector<double>>(&value)) {
+    if (several->size() == 1) return number(several->front());
+    Json list = Json::array();
+    for (const double each : *several) list.push_back(number(each));
+    return list;
+  }
+  return std::visit([](const auto& each) { return Json(each); }, value);
 }
 
 /// Lists the gaps in the course's files, and the places where its line and profile ask for more than the car
@@ -116,54 +108,45 @@ fs::path program_folder() {
   return failed ? fs::current_path() : program.parent_path();
 }
 
+void add_world_options(Subcommand& command, ScenarioArguments& a) {
+  command.option("--course", a.course, "Course name or folder");
+  command.option("--config", a.config, config_help);
+  command.option(
+      "--evaluation", a.evaluation,
+      "true: physically correct world; published: world, clock and counting of the paper's program");
+  command.option("--latency-ms", a.latency_ms,
+                 "Delay from a scan to the effect of its command, ms; only with --evaluation true",
+                 {0, 1000});
+  command.flag(
+      "--hardware", a.hardware,
+      "Conditions of a real car: sensor noise, slip, localisation, a servo that differs from the model");
+}
+
 void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
-  command.option("--course", a.course, "Course name or folder").show_default();
-  command.option("--config", a.config, config_help).show_default();
-  command
-      .option("--evaluation", a.evaluation,
-              "true: physically correct world; published: world, clock and counting of the paper's program")
-      .show_default();
+  add_world_options(command, a);
   command
       .option("--set", a.set,
               "section.option=value, or option=value for the method's own; may be repeated (slalom options "
               "lists them)")
       .repeatable();
-  command.option("--obstacles", a.obstacles, "Number of parked cars on the course")
-      .range(0, 1000)
-      .show_default();
-  command
-      .option(
-          "--opponents", a.opponents,
-          "Number of cars that drive along the course line at half its speed; only with --evaluation true")
-      .range(0, 16)
-      .show_default();
+  command.option("--obstacles", a.obstacles, "Number of parked cars on the course", {0, 1000});
+  command.option(
+      "--opponents", a.opponents,
+      "Number of cars that drive along the course line at half its speed; only with --evaluation true",
+      {0, 16});
   command.option("--start", a.start,
                  "Start pose x,y,yaw of the car's centre of gravity, m, m, rad [start of the course]");
-  add_latency_option(command, a.latency_ms);
-  add_hardware_option(command, a.hardware);
-  command.option("--threads", a.threads, "Number of solver threads; results do not depend on it")
-      .range(1, 1024)
-      .show_default();
+  command.option("--threads", a.threads, "Number of solver threads; results do not depend on it", {1, 1024});
 }
 
-void add_latency_option(Subcommand& command, double& latency_ms) {
-  command
-      .option("--latency-ms", latency_ms,
-              "Delay from a scan to the effect of its command, ms; only with --evaluation true")
-      .range(0.0, 1000.0)
-      .show_default();
-}
-
-void add_hardware_option(Subcommand& command, bool& hardware) {
-  command.flag(
-      "--hardware", hardware,
-      "Conditions of a real car: sensor noise, slip, localisation, a servo that differs from the model");
+std::string method_names() {
+  std::string names;
+  for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
 }
 
 void add_method_option(Subcommand& command, std::string& method) {
-  std::string names;
-  for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
-  command.option("--method", method, "One of " + names).show_default();
+  command.option("--method", method, "One of " + method_names());
 }
 
 vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method) {

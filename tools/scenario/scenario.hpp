@@ -41,13 +41,12 @@ struct ScenarioArguments {
   int threads = 1;
 };
 
-/// Adds --course, --config, --evaluation, --set, --start, --obstacles, --opponents, --latency-ms,
-/// --hardware and --threads.
+/// Adds --course, --config, --evaluation, --latency-ms and --hardware.
+void add_world_options(Subcommand& command, ScenarioArguments& arguments);
+/// Adds the options of add_world_options, and --set, --start, --obstacles, --opponents and --threads.
 void add_scenario_options(Subcommand& command, ScenarioArguments& arguments);
-/// Adds --latency-ms, in ms.
-void add_latency_option(Subcommand& command, double& latency_ms);
-/// Adds --hardware.
-void add_hardware_option(Subcommand& command, bool& hardware);
+/// The names of all methods, separated by ", ".
+std::string method_names();
 /// Adds --method to `method`, with the names known.
 void add_method_option(Subcommand& command, std::string& method);
 

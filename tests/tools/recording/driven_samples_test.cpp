@@ -1,5 +1,5 @@
 // The readers of driven laps: what a line must be, and how long it may be.
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recording/driven_recording.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -66,6 +66,7 @@ TEST_F(DrivenSamples, OneThatWasCutNamesTheRepair) {
 TEST_F(DrivenSamples, ErrorsNameTheLine) {
   EXPECT_NE(refusal(header + tick + "\n{\"type\": \"tick\"}\n").find("lap.jsonl:3: must be a record"),
             std::string::npos);
+  EXPECT_NE(refusal("hello").find("lap.jsonl:1: must be a record"), std::string::npos);
   EXPECT_NE(refusal(tick).find("lap.jsonl:1: must be the first line of a recording"), std::string::npos);
 }
 

@@ -17,7 +17,7 @@
 #include "support/temporary_folder.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/racing/race_result.hpp"
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recording/driven_recording.hpp"
 #include "vehicle/course_folder.hpp"
 #include "view/recording/replay.hpp"
 

@@ -1,0 +1,184 @@
+// Commands of a page to a session of the live view, one a line; and HTTP requests and WebSocket frames to its
+// server. The first byte of the latter chooses whether the others are sent as they are, or behind the opening
+// of a WebSocket.
+#include <chrono>
+#include <initializer_list>
+#include <stdexcept>
+
+#include "fuzz/target.hpp"
+#include "src/evaluation/json.hpp"
+#include "view/server/server.hpp"
+#include "view/session/session.hpp"
+#include "view/web_client.hpp"
+
+namespace slalom::fuzz {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int max_commands = 24, max_ticks = 12;
+
+view::SessionOptions session_options() {
+  static const auto environment =
+      evaluation::load_environment(SLALOM_COURSES "/wren", evaluation::Protocol::true_physics, {});
+  view::SessionOptions options;
+  options.scenario = {.course = "wren", .method = "mppi", .config = "default", .obstacles = 1};
+  options.load = [](const view::ScenarioNames& names) {
+    view::LoadedScenario loaded;
+    loaded.environment = environment;
+    for (const char* method : {"mppi", "svg_mppi", "cem"})
+      vehicle::set_option(loaded.configuration, "samples", "16", method);
+    loaded.lap.obstacles = names.obstacles;
+    loaded.lap.opponents = names.opponents;
+    return loaded;
+  };
+  options.choices = {
+      .courses = {"wren"}, .methods = {"mppi", "svg_mppi", "cem"}, .configurations = {"default"}};
+  // Two experiments of four laps each, the second with obstacles to hit.
+  options.evaluation = R"({"type":"evaluation","folder":"ev","course":"wren","experiments":[],"laps":[]})";
+  options.load_lap = [load = options.load](int experiment, int lap) {
+    if (experiment < 0 || experiment > 1)
+      throw std::invalid_argument("experiment: must be one of this evaluation");
+    if (lap < 0 || lap > 3) throw std::invalid_argument("lap: must be a lap of the experiment");
+    view::LoadedLap loaded;
+    loaded.names = {.course = "wren",
+                    .method = "mppi",
+                    .config = "default",
+                    .seed = static_cast<std::uint64_t>(lap),
+                    .obstacles = 2 * experiment};
+    loaded.scenario = load(loaded.names);
+    return loaded;
+  };
+  return options;
+}
+
+/// Waits until the server has got `messages`, or has closed the connection.
+void await(view::Server& server, std::uint64_t messages, Clock::time_point until) {
+  while (server.clients() > 0 && server.counters().messages < messages && Clock::now() < until)
+    server.wait(std::chrono::milliseconds(1));
+}
+
+const Target commands_target(
+    "commands", 2048,
+    []() -> Seeds {
+      return {R"({"do":"step","ticks":3,"id":1}
+{"do":"seek","tick":1}
+{"do":"add","kind":"disc","x":1,"y":0.5,"length":0.3}
+{"do":"move","body":1,"x":1.5,"y":0,"yaw":0.1,"drag":1}
+{"do":"undo"}
+{"do":"redo"}
+{"do":"remove","body":1}
+)",
+              R"({"do":"set","key":"mppi.temperature","value":"2"}
+{"do":"fork","method":"svg_mppi","set":["svg_mppi.samples=16"]}
+{"do":"ghost","method":"mppi"}
+{"do":"step"}
+{"do":"take_over"}
+{"do":"reset_options"}
+{"do":"method","method":"cem"}
+)",
+              R"({"do":"play"}
+{"do":"rate","rate":0}
+{"do":"real_time","on":true}
+{"do":"pause"}
+{"do":"place_car","x":0,"y":0,"yaw":1}
+{"do":"nudge","left":0.1,"turn":-0.2}
+{"do":"past","from":0,"to":2,"id":5}
+{"do":"restart"}
+{"do":"scenario","course":"wren","seed":"9","obstacles":1,"opponents":0}
+{"do":"save","what":"recording"}
+{"do":"lap","experiment":0,"lap":0}
+{"do":"step"}
+{"do":"lap","experiment":1,"lap":3,"contact":0}
+)"};
+    },
+    [](std::string_view bytes) {
+      const auto until = Clock::now() + std::chrono::seconds(2);
+      view::Server server({.messages_per_second = 1e6, .burst = 1e6}, {});
+      view::Session session(session_options(), server);
+      testing::WebClient client(server.port());
+      client.get("/ws", true);
+      while (server.clients() == 0 && Clock::now() < until) server.wait(std::chrono::milliseconds(1));
+      std::uint64_t sent = 0;
+      while (!bytes.empty() && sent < max_commands && Clock::now() < until) {
+        const std::string_view line = bytes.substr(0, bytes.find('\n'));
+        bytes.remove_prefix(std::min(bytes.size(), line.size() + 1));
+        if (!client.send_message(line)) break;
+        await(server, ++sent, until);
+        for (int ticks = 0; ticks < max_ticks && (ticks == 0 || session.is_busy()); ++ticks) session.turn();
+      }
+      require(session.refused() <= sent, "a command is refused once");
+      return sent > 0 && session.refused() == 0;
+    });
+
+using testing::WebClient;
+constexpr std::size_t max_message = 1000;
+
+/// A masked WebSocket frame.
+std::string frame(unsigned first, std::string_view payload) {
+  std::string bytes{static_cast<char>(first), static_cast<char>(0x80u | payload.size())};
+  bytes += "mask";
+  for (std::size_t i = 0; i < payload.size(); ++i) bytes += static_cast<char>(payload[i] ^ "mask"[i % 4]);
+  return bytes;
+}
+
+std::string joined(std::initializer_list<std::string> parts) {
+  std::string all;
+  for (const std::string& part : parts) all += part;
+  return all;
+}
+
+/// Whether JSON can hold the text as it is.
+bool is_utf8(const std::string& text) {
+  return parse_json(json_text(text)).get<std::string>() == text;
+}
+
+/// Checks the messages that the server has received. Returns whether there was a client.
+bool check_received(view::Server& server) {
+  int clients = 0;
+  for (const view::Received& each : server.take()) {
+    if (each.kind == view::Received::Kind::joined) ++clients;
+    if (each.kind != view::Received::Kind::message) continue;
+    require(each.text.size() <= max_message, "messages are no longer than allowed");
+    require(is_utf8(each.text), "messages are UTF-8");
+  }
+  require(clients <= 1, "a connection is one client");
+  return clients == 1;
+}
+
+const Target server_target(
+    "server", 4096,
+    []() -> Seeds {
+      const std::string get = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n";
+      const std::string upgrade =
+          "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+          "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+      return {joined({"h", get, "Accept-Encoding: gzip\r\n\r\n"}),
+              joined({"h", get, "Origin: http://127.0.0.1\r\nContent-Length: 3\r\n\r\nabc"}),
+              "hHEAD /ws?ack=1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+              joined({"h", upgrade, frame(0x81, "{}")}),
+              joined({"w", frame(0x81, R"({"do":"pause"})"), frame(0x82, std::string("\1\0\0\0", 4)),
+                      frame(0x89, "ping"), frame(0x88, "\x03\xe8")}),
+              joined({"w", frame(0x01, "in two"), frame(0x80, " parts"), frame(0x8a, "")})};
+    },
+    [](std::string_view bytes) {
+      static view::Server server({.max_message = max_message}, {{"/", {"text/html", "compressed", true}}});
+      if (bytes.empty()) return false;
+      std::string answer;
+      {
+        WebClient client(server.port());
+        if (bytes[0] == 'w') client.get("/ws", true);
+        client.say(bytes.substr(1));
+        client.end();
+        answer = client.rest();
+      }
+      const bool has_joined = check_received(server);
+      static int runs = 0;
+      if (++runs % 16 == 0) {
+        WebClient other(server.port());
+        require(other.get("/").rfind("HTTP/1.1 200", 0) == 0, "another client gets the page");
+      }
+      return has_joined || answer.rfind("HTTP/1.1 200", 0) == 0;
+    });
+
+}  // namespace
+}  // namespace slalom::fuzz

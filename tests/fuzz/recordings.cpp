@@ -1,0 +1,90 @@
+// Recordings in JSON lines, from which a car is identified, and in MCAP.
+#include <cmath>
+#include <sstream>
+
+#include "fuzz/target.hpp"
+#include "src/evaluation/json.hpp"
+#include "support/identification_promise.hpp"
+#include "tools/recording/driven_recording.hpp"
+#include "view/recording/mcap_writer.hpp"
+#include "view/recording/replay.hpp"
+
+namespace slalom::fuzz {
+namespace {
+
+/// A drive in curves, of a car that does what it is told.
+std::string drive(int ticks) {
+  std::string text = R"({"type":"recording","version":1})"
+                     "\n";
+  double x = 0, y = 0, yaw = 0;
+  for (int i = 0; i < ticks; ++i) {
+    const double time = 0.05 * i, steer = 0.3 * std::sin(2 * time);
+    text += Json{{"type", "tick"},
+                 {"time", time},
+                 {"odometry", Json::array({x, y, yaw, 2.0})},
+                 {"command", Json::array({steer, 2.0})}}
+                .dump() +
+            "\n";
+    x += 0.1 * std::cos(yaw);
+    y += 0.1 * std::sin(yaw);
+    yaw += 0.1 * std::tan(steer) / 0.33;
+  }
+  return text + R"({"type":"lap_end"})" + "\n";
+}
+
+const Target json_recording_target(
+    "json_recording", 1 << 15,
+    []() -> Seeds {
+      return {drive(230), drive(5),
+              "{\"type\":\"recording\"}\n{\"type\":\"tick\",\"time\":0,\"odometry\":[null,1,2,3],\"command\":"
+              "[0]}\n"};
+    },
+    [](std::string_view bytes) {
+      const auto samples = tools::read_driven_samples(scratch_file("drive.jsonl", bytes));
+      try {
+        testing::check_identification(vehicle::identify(samples));
+        return true;
+      } catch (const std::invalid_argument&) {  // too few samples
+        return false;
+      }
+    });
+
+const Target mcap_target(
+    "mcap", 1 << 15,
+    []() -> Seeds {
+      Seeds seeds;
+      for (const int messages : {0, 3, 40}) {
+        std::ostringstream stream;
+        view::mcap::Writer writer(stream, "slalom", 256);
+        const auto channel =
+            writer.add_channel("/tick", "json", writer.add_schema("tick", "jsonschema", "{}"));
+        writer.add_metadata("slalom", {{"seed", "4"}, {"course", "wren"}});
+        for (int i = 0; i < messages; ++i)
+          writer.add_message(channel, static_cast<std::uint64_t>(i) * 50000000,
+                             "{\"tick\":" + std::to_string(i) + "}");
+        view::ReplaySegments replay([&, number = 0](const std::string& segment) mutable {
+          writer.add_attachment("replay/" + std::to_string(number++) + ".gz", "application/gzip", 7, segment);
+        });
+        replay.add_text("{}");
+        replay.finish();
+        replay.add_text("[]");
+        replay.finish();
+        writer.finish();
+        seeds.push_back(std::move(stream).str());
+      }
+      seeds.push_back(seeds.back().substr(0, seeds.back().size() / 2));
+      return seeds;
+    },
+    [](std::string_view bytes) {
+      const std::string file = scratch_file("lap.mcap", bytes);
+      std::string whole, kept;
+      std::uint64_t lost = 0;
+      const bool is_whole = is_valid([&] { whole = view::load_replay(file); });
+      is_valid([&] { kept = view::load_replay(file, &lost); });
+      require(!is_whole || kept == whole, "a recording that is whole opens the same where a cut one may");
+      require(lost <= bytes.size(), "no more is lost than there was");
+      return is_whole;
+    });
+
+}  // namespace
+}  // namespace slalom::fuzz

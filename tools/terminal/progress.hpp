@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/evaluation.hpp"
+#include "slalom/evaluation/grid_race.hpp"
+#include "slalom/evaluation/lap.hpp"
+
+namespace slalom::tools {
+
+/// A line in a terminal that shows how a lap, a race or an evaluation goes, about twenty times a second.
+/// Where the stream is no terminal, an evaluation prints a line for every tenth, laps and races print
+/// nothing.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::FILE* stream);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(int lap, int laps, const evaluation::ControlStep& tick);
+  void show(int race, int races, const evaluation::GridRaceStep& step);
+  void show(const evaluation::EvaluationProgress& progress);
+  /// Removes the line before other output.
+  void clear();
+
+ private:
+  bool due();
+  void write(const std::string& text);
+
+  std::FILE* stream_;
+  bool terminal_, colour_ = false;
+  bool shown_ = false;
+  int tenth_ = -1;  ///< of an evaluation, printed last
+  std::chrono::steady_clock::time_point next_{};
+};
+
+/// The state of an evaluation in at most `columns - 1` characters: bar, laps, time left. Until the first lap
+/// is finished there is no estimate of the time left, and after the last lap none is needed.
+std::string evaluation_text(const evaluation::EvaluationProgress& progress, int columns, bool colour);
+
+/// The state of a lap or race in at most `columns - 1` characters: its name, a bar that is full to the share
+/// `progress` in [0, 1], and as many of `parts` as there is room for, the first ones first.
+std::string lap_text(const std::string& name, double progress, const std::vector<std::string>& parts,
+                     int columns, bool colour);
+
+}  // namespace slalom::tools
