@@ -1,6 +1,21 @@
-// The program slalom: one sub-command per job.
+// The program slalom, with its commands in alphabetical order.
 #include "tools/commands/commands.hpp"
 
 int main(int argc, char** argv) {
-  return slalom::tools::run_command_line(argc, argv, slalom::tools::all_commands());
+  using namespace slalom::tools;
+  return run_command_line(argc, argv,
+                          {{"bench", declare_bench},
+                           {"compare", declare_compare},
+                           {"course", declare_course},
+                           {"drive", declare_drive},
+                           {"eval", declare_eval},
+                           {"explain", declare_explain},
+                           {"identify", declare_identify},
+                           {"navigate", declare_navigate},
+                           {"options", declare_options},
+                           {"race", declare_race},
+                           {"replay", declare_replay},
+                           {"reproduce", declare_reproduce},
+                           {"track", declare_track},
+                           {"view", declare_view}});
 }

@@ -15,80 +15,65 @@ namespace {
 
 using namespace problems;
 
-/// Solved if a condition holds at the last of `steps` steps.
-Verdict at_end(int k, int steps, bool reached) {
-  if (k + 1 < steps) return Verdict::running;
-  return reached ? Verdict::solved : Verdict::failed;
+constexpr int swing_steps = 300, flight_steps = 160, drive_steps = 200, reach_steps = 160;
+
+Verdict pendulum(const Pendulum&, const Pendulum::State<double>& x, int k) {
+  return at_end(k, swing_steps, std::cos(x.angle) > 0.99 && std::abs(x.rate) < 0.5);
 }
 
-constexpr int swing_steps = 300, flight_steps = 160, drive_steps = 200;
+Verdict cart_pole(const CartPole& p, const CartPole::State<double>& x, int k) {
+  if (std::abs(x.position) > p.track) return Verdict::failed;
+  return at_end(k, swing_steps, std::cos(x.angle) > 0.99 && std::abs(x.rate) < 0.5);
+}
+
+Verdict robot(const DifferentialDrive& p, const DifferentialDrive::State<double>& x, int) {
+  if (p.place_cost(x).collided) return Verdict::failed;
+  return p.distance(x) < 0.3 ? Verdict::solved : Verdict::running;
+}
+
+Verdict quadrotor(const Quadrotor& p, const Quadrotor::State<double>& x, int k) {
+  return p.hits_wall(x) ? Verdict::failed : at_end(k, flight_steps, p.distance(x) < 1);
+}
+
+Verdict car(const Car& p, const Car::State<double>& x, int k) {
+  if (p.hits(x)) return Verdict::failed;
+  return at_end(k, drive_steps, std::abs(x.x - p.stop_x) < 1 && x.speed < 0.5);
+}
+
+Verdict arm(const Arm& p, const Arm::State<double>& x, int) {
+  const auto posture = p.posture(x);
+  if (p.collides(posture)) return Verdict::failed;
+  return p.distance(posture) < 0.05 ? Verdict::solved : Verdict::running;
+}
 
 }  // namespace
 
 void add_example_tasks(std::vector<Task>& tasks) {
+  const double down = std::numbers::pi;
   tasks.push_back(
-      {"pendulum",
-       false,
-       60,
-       {2},
-       {-5},
-       {5},
-       closed_loop(Pendulum{}, {std::numbers::pi, 0}, swing_steps, [](const Pendulum&, const auto& x, int k) {
-         return at_end(k, swing_steps, std::cos(x.angle) > 0.99 && std::abs(x.rate) < 0.5);
-       })});
+      {"pendulum", Ways::one, 60, {{2, -5, 5}}, closed_loop(Pendulum{}, {down, 0}, swing_steps, pendulum)});
   tasks.push_back({"cart_pole",
-                   false,
+                   Ways::one,
                    60,
-                   {3},
-                   {-10},
-                   {10},
-                   closed_loop(CartPole{}, {0, 0, std::numbers::pi, 0}, swing_steps,
-                               [](const CartPole& p, const auto& x, int k) {
-                                 if (std::abs(x.position) > p.track) return Verdict::failed;
-                                 return at_end(k, swing_steps,
-                                               std::cos(x.angle) > 0.99 && std::abs(x.rate) < 0.5);
-                               })});
-  tasks.push_back(
-      {"two_ways_round",
-       true,
-       25,
-       {0.6, 1.2},
-       {0, -2},
-       {1.5, 2},
-       closed_loop(DifferentialDrive{}, {0, 0, 0}, 120, [](const DifferentialDrive& p, const auto& x, int) {
-         if (p.place_cost(x).collided) return Verdict::failed;
-         return p.distance(x) < 0.3 ? Verdict::solved : Verdict::running;
-       })});
+                   {{3, -10, 10}},
+                   closed_loop(CartPole{}, {0, 0, down, 0}, swing_steps, cart_pole)});
+  tasks.push_back({"two_ways_round",
+                   Ways::several,
+                   25,
+                   {{0.6, 0, 1.5}, {1.2, -2, 2}},
+                   closed_loop(DifferentialDrive{}, {0, 0, 0}, 120, robot)});
   tasks.push_back({"quadrotor_gaps",
-                   true,
+                   Ways::several,
                    40,
-                   {1.4, 2.8},
-                   {-6, -20},
-                   {6, 20},
-                   closed_loop(Quadrotor{}, {0, 0, 0, 0, 0, 0}, flight_steps,
-                               [](const Quadrotor& p, const auto& x, int k) {
-                                 if (p.hits_wall(x)) return Verdict::failed;
-                                 return at_end(k, flight_steps, p.distance(x) < 1);
-                               })});
+                   {{1.4, -6, 6}, {2.8, -20, 20}},
+                   closed_loop(Quadrotor{}, {0, 0, 0, 0, 0, 0}, flight_steps, quadrotor)});
   tasks.push_back({"parked_cars",
-                   true,
+                   Ways::several,
                    30,
-                   {0.3, 1.4},
-                   {-0.5, -6},
-                   {0.5, 3},
-                   closed_loop(Car{}, {0, 0, 0, 5}, drive_steps, [](const Car& p, const auto& x, int k) {
-                     if (p.hits(x)) return Verdict::failed;
-                     return at_end(k, drive_steps, std::abs(x.x - p.stop_x) < 1 && x.speed < 0.5);
-                   })});
-  Arm::State<double> start;
-  std::copy(Arm::start.begin(), Arm::start.end(), start.angle);
-  const std::vector<double> rate(Arm::joints, 1.5), least(Arm::joints, -1.5), deviation(Arm::joints, 0.5);
-  tasks.push_back({"arm_past_ball", true, 20, deviation, least, rate,
-                   closed_loop(Arm{}, start, 160, [](const Arm& p, const auto& x, int) {
-                     const auto arm = p.posture(x);
-                     if (p.collides(arm)) return Verdict::failed;
-                     return p.distance(arm) < 0.05 ? Verdict::solved : Verdict::running;
-                   })});
+                   {{0.3, -0.5, 0.5}, {1.4, -6, 3}},
+                   closed_loop(Car{}, {0, 0, 0, 5}, drive_steps, car)});
+  tasks.push_back(
+      {"arm_past_ball", Ways::several, 20, joint_rates(), closed_loop(Arm{}, arm_start(), reach_steps, arm)});
 }
 
 }  // namespace slalom::suite

@@ -60,21 +60,10 @@ struct Parking {
 };
 
 /// A round robot in a corridor with two bends, little wider than itself.
-struct Corridor {
-  template <class T>
-  struct State {
-    T x, y, speed_x, speed_y;  // m, m/s
-  };
-  static constexpr int inputs = 2;  // m/s^2
-  double dt = 0.1;                  // s
-  double half_width = 0.25;         // m, free way of the robot's centre
-  double rise = 2;                  // m, sideways between the bends
+struct Corridor : PointMass {
+  double half_width = 0.25;  // m, free way of the robot's centre
+  double rise = 2;           // m, sideways between the bends
 
-  template <class T>
-  State<T> step(const State<T>& s, const Input<T, 2>& u) const {
-    const T speed_x = s.speed_x + T(dt) * u[0], speed_y = s.speed_y + T(dt) * u[1];
-    return {s.x + T(dt) * speed_x, s.y + T(dt) * speed_y, speed_x, speed_y};
-  }
   template <class T>
   Cost<T> stage_cost(const State<T>& s, const Input<T, 2>& u) const {
     const mask_t<T> hit = collides(s);
@@ -135,43 +124,37 @@ struct ArmAmongBalls : problems::Arm {
   }
 };
 
-constexpr int park_steps = 120, corridor_steps = 100;
+Verdict parking(const Parking& p, const Parking::State<double>& s, int) {
+  if (p.collides(s)) return Verdict::failed;
+  return p.offset(s) < 0.25 ? Verdict::solved : Verdict::running;
+}
+
+Verdict corridor(const Corridor& p, const Corridor::State<double>& s, int) {
+  if (p.collides(s)) return Verdict::failed;
+  return p.way_left(s) < 0.3 ? Verdict::solved : Verdict::running;
+}
+
+Verdict arm(const ArmAmongBalls& p, const ArmAmongBalls::State<double>& x, int) {
+  const auto posture = p.posture(x);
+  if (p.collides_with_any(posture)) return Verdict::failed;
+  return p.distance(posture) < 0.05 ? Verdict::solved : Verdict::running;
+}
 
 }  // namespace
 
 void add_narrow_tasks(std::vector<Task>& tasks) {
-  tasks.push_back(
-      {"parking",
-       false,
-       40,
-       {0.8, 0.1},
-       {-2, -0.2},
-       {2, 0.2},
-       closed_loop(Parking{}, {6.5, 0.9, 0}, park_steps, [](const Parking& p, const auto& s, int) {
-         if (p.collides(s)) return Verdict::failed;
-         return p.offset(s) < 0.25 ? Verdict::solved : Verdict::running;
-       })});
-  tasks.push_back(
-      {"corridor",
-       false,
-       30,
-       {1, 1},
-       {-2, -2},
-       {2, 2},
-       closed_loop(Corridor{}, {0, 0, 0, 0}, corridor_steps, [](const Corridor& p, const auto& s, int) {
-         if (p.collides(s)) return Verdict::failed;
-         return p.way_left(s) < 0.3 ? Verdict::solved : Verdict::running;
-       })});
-  problems::Arm::State<double> start;
-  std::copy(problems::Arm::start.begin(), problems::Arm::start.end(), start.angle);
-  constexpr int joints = problems::Arm::joints;
-  tasks.push_back({"arm_among_balls", true, 20, std::vector<double>(joints, 0.5),
-                   std::vector<double>(joints, -1.5), std::vector<double>(joints, 1.5),
-                   closed_loop(ArmAmongBalls{}, start, 160, [](const ArmAmongBalls& p, const auto& x, int) {
-                     const auto arm = p.posture(x);
-                     if (p.collides_with_any(arm)) return Verdict::failed;
-                     return p.distance(arm) < 0.05 ? Verdict::solved : Verdict::running;
-                   })});
+  tasks.push_back({"parking",
+                   Ways::one,
+                   40,
+                   {{0.8, -2, 2}, {0.1, -0.2, 0.2}},
+                   closed_loop(Parking{}, {6.5, 0.9, 0}, 120, parking)});
+  tasks.push_back({"corridor",
+                   Ways::one,
+                   30,
+                   {{1, -2, 2}, {1, -2, 2}},
+                   closed_loop(Corridor{}, {0, 0, 0, 0}, 100, corridor)});
+  tasks.push_back({"arm_among_balls", Ways::several, 20, joint_rates(),
+                   closed_loop(ArmAmongBalls{}, arm_start(), 160, arm)});
 }
 
 }  // namespace slalom::suite

@@ -103,22 +103,11 @@ struct Swap {
 };
 
 /// A mass point that follows a goal; a disc stands between them again and again.
-struct Chase {
-  template <class T>
-  struct State {
-    T x, y, speed_x, speed_y;  // m, m/s
-  };
-  static constexpr int inputs = 2;  // m/s^2
-  double dt = 0.1;                  // s
-  double goal_x = 2, goal_y = 0;    // m, at the start of the rollout
-  double way_x = 0, way_y = 0;      // m/s, of the goal
-  double radius = 0.8;              // m, of the disc at the origin
+struct Chase : PointMass {
+  double goal_x = 2, goal_y = 0;  // m, at the start of the rollout
+  double way_x = 0, way_y = 0;    // m/s, of the goal
+  double radius = 0.8;            // m, of the disc at the origin
 
-  template <class T>
-  State<T> step(const State<T>& s, const Input<T, 2>& u) const {
-    const T speed_x = s.speed_x + T(dt) * u[0], speed_y = s.speed_y + T(dt) * u[1];
-    return {s.x + T(dt) * speed_x, s.y + T(dt) * speed_y, speed_x, speed_y};
-  }
   template <class T>
   Cost<T> stage_cost(const State<T>& s, const Input<T, 2>& u, int k) const {
     const mask_t<T> hit = collides(s);
@@ -141,20 +130,9 @@ struct Chase {
 };
 
 /// A mass point whose costs are only steps: rings around the goal, and a toll for patches of bad ground.
-struct Rings {
-  template <class T>
-  struct State {
-    T x, y, speed_x, speed_y;  // m, m/s
-  };
-  static constexpr int inputs = 2;  // m/s^2
-  double dt = 0.1;                  // s
-  double goal_x = 5, goal_y = 0;    // m
+struct Rings : PointMass {
+  double goal_x = 5, goal_y = 0;  // m
 
-  template <class T>
-  State<T> step(const State<T>& s, const Input<T, 2>& u) const {
-    const T speed_x = s.speed_x + T(dt) * u[0], speed_y = s.speed_y + T(dt) * u[1];
-    return {s.x + T(dt) * speed_x, s.y + T(dt) * speed_y, speed_x, speed_y};
-  }
   template <class T>
   T stage_cost(const State<T>& s, const Input<T, 2>& u) const {
     T cost = T(0.002) * (u[0] * u[0] + u[1] * u[1]);
@@ -178,70 +156,52 @@ struct Rings {
   }
 };
 
-constexpr int flight_steps = 120, swap_steps = 80, chase_steps = 160, ring_steps = 70;
-/// Length of time in which the goal of `Chase` goes once to and fro, s.
+constexpr int flight_steps = 120, chase_steps = 160, ring_steps = 70;
+/// Time in which the goal of `Chase` goes once to and fro, s.
 constexpr double chase_period = 8;
 
-/// Where the goal is, and how it moves, at time t: on a line through the disc.
-void move_goal(Chase& p, double t) {
-  const double phase = 2 * std::numbers::pi * t / chase_period, turning = 2 * std::numbers::pi / chase_period;
+/// Moves the goal, for the solve at step k: on a line through the disc.
+void move_goal(Chase& p, const Chase::State<double>&, int k) {
+  const double turning = 2 * std::numbers::pi / chase_period, phase = turning * k * p.dt;
   p.goal_x = 2.2 * std::cos(phase);
   p.goal_y = 0.2 * std::sin(phase);
   p.way_x = -2.2 * turning * std::sin(phase);
   p.way_y = 0.2 * turning * std::cos(phase);
 }
 
+Verdict hovercraft(const Hovercraft& p, const Hovercraft::State<double>& x, int k) {
+  return p.collides(x) ? Verdict::failed : at_end(k, flight_steps, p.distance(x) < 0.3);
+}
+
+Verdict swap(const Swap& p, const Swap::State<double>& s, int) {
+  if (p.collides(s)) return Verdict::failed;
+  const double farthest = std::max({p.distance(s, 0), p.distance(s, 1), p.distance(s, 2)});
+  return farthest < 0.4 ? Verdict::solved : Verdict::running;
+}
+
+Verdict chase(const Chase& p, const Chase::State<double>& s, int k) {
+  if (p.collides(s)) return Verdict::failed;
+  // The goal turns at its ends once per half period; it must be met there.
+  const int half = static_cast<int>(chase_period / 2 / p.dt);
+  if ((k + 1) % half == half / 8 && p.distance(s, p.dt) > 0.5) return Verdict::failed;
+  return at_end(k, chase_steps, true);
+}
+
+Verdict rings(const Rings& p, const Rings::State<double>& s, int k) {
+  return p.on_bad_ground(s) ? Verdict::failed : at_end(k, ring_steps, p.square_distance(s) < 0.25);
+}
+
 }  // namespace
 
 void add_plane_tasks(std::vector<Task>& tasks) {
-  tasks.push_back({"hovercraft_gap",
-                   false,
-                   40,
-                   {1.5, 1.5, 1.5},
-                   {-3, -3, -3},
-                   {3, 3, 3},
-                   closed_loop(Hovercraft{}, {0, 0.5, 0, 0, 0, 0}, flight_steps,
-                               [](const Hovercraft& p, const auto& x, int k) {
-                                 if (p.collides(x)) return Verdict::failed;
-                                 if (k + 1 < flight_steps) return Verdict::running;
-                                 return p.distance(x) < 0.3 ? Verdict::solved : Verdict::failed;
-                               })});
-  tasks.push_back(
-      {"three_robots_swap", true, 30, std::vector<double>(6, 1), std::vector<double>(6, -2),
-       std::vector<double>(6, 2),
-       closed_loop(Swap{}, {{2, -1, -1}, {0, 1.732, -1.732}, {0, 0, 0}, {0, 0, 0}}, swap_steps,
-                   [](const Swap& p, const auto& s, int) {
-                     if (p.collides(s)) return Verdict::failed;
-                     const double farthest = std::max({p.distance(s, 0), p.distance(s, 1), p.distance(s, 2)});
-                     return farthest < 0.4 ? Verdict::solved : Verdict::running;
-                   })});
-  tasks.push_back({"moving_goal",
-                   true,
-                   25,
-                   {1.5, 1.5},
-                   {-4, -4},
-                   {4, 4},
-                   closed_loop(
-                       Chase{}, {2, 0, 0, 0}, chase_steps,
-                       [](const Chase& p, const auto& s, int k) {
-                         if (p.collides(s)) return Verdict::failed;
-                         // The goal turns at its ends once per half period; it must be met there.
-                         const int half = static_cast<int>(chase_period / 2 / p.dt);
-                         if ((k + 1) % half == half / 8 && p.distance(s, p.dt) > 0.5) return Verdict::failed;
-                         return k + 1 < chase_steps ? Verdict::running : Verdict::solved;
-                       },
-                       [](Chase& p, const auto&, int k) { move_goal(p, k * p.dt); })});
-  tasks.push_back({"steps_of_cost",
-                   true,
-                   30,
-                   {1, 1},
-                   {-2, -2},
-                   {2, 2},
-                   closed_loop(Rings{}, {0, 0, 0, 0}, ring_steps, [](const Rings& p, const auto& s, int k) {
-                     if (p.on_bad_ground(s)) return Verdict::failed;
-                     if (k + 1 < ring_steps) return Verdict::running;
-                     return p.square_distance(s) < 0.25 ? Verdict::solved : Verdict::failed;
-                   })});
+  tasks.push_back({"hovercraft_gap", Ways::one, 40, std::vector<TaskInput>(3, {1.5, -3, 3}),
+                   closed_loop(Hovercraft{}, {0, 0.5, 0, 0, 0, 0}, flight_steps, hovercraft)});
+  tasks.push_back({"three_robots_swap", Ways::several, 30, std::vector<TaskInput>(6, {1, -2, 2}),
+                   closed_loop(Swap{}, {{2, -1, -1}, {0, 1.732, -1.732}, {0, 0, 0}, {0, 0, 0}}, 80, swap)});
+  tasks.push_back({"moving_goal", Ways::several, 25, std::vector<TaskInput>(2, {1.5, -4, 4}),
+                   closed_loop(Chase{}, {2, 0, 0, 0}, chase_steps, chase, move_goal)});
+  tasks.push_back({"steps_of_cost", Ways::several, 30, std::vector<TaskInput>(2, {1, -2, 2}),
+                   closed_loop(Rings{}, {0, 0, 0, 0}, ring_steps, rings)});
 }
 
 }  // namespace slalom::suite

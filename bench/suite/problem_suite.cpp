@@ -24,20 +24,11 @@ namespace {
 constexpr int rollouts = 1024;
 constexpr int guides = 4, guide_iterations = 10, gradient_samples = 12;
 
-PerInput scaled_squares(const std::vector<double>& values, double factor) {
-  std::vector<double> squares;
-  for (const double v : values) squares.push_back(factor * v * v);
-  return PerInput(squares);
-}
-
 SvgMppiOptions svg_mppi_options(const Task& task, double temperature) {
-  SvgMppiOptions o;
+  SvgMppiOptions o = scaled_options(task);
   // A guide itself is evaluated in every iteration; all are before and after, with the last solution.
   o.samples = rollouts - guide_iterations * guides * (gradient_samples + 1) - (2 * guides + 1);
   o.temperature = o.guides.gradient_temperature = temperature;
-  o.variance = o.variance_max = o.guides.restart_variance = scaled_squares(task.deviation, 1);
-  o.guides.variance = o.guides.gradient_variance = scaled_squares(task.deviation, 0.5);
-  o.variance_min = o.guides.step = scaled_squares(task.deviation, 0.25);
   o.guides.count = guides;
   o.guides.iterations = guide_iterations;
   o.guides.gradient_samples = gradient_samples;
@@ -60,12 +51,12 @@ SolverOptions method_options(const std::string& method, const Task& task, double
     options = svg_mppi_options(task, temperature);
   } else {
     *options.find<int>("samples") = samples_of_iteration(options);
-    *options.find<PerInput>("variance") = scaled_squares(task.deviation, 1);
+    *options.find<PerInput>("variance") = variance(task);
     if (double* const option = options.find<double>("temperature")) *option = temperature;
   }
   *options.find<int>("horizon") = task.horizon;
-  *options.find<PerInput>("input_min") = PerInput(task.low);
-  *options.find<PerInput>("input_max") = PerInput(task.high);
+  *options.find<PerInput>("input_min") = per_input(task, &TaskInput::low);
+  *options.find<PerInput>("input_max") = per_input(task, &TaskInput::high);
   return options;
 }
 
@@ -133,10 +124,7 @@ Arguments parse(int argc, char** argv) {
 
 /// The tasks of these names; all if there are none.
 std::vector<Task> tasks_named(const std::vector<std::string>& names) {
-  std::vector<Task> all;
-  add_example_tasks(all);
-  add_plane_tasks(all);
-  add_narrow_tasks(all);
+  const std::vector<Task> all = all_tasks();
   if (names.empty()) return all;
   std::vector<Task> chosen;
   for (const std::string& name : names) {
@@ -160,7 +148,7 @@ void run(const Arguments& a) {
                                     ? *of_any_temperature
                                     : task.run({options, a.first_seed, a.seeds, a.ilqr_iterations});
         if (!options.find<double>("temperature")) of_any_temperature = outcome;
-        std::printf("%s,%d,%s,%s,%d,%d,%.4g\n", task.name.c_str(), task.several_ways, method.c_str(),
+        std::printf("%s,%d,%s,%s,%d,%d,%.4g\n", task.name.c_str(), task.ways == Ways::several, method.c_str(),
                     temperature.c_str(), a.seeds, outcome.solved, median(outcome.effective_sample_sizes));
         std::fflush(stdout);
       }

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "slalom/problems/arm.hpp"
 #include "slalom/slalom.hpp"
 
 /// Control problems with a criterion of success, solved in closed loop by any method.
@@ -32,15 +33,49 @@ struct Runs {
   int steps = 0;            ///< most steps of a run; 0: those of the task
 };
 
-/// A task: a problem, what is known of its inputs, and closed-loop runs.
+/// An input of a task.
+struct TaskInput {
+  double deviation;  ///< standard deviation that samples should have
+  double low, high;  ///< bounds
+};
+
+/// Whether there are several ways, between which an average fails.
+enum class Ways { one, several };
+
+/// A task: a problem, the ranges of its inputs, and closed-loop runs.
 struct Task {
   std::string name;
-  bool several_ways = false;      ///< whether there are ways between which an average fails
-  int horizon = 0;                ///< steps
-  std::vector<double> deviation;  ///< standard deviation that samples should have, one for each input
-  std::vector<double> low, high;  ///< bounds of the inputs
+  Ways ways;
+  int horizon;  ///< steps
+  std::vector<TaskInput> inputs;
   std::function<Outcome(const Runs&)> run;  ///< drives the closed loop
 };
+
+/// A value of each input of a task.
+inline PerInput per_input(const Task& task, double TaskInput::*value) {
+  std::vector<double> values;
+  for (const TaskInput& input : task.inputs) values.push_back(input.*value);
+  return PerInput(values);
+}
+
+/// The variance of the samples that each input should have, times `factor`.
+inline PerInput variance(const Task& task, double factor = 1) {
+  std::vector<double> values;
+  for (const TaskInput& input : task.inputs) values.push_back(factor * input.deviation * input.deviation);
+  return PerInput(values);
+}
+
+/// The options of svg_mppi for a task, by the rule of docs/writing-a-problem.md, "Units".
+inline SvgMppiOptions scaled_options(const Task& task) {
+  SvgMppiOptions o;
+  o.horizon = task.horizon;
+  o.input_min = per_input(task, &TaskInput::low);
+  o.input_max = per_input(task, &TaskInput::high);
+  o.variance = o.variance_max = o.guides.restart_variance = variance(task);
+  o.guides.variance = o.guides.gradient_variance = variance(task, 0.5);
+  o.variance_min = o.guides.step = variance(task, 0.25);
+  return o;
+}
 
 /// Closed-loop runs of a controller of problem P from `start`. `judge(problem, x, k)` gives the verdict on
 /// the state after step k; a run of `steps` steps without a verdict has failed. `change(problem, x, k)`, if
@@ -83,11 +118,53 @@ auto closed_loop(const P& problem, const typename P::template State<double>& sta
   };
 }
 
+/// Failed or solved at the last of `steps` steps, running before.
+inline Verdict at_end(int k, int steps, bool reached) {
+  if (k + 1 < steps) return Verdict::running;
+  return reached ? Verdict::solved : Verdict::failed;
+}
+
+/// A mass point in the plane, driven by its accelerations.
+struct PointMass {
+  template <class T>
+  struct State {
+    T x, y, speed_x, speed_y;  // m, m/s
+  };
+  static constexpr int inputs = 2;  // m/s^2
+  double dt = 0.1;                  // s
+
+  template <class T>
+  State<T> step(const State<T>& s, const Input<T, 2>& u) const {
+    const T speed_x = s.speed_x + T(dt) * u[0], speed_y = s.speed_y + T(dt) * u[1];
+    return {s.x + T(dt) * speed_x, s.y + T(dt) * speed_y, speed_x, speed_y};
+  }
+};
+
+/// The inputs of the arm: rates of its joints.
+inline std::vector<TaskInput> joint_rates() {
+  return std::vector<TaskInput>(problems::Arm::joints, {0.5, -1.5, 1.5});
+}
+
+/// The state in which the arm starts.
+inline problems::Arm::State<double> arm_start() {
+  problems::Arm::State<double> state;
+  std::copy(problems::Arm::start.begin(), problems::Arm::start.end(), state.angle);
+  return state;
+}
+
 /// Adds the problems of the examples.
 void add_example_tasks(std::vector<Task>& tasks);
 /// Adds robots that move in a plane.
 void add_plane_tasks(std::vector<Task>& tasks);
 /// Adds vehicles and arms in narrow places.
 void add_narrow_tasks(std::vector<Task>& tasks);
+
+inline std::vector<Task> all_tasks() {
+  std::vector<Task> tasks;
+  add_example_tasks(tasks);
+  add_plane_tasks(tasks);
+  add_narrow_tasks(tasks);
+  return tasks;
+}
 
 }  // namespace slalom::suite

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "slalom/core/dispatch.hpp"
+#include "slalom/core/math.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::workload {
@@ -77,6 +78,30 @@ class Rollouts {
   std::vector<double> times_;
 };
 
+constexpr int chains = 10, rounds = 4000;
+
+/// Runs `rounds` rounds of a product and a sum on every chain and returns a value that depends on all.
+struct Chains {
+  template <class Target>
+  SLALOM_KERNEL static float run() {
+    using F = Pack<Target>;
+    const F factor(0.999f), addend(0.001f);
+    F chain[chains], sum(0.0f);
+    for (int k = 0; k < chains; ++k) chain[k] = F(1 + 0.1f * static_cast<float>(k));
+    for (int i = 0; i < rounds; ++i)
+      for (F& each : chain) each = each * factor + addend;
+    for (const F& each : chain) sum = sum + each;
+    return sum.v[0];
+  }
+};
+
+struct Lanes {
+  template <class Target>
+  SLALOM_KERNEL static int run() {
+    return Target::lanes;
+  }
+};
+
 }  // namespace
 
 void compare_with_yardstick(const ReferenceWorkload& workload, simd::Target target) {
@@ -94,29 +119,34 @@ void compare_with_yardstick(const ReferenceWorkload& workload, simd::Target targ
   if (different > samples / 500) throw std::logic_error("the costs of rollouts and yardstick differ");
 }
 
-RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
-                              int samples, int steps, simd::Target target, double seconds) {
-  Rollouts rollouts(workload, problem, samples, steps, target);
+RolloutSpeed measure_rollouts(const ReferenceWorkload& workload,
+                              std::span<const vehicle::VehicleOptions> problems, int samples, int steps,
+                              simd::Target target, double seconds) {
   Stick stick(workload);
-  repeat(seconds, [&] {
-    stick.run();
-    for (int i = 0; i < 4; ++i) rollouts.run();
-  });
-  return {stick.statistics(), rollouts.statistics()};
-}
-
-std::vector<TimeStatistics> measure_alternately(const ReferenceWorkload& workload,
-                                                std::span<const vehicle::VehicleOptions> problems,
-                                                int samples, int steps, simd::Target target, double seconds) {
   std::vector<Rollouts> all;
   for (const vehicle::VehicleOptions& problem : problems)
     all.emplace_back(workload, problem, samples, steps, target);
   repeat(seconds, [&] {
+    stick.run();
     for (Rollouts& each : all) each.run();
   });
-  std::vector<TimeStatistics> statistics;
-  for (const Rollouts& each : all) statistics.push_back(each.statistics());
-  return statistics;
+  RolloutSpeed speed{stick.statistics(), {}};
+  for (const Rollouts& each : all) speed.rollouts.push_back(each.statistics());
+  return speed;
+}
+
+double measured_peak_gflops(simd::Target target) {
+  const auto run = simd::kernel<Chains>(target);
+  const int lanes = simd::kernel<Lanes>(target)();
+  double least = 1e30;
+  volatile float sink = 0;
+  for (int i = 0; i < 300; ++i) {
+    const auto begin = Clock::now();
+    sink = run();
+    least = std::min(least, seconds_since(begin));
+  }
+  static_cast<void>(sink);
+  return 2e-9 * chains * rounds * lanes / least;
 }
 
 SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,

@@ -17,18 +17,18 @@ namespace slalom::workload {
 void compare_with_yardstick(const ReferenceWorkload& workload, simd::Target target);
 
 struct RolloutSpeed {
-  TimeStatistics yardstick;  ///< ns per step
-  TimeStatistics rollout;    ///< ns per step
+  TimeStatistics yardstick;              ///< ns per step
+  std::vector<TimeStatistics> rollouts;  ///< ns per step with its cost, in the order of the problems
 };
-/// Measures rollouts and the yardstick alternately, so that both run at the same clock frequency.
-RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
-                              int samples, int steps, simd::Target target, double seconds);
+/// Measures the yardstick and the rollouts of each problem alternately, so that all run at the same clock
+/// frequency.
+RolloutSpeed measure_rollouts(const ReferenceWorkload& workload,
+                              std::span<const vehicle::VehicleOptions> problems, int samples, int steps,
+                              simd::Target target, double seconds);
 
-/// Measures the rollouts of several problems alternately, so that all run at the same clock frequency: ns per
-/// step with its cost, in the order of `problems`.
-std::vector<TimeStatistics> measure_alternately(const ReferenceWorkload& workload,
-                                                std::span<const vehicle::VehicleOptions> problems,
-                                                int samples, int steps, simd::Target target, double seconds);
+/// Measures the peak float32 performance of one core, GFLOP/s, on independent operations in registers. A
+/// fused multiply-add counts as two operations.
+double measured_peak_gflops(simd::Target target);
 
 struct SolveSpeed {
   std::string method;

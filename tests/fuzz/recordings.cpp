@@ -77,7 +77,7 @@ const Target mcap_target(
     },
     [](std::string_view bytes) {
       const std::string file = scratch_file("lap.mcap", bytes);
-      std::string whole, kept;
+      std::vector<std::string> whole, kept;
       std::uint64_t lost = 0;
       const bool is_whole = is_valid([&] { whole = view::load_replay(file); });
       is_valid([&] { kept = view::load_replay(file, &lost); });

@@ -16,24 +16,6 @@ namespace {
 
 using suite::Task;
 
-PerInput squares(const std::vector<double>& deviation, double factor) {
-  std::vector<double> values;
-  for (const double d : deviation) values.push_back(factor * d * d);
-  return PerInput(values);
-}
-
-/// The options of the suite, but for the numbers of samples, which are the defaults.
-SvgMppiOptions options(const Task& task) {
-  SvgMppiOptions o;
-  o.horizon = task.horizon;
-  o.input_min = PerInput(task.low);
-  o.input_max = PerInput(task.high);
-  o.variance = o.variance_max = o.guides.restart_variance = squares(task.deviation, 1);
-  o.guides.variance = o.guides.gradient_variance = squares(task.deviation, 0.5);
-  o.variance_min = o.guides.step = squares(task.deviation, 0.25);
-  return o;
-}
-
 /// The first plans of a task for some seeds on an instruction set, from a process of their own: a process
 /// chooses its instruction set once. Empty if that process fails.
 std::vector<float> first_plans(const Task& task, simd::Target target, std::size_t seeds) {
@@ -43,7 +25,8 @@ std::vector<float> first_plans(const Task& task, simd::Target target, std::size_
   if (child == 0) {
     setenv("SLALOM_TARGET", simd::name(target), 1);
     for (std::size_t seed = 0; seed < seeds; ++seed) {
-      const auto plan = task.run({.options = options(task), .first = seed, .count = 1, .steps = 1}).plan;
+      const auto plan =
+          task.run({.options = suite::scaled_options(task), .first = seed, .count = 1, .steps = 1}).plan;
       const std::size_t bytes = plan.size() * sizeof(float);
       if (write(ends[1], plan.data(), bytes) != static_cast<ssize_t>(bytes)) _exit(1);
     }
@@ -73,13 +56,9 @@ std::vector<double> differences(const std::vector<float>& a, const std::vector<f
 /// Rounding may decide whether a sample touches an obstacle: the plans of one seed in ten may differ.
 TEST(InstructionSets, GiveTheSameFirstPlans) {
   constexpr std::size_t seeds = 20, alike = 18;
-  std::vector<Task> tasks;
-  suite::add_example_tasks(tasks);
-  suite::add_plane_tasks(tasks);
-  suite::add_narrow_tasks(tasks);
-  for (const Task& task : tasks) {
+  for (const Task& task : suite::all_tasks()) {
     const auto expected = first_plans(task, simd::Target::generic, seeds);
-    ASSERT_EQ(expected.size(), seeds * static_cast<std::size_t>(task.horizon) * task.deviation.size());
+    ASSERT_EQ(expected.size(), seeds * static_cast<std::size_t>(task.horizon) * task.inputs.size());
     for (const auto target : {simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
       if (!simd::supported(target)) continue;
       const auto plans = first_plans(task, target, seeds);

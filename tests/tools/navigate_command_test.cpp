@@ -67,7 +67,7 @@ TEST_F(NavigateCommand, DrivesWithEveryMethod) {
 TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
   expect_refused("navigate --scenario kitchen", {"kitchen", "pallet-on-path"});
   expect_refused("navigate --scenario no-way --methods dwa",
-                 {"--methods", "'dwa' must be one of mppi, svg_mppi"});
+                 {"--methods", "'dwa'", "must be one of mppi, svg_mppi"});
   expect_refused("navigate --scenario no-way --methods mppi,svg_mppi,mppi",
                  {"--methods", "mppi", "is given twice"});
   expect_refused("navigate --scenario no-way --table /no/such/folder/out.md",

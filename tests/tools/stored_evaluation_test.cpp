@@ -5,7 +5,7 @@
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
-#include "tools/live_view/view_evaluation.hpp"
+#include "tools/live_view/view_setup.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -4,7 +4,6 @@
 #include <thread>
 
 #include "bench/workload/measurements.hpp"
-#include "bench/workload/peak.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/build_id.hpp"
@@ -33,28 +32,21 @@ vehicle::Configuration configuration_of(const BenchArguments& arguments) {
   return made;
 }
 
-/// A vehicle model to compare, with the name that it has in the output.
-struct ComparedModel {
-  std::string name;
-  vehicle::VehicleOptions options;
-};
+constexpr const char* compared_models[] = {"kinematic", "kinematic_acceleration",
+                                           "single_track, linear tyres", "single_track, saturating tyres"};
 
-/// The vehicle models with the car and the body of the configuration `default`. The first one is the
-/// reference.
-std::vector<ComparedModel> compared_models() {
+/// The vehicle models of compared_models with the car and the body of the configuration `default`.
+std::vector<vehicle::VehicleOptions> models_to_compare() {
   ScenarioArguments scenario;
   scenario.config = "default";
   const vehicle::VehicleOptions sliding = load_configuration(scenario, "svg_mppi").vehicle;
   vehicle::VehicleOptions gripping;
   static_cast<vehicle::PathTrackingOptions&>(gripping) = sliding;
-  std::vector<ComparedModel> made{{"kinematic", gripping},
-                                  {"kinematic_acceleration", gripping},
-                                  {"single_track, linear tyres", sliding},
-                                  {"single_track, saturating tyres", sliding}};
+  std::vector<vehicle::VehicleOptions> made{gripping, gripping, sliding, sliding};
   made[0].options.model = vehicle::vehicle_model("kinematic");
   made[1].options.model = vehicle::vehicle_model("kinematic_acceleration");
-  made[2].options.own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::linear;
-  made[3].options.own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::saturating;
+  made[2].own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::linear;
+  made[3].own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::saturating;
   return made;
 }
 
@@ -105,23 +97,28 @@ class Bench {
   }
 
  private:
+  /// The speed of 8000 rollouts of the configuration.
+  std::pair<workload::TimeStatistics, workload::TimeStatistics> measured(simd::Target target,
+                                                                         double seconds) {
+    const auto speed = workload::measure_rollouts(workload_, {&configuration_.vehicle, 1}, 8000,
+                                                  workload::ReferenceWorkload::steps, target, seconds);
+    return {speed.yardstick, speed.rollouts.front()};
+  }
+
   void rollouts() {
     workload::compare_with_yardstick(workload_, target_);
-    const workload::RolloutSpeed speed =
-        workload::measure_rollouts(workload_, configuration_.vehicle, 8000,
-                                   workload::ReferenceWorkload::steps, target_, arguments_.seconds);
-    json_["yardstick_ns_per_step"] = speed.yardstick.p50;
-    json_["rollout_ns_per_step"] = speed.rollout.p50;
-    json_["rollout_times_faster"] = speed.yardstick.p50 / speed.rollout.p50;
+    const auto [yardstick, rollout] = measured(target_, arguments_.seconds);
+    json_["yardstick_ns_per_step"] = yardstick.p50;
+    json_["rollout_ns_per_step"] = rollout.p50;
+    json_["rollout_times_faster"] = yardstick.p50 / rollout.p50;
     std::fprintf(words_,
                  "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (minimum times: %.1f)",
-                 speed.yardstick.p50, speed.rollout.p50, speed.yardstick.p50 / speed.rollout.p50,
-                 speed.yardstick.min / speed.rollout.min);
-    if (arguments_.config.empty()) operations(speed.rollout.p50);
+                 yardstick.p50, rollout.p50, yardstick.p50 / rollout.p50, yardstick.min / rollout.min);
+    if (arguments_.config.empty()) operations(rollout.p50);
     std::fprintf(words_, "\n");
   }
 
-  /// The rate of the fixed workload, whose operations are known.
+  /// Prints the rate of the fixed workload, whose operations are known.
   void operations(double ns_per_step) {
     const double peak = workload::measured_peak_gflops(target_),
                  rate = workload::operations_per_step / ns_per_step;
@@ -131,21 +128,18 @@ class Bench {
     std::fprintf(words_, "; %.0f GFLOP/s, %.0f %% of this core's %.0f", rate, 100 * rate / peak, peak);
   }
 
-  /// Rollouts of each vehicle model over plans as long as those of the configuration `default`, alternately.
+  /// Measures rollouts of each vehicle model over plans as long as those of the configuration `default`,
+  /// alternately.
   void vehicle_models() {
-    constexpr int samples = 2000, steps = 20;
-    const std::vector<ComparedModel> compared = compared_models();
-    std::vector<vehicle::VehicleOptions> options;
-    for (const ComparedModel& each : compared) options.push_back(each.options);
     const auto times =
-        workload::measure_alternately(workload_, options, samples, steps, target_, arguments_.seconds);
+        workload::measure_rollouts(workload_, models_to_compare(), 2000, 20, target_, arguments_.seconds)
+            .rollouts;
     std::fprintf(words_, "vehicle models, measured alternately, ns a step (times the first):");
     for (std::size_t i = 0; i < times.size(); ++i) {
       const double ratio = times[i].p50 / times.front().p50;
       json_["vehicle_models"].push_back(
-          {{"model", compared[i].name}, {"rollout_ns_per_step", times[i].p50}, {"times_the_first", ratio}});
-      std::fprintf(words_, "%s %s %.3f (%.2f)", i > 0 ? ";" : "", compared[i].name.c_str(), times[i].p50,
-                   ratio);
+          {{"model", compared_models[i]}, {"rollout_ns_per_step", times[i].p50}, {"times_the_first", ratio}});
+      std::fprintf(words_, "%s %s %.3f (%.2f)", i > 0 ? ";" : "", compared_models[i], times[i].p50, ratio);
     }
     std::fprintf(words_, "\n");
   }
@@ -176,46 +170,39 @@ class Bench {
                  speed.tick.p99, speed.round_solver.p50);
   }
 
-  workload::SolveSpeed solve(const char* name, int samples, int threads, int horizon = 0) {
-    for (const SolverOptions& options : configuration_.methods) {
-      if (std::string(solver_name(options)) == name)
+  /// The median time of a solve of one of the configuration's methods, ms.
+  double solve_time(const std::string& name, int samples, int threads, int horizon = 0) {
+    for (const SolverOptions& options : configuration_.methods)
+      if (solver_name(options) == name)
         return workload::measure_solve(workload_, configuration_.vehicle,
-                                       with(options, samples, threads, horizon), 0.1 * arguments_.seconds);
-    }
-    throw std::invalid_argument(std::string("no method ") + name);
+                                       with(options, samples, threads, horizon), 0.1 * arguments_.seconds)
+            .solve.p50;
+    throw std::invalid_argument("no method " + name);
   }
 
   void scaling() {
     Json& json = json_["scaling"];
-    for (const char* name : {"mppi", "svg_mppi"}) {
-      for (int log2 = 7; log2 <= 17; ++log2) {
-        const workload::SolveSpeed s = solve(name, 1 << log2, 1);
-        json["samples"][name].push_back({{"samples", 1 << log2}, {"solve_ms", s.solve.p50}});
-        std::fprintf(words_, "%-9s K %6d  %9.3f ms\n", name, 1 << log2, s.solve.p50);
-      }
-    }
-    for (int horizon = 7; horizon <= 112; horizon *= 2) {
-      const workload::SolveSpeed s = solve("svg_mppi", 0, 1, horizon);
-      json["horizon"].push_back({{"steps", horizon}, {"solve_ms", s.solve.p50}});
-      std::fprintf(words_, "svg_mppi  T %6d  %9.3f ms\n", horizon, s.solve.p50);
-    }
+    const auto tell = [&](Json& list, const char* method, const char* of, int value, double time) {
+      list.push_back({{of, value}, {"solve_ms", time}});
+      std::fprintf(words_, "%-9s %-8s %6d  %9.3f ms\n", method, of, value, time);
+    };
+    for (const char* name : {"mppi", "svg_mppi"})
+      for (int samples = 128; samples <= 131072; samples *= 2)
+        tell(json["samples"][name], name, "samples", samples, solve_time(name, samples, 1));
+    for (int steps = 7; steps <= 112; steps *= 2)
+      tell(json["horizon"], "svg_mppi", "steps", steps, solve_time("svg_mppi", 0, 1, steps));
     const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    for (int threads = 1; threads <= cores; threads *= 2) {
-      const workload::SolveSpeed s = solve("svg_mppi", 0, threads);
-      json["threads"].push_back({{"threads", threads}, {"solve_ms", s.solve.p50}});
-      std::fprintf(words_, "svg_mppi  threads %d  %6.3f ms\n", threads, s.solve.p50);
-    }
+    for (int threads = 1; threads <= cores; threads *= 2)
+      tell(json["threads"], "svg_mppi", "threads", threads, solve_time("svg_mppi", 0, threads));
     for (const simd::Target target :
          {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
       if (!simd::supported(target)) continue;
-      const workload::RolloutSpeed s =
-          workload::measure_rollouts(workload_, configuration_.vehicle, 8000,
-                                     workload::ReferenceWorkload::steps, target, 0.2 * arguments_.seconds);
+      const auto [yardstick, rollout] = measured(target, 0.2 * arguments_.seconds);
       json["targets"].push_back({{"target", simd::name(target)},
-                                 {"rollout_ns_per_step", s.rollout.p50},
-                                 {"yardstick_ns_per_step", s.yardstick.p50}});
+                                 {"rollout_ns_per_step", rollout.p50},
+                                 {"yardstick_ns_per_step", yardstick.p50}});
       std::fprintf(words_, "rollouts  %-8s %6.3f ns a step, %.1f times the yardstick\n", simd::name(target),
-                   s.rollout.p50, s.yardstick.p50 / s.rollout.p50);
+                   rollout.p50, yardstick.p50 / rollout.p50);
     }
   }
 

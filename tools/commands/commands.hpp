@@ -1,10 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "tools/command_line/command.hpp"
 
-/// The sub-commands of the program. `declare_<name>` is in `<name>_command.cpp`.
+/// The sub-commands of the program. tools/main.cpp lists them; `declare_<name>` is in `<name>_command.cpp`.
 namespace slalom::tools {
 
 void declare_bench(Subcommand& command);
@@ -21,8 +19,5 @@ void declare_replay(Subcommand& command);
 void declare_reproduce(Subcommand& command);
 void declare_track(Subcommand& command);
 void declare_view(Subcommand& command);
-
-/// All of them, in alphabetical order.
-const std::vector<CommandEntry>& all_commands();
 
 }  // namespace slalom::tools

@@ -23,13 +23,23 @@ struct IdentifyArguments {
   vehicle::IdentificationOptions options;
 };
 
-void print(std::FILE* out, const char* name, const Identified& value, const char* unit) {
-  std::fprintf(out, "%-20s %9.4f %-6s", name, value.value, unit);
-  if (value.deviation > 0)
-    std::fprintf(out, " +- %.4f", value.deviation);
-  else
-    std::fprintf(out, " (given)");
-  std::fprintf(out, "\n");
+/// An estimate with its names in words and in JSON.
+struct Estimate {
+  const char *words, *key;
+  const Identified& value;
+  const char* unit;
+};
+
+/// Prints estimates and adds them to the JSON.
+void tell(std::FILE* out, Json& json, std::initializer_list<Estimate> estimates) {
+  for (const auto& [words, key, estimate, unit] : estimates) {
+    std::fprintf(out, "%-20s %9.4f %-6s", words, estimate.value, unit);
+    if (estimate.deviation > 0)
+      std::fprintf(out, " +- %.4f\n", estimate.deviation);
+    else
+      std::fprintf(out, " (given)\n");
+    json[key] = {{"value", estimate.value}, {"deviation", estimate.deviation}};
+  }
 }
 
 /// Prints the lines for a configuration file.
@@ -52,38 +62,28 @@ void advise(std::FILE* out, const Identification& found) {
   std::fprintf(out, "planner:\n  observer_time_constant: %.3f\n", found.time_constant.value);
 }
 
-Json pair_json(const Identified& value) {
-  return {{"value", value.value}, {"deviation", value.deviation}};
-}
-
-/// Steering, delay and wheelbase of a car whose tyres hardly slip.
+/// Estimates steering, delay and wheelbase of a car whose tyres hardly slip.
 Json identify_steering(std::FILE* out, std::span<const vehicle::DrivenSample> samples,
                        const vehicle::IdentificationOptions& options) {
   const Identification found = vehicle::identify(samples, options);
   std::fprintf(out, "%d of %zu samples; %.1f %% of the yaw rate explained, residual %.3f rad/s\n\n",
                found.samples, samples.size(), 100 * found.explained, found.residual);
-  print(out, "steering gain", found.steering_gain, "");
-  print(out, "steering offset", found.steering_offset, "rad");
-  print(out, "delay", found.delay, "s");
-  print(out, "time constant", found.time_constant, "s");
-  print(out, "wheelbase", found.wheelbase, "m");
-  print(out, "understeer", found.understeer, "s^2/m");
+  Json json{{"samples", found.samples}, {"explained", found.explained}, {"residual", found.residual}};
+  tell(out, json,
+       {{"steering gain", "steering_gain", found.steering_gain, ""},
+        {"steering offset", "steering_offset", found.steering_offset, "rad"},
+        {"delay", "delay", found.delay, "s"},
+        {"time constant", "time_constant", found.time_constant, "s"},
+        {"wheelbase", "wheelbase", found.wheelbase, "m"},
+        {"understeer", "understeer", found.understeer, "s^2/m"}});
   std::fprintf(out, "%-20s %9.4f        (distance from the poses / distance from the speed)\n\n",
                "speed scale", found.speed_scale);
   advise(out, found);
-  return {{"samples", found.samples},
-          {"explained", found.explained},
-          {"residual", found.residual},
-          {"steering_gain", pair_json(found.steering_gain)},
-          {"steering_offset", pair_json(found.steering_offset)},
-          {"delay", pair_json(found.delay)},
-          {"time_constant", pair_json(found.time_constant)},
-          {"wheelbase", pair_json(found.wheelbase)},
-          {"understeer", pair_json(found.understeer)},
-          {"speed_scale", found.speed_scale}};
+  json["speed_scale"] = found.speed_scale;
+  return json;
 }
 
-/// Tyres, friction and steering of a car whose tyres slip; its geometry and mass are those of a
+/// Estimates tyres, friction and steering of a car whose tyres slip; its geometry and mass are those of a
 /// configuration.
 Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> samples,
                     const IdentifyArguments& arguments) {
@@ -97,13 +97,18 @@ Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> sampl
       "%d windows of 0.2 s; residuals %.4f rad and %.4f m sideways; up to %.0f %% of the grip used to "
       "turn\n\n",
       found.windows, found.yaw_residual, found.sideways_residual, 100 * found.grip_used);
-  print(out, "friction", found.friction, "");
-  print(out, "cornering, front", found.cornering_front, "1/rad");
-  print(out, "cornering, rear", found.cornering_rear, "1/rad");
-  print(out, "steering gain", found.steering_gain, "");
-  print(out, "steering offset", found.steering_offset, "rad");
-  print(out, "delay", found.delay, "s");
-  print(out, "time constant", found.time_constant, "s");
+  Json json{{"windows", found.windows},
+            {"yaw_residual", found.yaw_residual},
+            {"sideways_residual", found.sideways_residual},
+            {"grip_used", found.grip_used}};
+  tell(out, json,
+       {{"friction", "friction", found.friction, ""},
+        {"cornering, front", "cornering_front", found.cornering_front, "1/rad"},
+        {"cornering, rear", "cornering_rear", found.cornering_rear, "1/rad"},
+        {"steering gain", "steering_gain", found.steering_gain, ""},
+        {"steering offset", "steering_offset", found.steering_offset, "rad"},
+        {"delay", "delay", found.delay, "s"},
+        {"time constant", "time_constant", found.time_constant, "s"}});
   if (found.friction.deviation > 0.05 * found.friction.value)
     std::fprintf(
         out,
@@ -118,17 +123,7 @@ Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> sampl
                  "  steer_time_constant: %.3f\n  dead_time: %.3f\n",
                  found.friction.value, found.cornering_front.value, found.cornering_rear.value,
                  found.time_constant.value, found.delay.value);
-  return {{"windows", found.windows},
-          {"yaw_residual", found.yaw_residual},
-          {"sideways_residual", found.sideways_residual},
-          {"grip_used", found.grip_used},
-          {"friction", pair_json(found.friction)},
-          {"cornering_front", pair_json(found.cornering_front)},
-          {"cornering_rear", pair_json(found.cornering_rear)},
-          {"steering_gain", pair_json(found.steering_gain)},
-          {"steering_offset", pair_json(found.steering_offset)},
-          {"delay", pair_json(found.delay)},
-          {"time_constant", pair_json(found.time_constant)}};
+  return json;
 }
 
 int identify(const IdentifyArguments& arguments) {

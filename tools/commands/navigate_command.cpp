@@ -21,7 +21,8 @@ using evaluation::RoomDriver;
 using evaluation::RoomScenario;
 
 struct NavigateArguments {
-  std::string scenario = "all", methods = "svg_mppi,mppi", json, table, pictures;
+  std::string scenario = "all", json, table, pictures;
+  std::vector<std::string> methods{"svg_mppi", "mppi"};
   int seeds = 5, threads = 1;
   std::uint64_t first_seed = 1;
   bool without_detours = false;
@@ -59,13 +60,10 @@ RoomDriver driver_of(const NamedDriver& named, const RoomScenario& scenario) {
 
 std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
   std::vector<NamedDriver> drivers;
-  std::string rest = arguments.methods + ",";
-  for (std::size_t comma; (comma = rest.find(',')) != std::string::npos; rest.erase(0, comma + 1)) {
-    const std::string method = rest.substr(0, comma);
-    const auto known = solver_names();
-    if (std::find(known.begin(), known.end(), method) == known.end())
-      throw CommandLineError("--methods", method, "must be one of " + method_names());
-    if (std::any_of(drivers.begin(), drivers.end(), [&](const auto& each) { return each.method == method; }))
+  const auto& methods = arguments.methods;
+  for (const std::string& method : methods) {
+    for_option("--methods", [&] { return solver_options(method); });
+    if (std::count(methods.begin(), methods.end(), method) > 1)
       throw CommandLineError("--methods", method, "is given twice");
     drivers.push_back({method, method, true});
     if (arguments.without_detours) drivers.push_back({method + " alone", method, false});
@@ -134,7 +132,8 @@ void declare_navigate(Subcommand& command) {
   command.summary("Drive a mobile robot through rooms, with several methods on the same seeds");
   const auto arguments = std::make_shared<NavigateArguments>();
   command.option("--scenario", arguments->scenario, "Name of a scenario, or all");
-  command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names());
+  command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names())
+      .comma_separated();
   command.flag("--without-detours", arguments->without_detours,
                "Also drive with each method without the search for detours");
   command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario",

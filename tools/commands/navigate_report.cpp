@@ -22,23 +22,24 @@ Drives drives_of(const RoomSeries& series) {
   return drives;
 }
 
-double time_of(const RoomDrive& d) {
-  return d.time;
+/// A figure of a drive, with its heading in tables, its key in JSON, and the decimals of a difference.
+struct Figure {
+  const char *heading, *key;
+  int digits;
+  double (*value)(const RoomDrive&);
+};
+
+constexpr Figure figures[] = {
+    {"time, s", "time_s", 1, [](const RoomDrive& d) { return d.time; }},
+    {"length, m", "length_m", 1, [](const RoomDrive& d) { return d.length; }},
+    {"changes of side", "side_changes", 2, [](const RoomDrive& d) { return double(d.side_changes); }},
+    {"reversals", "reversals", 2, [](const RoomDrive& d) { return double(d.reversals); }}};
+
+double success_of(const RoomDrive& drive) {
+  return drive.success;
 }
-double length_of(const RoomDrive& d) {
-  return d.length;
-}
-double sides_of(const RoomDrive& d) {
-  return d.side_changes;
-}
-double reversals_of(const RoomDrive& d) {
-  return d.reversals;
-}
-double collisions_of(const RoomDrive& d) {
-  return collided(d);
-}
-double successes_of(const RoomDrive& d) {
-  return d.success;
+double collision_of(const RoomDrive& drive) {
+  return collided(drive);
 }
 
 std::vector<double> values_of(const Drives& drives, double (*value)(const RoomDrive&)) {
@@ -50,11 +51,6 @@ std::vector<double> values_of(const Drives& drives, double (*value)(const RoomDr
 int count_of(const Drives& drives, double (*value)(const RoomDrive&)) {
   return static_cast<int>(
       std::count_if(drives.begin(), drives.end(), [&](const RoomDrive* each) { return value(*each) > 0; }));
-}
-
-Json mean_of(const std::vector<double>& values) {
-  const Interval interval = evaluation::bootstrap_mean(values);
-  return {{"mean", evaluation::mean(values)}, {"low", interval.low}, {"high", interval.high}};
 }
 
 std::string text_of(double value, int digits) {
@@ -71,31 +67,29 @@ std::string mean_text(const std::vector<double>& values, int digits = 1) {
          text_of(interval.high, digits) + "]";
 }
 
-/// "n of m (low to high %)", with the 95 % Wilson interval.
-std::string rate_text(int count, std::size_t drives) {
-  const Interval interval = evaluation::wilson_interval(count, static_cast<std::int64_t>(drives));
-  return std::to_string(count) + " of " + std::to_string(drives) + " (" + text_of(100 * interval.low, 0) +
-         " to " + text_of(100 * interval.high, 0) + " %)";
-}
-
+/// A row of a table: scenario, driver, "n of m (low to high %)" with the 95 % Wilson interval, collisions,
+/// and the means of the figures.
 std::string markdown_row(const std::string& scenario, const std::string& driver, const Drives& drives) {
-  return "| " + scenario + " | " + driver + " | " + rate_text(count_of(drives, successes_of), drives.size()) +
-         " | " + std::to_string(count_of(drives, collisions_of)) + " | " +
-         mean_text(values_of(drives, time_of)) + " | " + mean_text(values_of(drives, length_of)) + " | " +
-         mean_text(values_of(drives, sides_of)) + " | " + mean_text(values_of(drives, reversals_of)) + " |\n";
+  const int successes = count_of(drives, success_of);
+  const Interval rate = evaluation::wilson_interval(successes, static_cast<std::int64_t>(drives.size()));
+  std::string row = "| " + scenario + " | " + driver + " | " + std::to_string(successes) + " of " +
+                    std::to_string(drives.size()) + " (" + text_of(100 * rate.low, 0) + " to " +
+                    text_of(100 * rate.high, 0) + " %) | " + std::to_string(count_of(drives, collision_of));
+  for (const Figure& figure : figures) row += " | " + mean_text(values_of(drives, figure.value));
+  return row + " |\n";
 }
 
 /// The means of the first driver minus those of another, drive by drive.
 std::string difference_row(const std::string& driver, const Drives& first, const Drives& other) {
-  const auto difference = [&](double (*value)(const RoomDrive&), int digits = 1) {
+  const auto difference = [&](double (*value)(const RoomDrive&), int digits) {
     std::vector<double> values;
     for (std::size_t i = 0; i < std::min(first.size(), other.size()); ++i)
       values.push_back(value(*first[i]) - value(*other[i]));
-    return mean_text(values, digits);
+    return " | " + mean_text(values, digits);
   };
-  return "| all | " + driver + " | " + difference(successes_of, 3) + " | " + difference(collisions_of, 3) +
-         " | " + difference(time_of) + " | " + difference(length_of) + " | " + difference(sides_of, 2) +
-         " | " + difference(reversals_of, 2) + " |\n";
+  std::string row = "| all | " + driver + difference(success_of, 3) + difference(collision_of, 3);
+  for (const Figure& figure : figures) row += difference(figure.value, figure.digits);
+  return row + " |\n";
 }
 
 }  // namespace
@@ -120,27 +114,30 @@ Json summary_of(const RoomSeries& series) {
                        {"update_max_ms", 1e3 * d.update_max}});
   }
   const Drives drives = drives_of(series);
-  const int successes = count_of(drives, successes_of);
+  const int successes = count_of(drives, success_of);
   const auto count = static_cast<std::int64_t>(drives.size());
-  const Interval interval = evaluation::wilson_interval(successes, count);
-  return {{"scenario", series.scenario->name},
-          {"driver", series.driver},
-          {"drives", count},
-          {"successes", successes},
-          {"success_rate", {{"low", interval.low}, {"high", interval.high}}},
-          {"collisions", count_of(drives, collisions_of)},
-          {"time_s", mean_of(values_of(drives, time_of))},
-          {"length_m", mean_of(values_of(drives, length_of))},
-          {"side_changes", mean_of(values_of(drives, sides_of))},
-          {"reversals", mean_of(values_of(drives, reversals_of))},
-          {"update_max_ms", 1e3 * slowest},
-          {"by_seed", by_seed}};
+  const Interval rate = evaluation::wilson_interval(successes, count);
+  Json summary{{"scenario", series.scenario->name},
+               {"driver", series.driver},
+               {"drives", count},
+               {"successes", successes},
+               {"success_rate", {{"low", rate.low}, {"high", rate.high}}},
+               {"collisions", count_of(drives, collision_of)}};
+  for (const Figure& figure : figures) {
+    const std::vector<double> values = values_of(drives, figure.value);
+    const Interval interval = evaluation::bootstrap_mean(values);
+    summary[figure.key] = {
+        {"mean", evaluation::mean(values)}, {"low", interval.low}, {"high", interval.high}};
+  }
+  summary["update_max_ms"] = 1e3 * slowest;
+  summary["by_seed"] = by_seed;
+  return summary;
 }
 
 std::string markdown_table(const std::vector<RoomSeries>& all) {
-  std::string text =
-      "| scenario | driver | success | collisions | time, s | length, m | changes of side | reversals |\n"
-      "|---|---|---|---|---|---|---|---|\n";
+  std::string text = "| scenario | driver | success | collisions";
+  for (const Figure& figure : figures) text += std::string(" | ") + figure.heading;
+  text += " |\n|---|---|---|---|---|---|---|---|\n";
   std::vector<std::pair<std::string, Drives>> drivers;
   for (const RoomSeries& series : all) {
     const Drives drives = drives_of(series);

@@ -3,7 +3,6 @@
 
 #include "slalom/core/version.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/live_view/view_evaluation.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"

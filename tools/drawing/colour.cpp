@@ -1,7 +1,6 @@
 #include "tools/drawing/colour.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -26,16 +25,16 @@ Colour mixed(Colour a, Colour b, double share) {
           a.blue + share * (b.blue - a.blue), a.opacity + share * (b.opacity - a.opacity)};
 }
 
-Colour speed_colour(double value) {
-  static const std::array<Colour, 6> stops = {{{0.16, 0.22, 0.62},
-                                               {0.08, 0.47, 0.76},
-                                               {0.05, 0.64, 0.55},
-                                               {0.55, 0.74, 0.20},
-                                               {0.96, 0.66, 0.11},
-                                               {0.86, 0.19, 0.18}}};
-  const double at = std::clamp(value, 0.0, 1.0) * (stops.size() - 1);
+Colour scale_colour(std::span<const Colour> stops, double value) {
+  const double at = std::clamp(value, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(at), stops.size() - 2);
   return mixed(stops[i], stops[i + 1], at - static_cast<double>(i));
+}
+
+Colour speed_colour(double value) {
+  static constexpr Colour stops[] = {{0.16, 0.22, 0.62}, {0.08, 0.47, 0.76}, {0.05, 0.64, 0.55},
+                                     {0.55, 0.74, 0.20}, {0.96, 0.66, 0.11}, {0.86, 0.19, 0.18}};
+  return scale_colour(stops, value);
 }
 
 }  // namespace slalom::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 
 namespace slalom::tools {
@@ -20,6 +21,9 @@ Colour method_colour(std::string_view name);
 
 /// `a` at share 0, `b` at share 1, linear between them.
 Colour mixed(Colour a, Colour b, double share);
+
+/// The colour of a value in [0, 1] on a scale through `stops` at equal distances.
+Colour scale_colour(std::span<const Colour> stops, double value);
 
 /// The colour of a value in [0, 1] on a scale from slow (blue) over green to fast (red), with a lightness
 /// that can be read on white.

@@ -17,39 +17,31 @@ void Pen::set(Colour colour) {
   cairo_set_source_rgba(cairo_, colour.red, colour.green, colour.blue, colour.opacity);
 }
 
-void Pen::line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed) {
-  const double dash[] = {4, 4};
-  cairo_set_dash(cairo_, dash, dashed ? 2 : 0, 0);
-  cairo_move_to(cairo_, x0, y0);
-  cairo_line_to(cairo_, x1, y1);
-  cairo_set_line_width(cairo_, width);
-  set(colour);
-  cairo_stroke(cairo_);
-}
-
-void Pen::box(double x, double y, double width, double height, Colour fill, Colour rim, double rim_width,
-              double radius) {
-  const double r = std::min({radius, 0.5 * width, 0.5 * height}), turn = 1.5707963267948966;
-  cairo_new_sub_path(cairo_);
-  cairo_arc(cairo_, x + width - r, y + r, r, -turn, 0);
-  cairo_arc(cairo_, x + width - r, y + height - r, r, 0, turn);
-  cairo_arc(cairo_, x + r, y + height - r, r, turn, 2 * turn);
-  cairo_arc(cairo_, x + r, y + r, r, 2 * turn, 3 * turn);
-  cairo_close_path(cairo_);
+void Pen::paint(Colour fill, Colour rim, double rim_width) {
   set(fill);
   cairo_fill_preserve(cairo_);
-  if (rim_width > 0) {
-    cairo_set_dash(cairo_, nullptr, 0, 0);
-    cairo_set_line_width(cairo_, rim_width);
-    set(rim);
-    cairo_stroke_preserve(cairo_);
-  }
+  if (rim_width > 0) outline({.colour = rim, .width = rim_width});
   cairo_new_path(cairo_);
 }
 
-void Pen::trace(const Points& points) {
+void Pen::outline(const Stroke& line) {
+  const double dash[] = {line.dash, line.dash};
+  cairo_set_dash(cairo_, dash, line.dash > 0 ? 2 : 0, 0);
+  cairo_set_line_width(cairo_, line.width);
+  cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(cairo_, line.round_caps ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+  set(line.colour);
+  cairo_stroke_preserve(cairo_);
+}
+
+void Pen::trace(const Points& points, bool closed) {
   cairo_new_path(cairo_);
   for (const auto& [x, y] : points) cairo_line_to(cairo_, x, y);
+  if (closed) cairo_close_path(cairo_);
+}
+
+void Pen::line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed) {
+  stroke({{x0, y0}, {x1, y1}}, {.colour = colour, .width = width, .dash = dashed ? 4.0 : 0.0});
 }
 
 void Pen::path(const Points& points, Colour colour, double width) {
@@ -57,35 +49,40 @@ void Pen::path(const Points& points, Colour colour, double width) {
 }
 
 void Pen::stroke(const Points& points, const Stroke& line, bool closed) {
-  trace(points);
-  if (closed) cairo_close_path(cairo_);
-  const double dash[] = {line.dash, line.dash};
-  cairo_set_dash(cairo_, dash, line.dash > 0 ? 2 : 0, 0);
-  cairo_set_line_width(cairo_, line.width);
-  cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(cairo_, line.round_caps ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
-  set(line.colour);
-  cairo_stroke(cairo_);
-  cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_BUTT);
-}
-
-void Pen::area(const Points& points, Colour fill) {
-  trace(points);
-  cairo_close_path(cairo_);
-  set(fill);
-  cairo_fill(cairo_);
+  trace(points, closed);
+  outline(line);
+  cairo_new_path(cairo_);
 }
 
 void Pen::area(const Points& points, Colour fill, Colour rim, double rim_width) {
-  area(points, fill);
-  stroke(points, {.colour = rim, .width = rim_width}, true);
+  trace(points, true);
+  paint(fill, rim, rim_width);
 }
 
 void Pen::rectangle(double x, double y, double width, double height, Colour fill) {
+  area({{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}}, fill);
+}
+
+void Pen::box(double x, double y, double width, double height, Colour fill, Colour rim, double rim_width,
+              double radius) {
+  const double r = std::min({radius, 0.5 * width, 0.5 * height}), turn = 0.25 * full_turn;
+  cairo_new_sub_path(cairo_);
+  cairo_arc(cairo_, x + width - r, y + r, r, -turn, 0);
+  cairo_arc(cairo_, x + width - r, y + height - r, r, 0, turn);
+  cairo_arc(cairo_, x + r, y + height - r, r, turn, 2 * turn);
+  cairo_arc(cairo_, x + r, y + r, r, 2 * turn, 3 * turn);
+  cairo_close_path(cairo_);
+  paint(fill, rim, rim_width);
+}
+
+void Pen::disc(double x, double y, double radius, Colour fill, Colour rim, double rim_width) {
   cairo_new_path(cairo_);
-  cairo_rectangle(cairo_, x, y, width, height);
-  set(fill);
-  cairo_fill(cairo_);
+  cairo_arc(cairo_, x, y, radius, 0, full_turn);
+  paint(fill, rim, rim_width);
+}
+
+void Pen::diamond(double x, double y, double radius, Colour fill, Colour rim) {
+  area({{x - radius, y}, {x, y - radius}, {x + radius, y}, {x, y + radius}}, fill, rim, 1.2);
 }
 
 void Pen::fill_surface(Colour colour) {
@@ -119,38 +116,6 @@ void Pen::clip(double x, double y, double width, double height) {
 
 void Pen::unclip() {
   cairo_restore(cairo_);
-}
-
-void Pen::disc(double x, double y, double radius, Colour fill) {
-  disc(x, y, radius, fill, {}, 0);
-}
-
-void Pen::disc(double x, double y, double radius, Colour fill, Colour rim, double rim_width) {
-  cairo_new_path(cairo_);
-  cairo_arc(cairo_, x, y, radius, 0, full_turn);
-  set(fill);
-  cairo_fill_preserve(cairo_);
-  if (rim_width > 0) {
-    cairo_set_dash(cairo_, nullptr, 0, 0);
-    cairo_set_line_width(cairo_, rim_width);
-    set(rim);
-    cairo_stroke_preserve(cairo_);
-  }
-  cairo_new_path(cairo_);
-}
-
-void Pen::diamond(double x, double y, double radius, Colour fill, Colour rim) {
-  cairo_move_to(cairo_, x - radius, y);
-  cairo_line_to(cairo_, x, y - radius);
-  cairo_line_to(cairo_, x + radius, y);
-  cairo_line_to(cairo_, x, y + radius);
-  cairo_close_path(cairo_);
-  set(fill);
-  cairo_fill_preserve(cairo_);
-  set(rim);
-  cairo_set_dash(cairo_, nullptr, 0, 0);
-  cairo_set_line_width(cairo_, 1.2);
-  cairo_stroke(cairo_);
 }
 
 void Pen::set_font(double size, bool bold) {

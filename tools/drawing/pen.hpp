@@ -32,27 +32,25 @@ class Pen {
   void line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed = false);
   /// A line through points, with round corners.
   void path(const Points& points, Colour colour, double width);
-  /// The same with any kind of line; `closed`: back to the first point.
+  /// A line of any style through points, with round corners; `closed`: back to the first point.
   void stroke(const Points& points, const Stroke& line, bool closed = false);
+  // Shapes have a rim only where `rim_width` > 0.
   /// The area that points enclose.
-  void area(const Points& points, Colour fill);
-  /// The same with a rim that has round corners.
-  void area(const Points& points, Colour fill, Colour rim, double rim_width);
+  void area(const Points& points, Colour fill, Colour rim = {}, double rim_width = 0);
   void rectangle(double x, double y, double width, double height, Colour fill);
-  /// A rectangle with rounded corners; a rim only where `rim_width` > 0.
+  /// A rectangle with rounded corners.
   void box(double x, double y, double width, double height, Colour fill, Colour rim = {},
            double rim_width = 0, double radius = 2);
-  void disc(double x, double y, double radius, Colour fill);
-  void disc(double x, double y, double radius, Colour fill, Colour rim, double rim_width);
+  void disc(double x, double y, double radius, Colour fill, Colour rim = {}, double rim_width = 0);
   void diamond(double x, double y, double radius, Colour fill, Colour rim);
-  /// `align`: 0 begins at x, 0.5 is centred, 1 ends there.
+  /// A text that begins at x (`align` 0), is centred there (0.5), or ends there (1).
   void text(double x, double y, double size, const std::string& words, Colour colour, double align = 0,
             bool bold = false);
-  /// How far a text advances.
+  /// The width of a text.
   double text_width(const std::string& words, double size, bool bold = false);
   /// Pixels 0xAARRGGBB, row by row, `width` of them in a row, with the upper left corner at the origin.
   void image(const std::vector<std::uint32_t>& pixels, int width);
-  /// Copies what another surface shows, with its upper left corner at the origin.
+  /// Copies the picture of another surface, with its upper left corner at the origin.
   void show(_cairo_surface* surface);
   void fill_surface(Colour colour);
   /// Draws within a rectangle alone, until `unclip`.
@@ -61,7 +59,12 @@ class Pen {
 
  private:
   void set(Colour colour);
-  void trace(const Points& points);
+  /// Begins a path through points.
+  void trace(const Points& points, bool closed);
+  /// Draws a line along the path.
+  void outline(const Stroke& line);
+  /// Fills the path, draws its rim, and ends it.
+  void paint(Colour fill, Colour rim, double rim_width);
   void set_font(double size, bool bold);
 
   _cairo* cairo_;

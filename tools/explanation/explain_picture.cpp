@@ -25,16 +25,13 @@ std::string number(const char* form, double value) {
   return text;
 }
 
-/// From cheap (deep green) over yellow to dear (pale).
+/// The colour of a sample, from cheap (deep green) over yellow to expensive (pale).
 Colour cost_colour(double share, double opacity) {
-  const Colour stops[] = {
-      {0.02, 0.36, 0.36, 1}, {0.12, 0.62, 0.44, 1}, {0.68, 0.80, 0.36, 1}, {0.93, 0.88, 0.58, 1}};
-  const double at = std::clamp(share, 0.0, 1.0) * 3;
-  const int i = std::min(2, static_cast<int>(at));
-  const double part = at - i;
-  const auto mix = [&](double a, double b) { return a + part * (b - a); };
-  const Colour &a = stops[i], &b = stops[i + 1];
-  return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), opacity};
+  static constexpr Colour stops[] = {
+      {0.02, 0.36, 0.36}, {0.12, 0.62, 0.44}, {0.68, 0.80, 0.36}, {0.93, 0.88, 0.58}};
+  Colour colour = scale_colour(stops, share);
+  colour.opacity = opacity;
+  return colour;
 }
 
 /// One method's part of the picture.

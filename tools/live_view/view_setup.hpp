@@ -5,6 +5,7 @@
 #include "tools/scenario/scenario.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
+#include "view/session/session.hpp"
 
 /// The description of a scenario in the live view and in recordings.
 namespace slalom::tools {
@@ -20,5 +21,9 @@ std::string further_arguments(const ScenarioArguments& arguments);
 view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token);
 /// Prints the address of the page.
 void print_address(const view::Server& server, const view::ServerOptions& options);
+
+/// Makes the live view show an evaluation: its laps and collisions, each of which can be repeated. Throws
+/// IoError.
+void open_evaluation(const std::string& folder, view::SessionOptions& options);
 
 }  // namespace slalom::tools
