@@ -39,7 +39,7 @@ struct Parking {
   T terminal_cost(const State<T>& s) const {
     return T(6) * offset(s);
   }
-  /// How far from parked it is: distance, and m per rad.
+  /// The distance from the goal, with 2 m for each squared radian of the yaw angle.
   template <class T>
   T offset(const State<T>& s) const {
     return sqrt(square(s.x - T(goal_x)) + square(s.y - T(goal_y)) + T(1e-4)) + T(2) * square(s.yaw);

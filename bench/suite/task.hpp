@@ -14,7 +14,7 @@
 /// Control problems with a criterion of success, solved in closed loop by any method.
 namespace slalom::suite {
 
-/// What a state of a closed loop means.
+/// The verdict on a state of a closed loop.
 enum class Verdict { running, failed, solved };
 
 /// The outcome of some runs.

@@ -1,27 +1,22 @@
 // `slalom explain`: a picture and figures of every method, and mistakes named in words.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "support/temporary_folder.hpp"
-#include "tools/program.hpp"
+#include "tools/program_test.hpp"
 
 namespace slalom::tools {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::run_program;
 
-TEST(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
-  const testing::ScopedFolder scoped;
-  const fs::path& folder = scoped.path();
-  const auto run =
-      run_program("explain --method all --seed 3 --plot all.png --json all.json", folder.string());
+class ExplainCommand : public testing::ProgramTest {};
+
+TEST_F(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
+  const auto run = program("explain --method all --seed 3 --plot all.png --json all.json");
   ASSERT_EQ(run.status, 0) << run.output;
-  const json told = json::parse(std::ifstream(folder / "all.json"));
+  EXPECT_EQ(testing::content(folder_ / "all.png").rfind("\x89PNG\r\n\x1a\n", 0), 0u);
+  const json told = json::parse(testing::content(folder_ / "all.json"));
   ASSERT_EQ(told["methods"].size(), 9u);
   for (const json& method : told["methods"]) {
     EXPECT_EQ(method["inputs"].size(), 20u) << method["method"];
@@ -39,15 +34,11 @@ TEST(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
       EXPECT_EQ(method["guide_ways"][0].size(), 10u * 10u);
     }
   }
-  std::ifstream picture(folder / "all.png", std::ios::binary);
-  std::string signature(8, '\0');
-  picture.read(signature.data(), 8);
-  EXPECT_EQ(signature, "\x89PNG\r\n\x1a\n");
 }
 
-TEST(ExplainCommand, SetsOptionsOfMethodsAndProblem) {
-  const auto inputs = [](const std::string& more) {
-    const auto run = run_program("explain --method mppi --solves 1 --json - " + more);
+TEST_F(ExplainCommand, SetsOptionsOfMethodsAndProblem) {
+  const auto inputs = [&](const std::string& more) {
+    const auto run = program("explain --method mppi --solves 1 --json - " + more);
     EXPECT_EQ(run.status, 0) << run.output;
     return json::parse(run.output)["methods"][0];
   };
@@ -57,17 +48,12 @@ TEST(ExplainCommand, SetsOptionsOfMethodsAndProblem) {
   EXPECT_FALSE(inputs("--set problem.disc_radius=0")["collided"].get<bool>());
 }
 
-TEST(ExplainCommand, NamesMistakes) {
-  const auto refusal = [](const std::string& arguments) {
-    const auto run = run_program("explain " + arguments);
-    EXPECT_NE(run.status, 0) << arguments;
-    return run.output;
-  };
-  EXPECT_NE(refusal("--method newton").find("must be one of all, mppi"), std::string::npos);
-  EXPECT_NE(refusal("--set temprature=2").find("did you mean temperature?"), std::string::npos);
-  EXPECT_NE(refusal("--set samples=0").find("must be in"), std::string::npos);
-  EXPECT_NE(refusal("--set problem.radius=1").find("problem."), std::string::npos);
-  EXPECT_NE(refusal("--set samples").find("key=value"), std::string::npos);
+TEST_F(ExplainCommand, NamesMistakes) {
+  expect_refused("explain --method newton", {"must be one of all, mppi"});
+  expect_refused("explain --set temprature=2", {"did you mean temperature?"});
+  expect_refused("explain --set samples=0", {"must be in"});
+  expect_refused("explain --set problem.radius=1", {"problem."});
+  expect_refused("explain --set samples", {"key=value"});
 }
 
 }  // namespace

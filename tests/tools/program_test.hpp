@@ -1,14 +1,43 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <array>
+#include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "support/temporary_folder.hpp"
-#include "tools/program.hpp"
 
 namespace slalom::testing {
+
+/// The output of a run of the program, and its exit status.
+struct Run {
+  int status = -1;
+  std::string output;  ///< standard output and standard error
+};
+
+/// Runs what a shell makes of `words`, in `folder`.
+inline Run run_shell(const std::string& words, const std::string& folder = ".") {
+  const std::string command = "cd '" + folder + "' && ( " + words + " ) 2>&1";
+  // NOLINTNEXTLINE(cert-env33-c): the tests of the command line need a shell.
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) throw std::runtime_error("no shell");
+  Run run;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe))
+    run.output.append(buffer.data(), count);
+  const int ended = pclose(pipe);
+  run.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
+  return run;
+}
+
+/// Runs `slalom` with arguments as a shell reads them, in `folder`.
+inline Run run_program(const std::string& arguments, const std::string& folder = ".") {
+  return run_shell("'" SLALOM_PROGRAM "' " + arguments, folder);
+}
 
 /// Base of tests that run the program in a folder of their own.
 class ProgramTest : public TemporaryFolder {

@@ -35,28 +35,6 @@ bool contains(const Range& range, double value) {
   return value >= range.least && value <= range.most;
 }
 
-/// Declares an option. The parser converts its value only after this check.
-template <class T, class Stored>
-Option declare_number(CLI::App& parser, const std::string& name, Stored& value, const std::string& help,
-                      Range range = {}) {
-  constexpr bool is_whole = std::is_integral_v<T>;
-  if constexpr (std::is_unsigned_v<T>) range.least = 0;
-  if constexpr (sizeof(T) < sizeof(int)) range.most = std::numeric_limits<T>::max();
-  CLI::Option* parsed = parser.add_option(name, value, help);
-  parsed->type_name(is_whole ? "INT" : "NUMBER");
-  if constexpr (std::is_same_v<T, Stored>)
-    if (contains(range, static_cast<double>(value))) parsed->capture_default_str();
-  parsed->check([range](const std::string& text) {
-    T number{};
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, number);
-    const bool accepted =
-        read.ec == std::errc{} && read.ptr == end && contains(range, static_cast<double>(number));
-    return accepted ? "" : "'" + text + "' " + rule_text(is_whole, range);
-  });
-  return Option(parsed);
-}
-
 template <class T>
 Option declare_text(CLI::App& parser, const std::string& name, T& value, const std::string& help) {
   CLI::Option* parsed = parser.add_option(name, value, help);
@@ -109,26 +87,34 @@ Option Subcommand::option(const std::string& name, std::vector<std::string>& val
   return declare_text(parser_, name, value, help);
 }
 
-Option Subcommand::option(const std::string& name, int& value, const std::string& help, Range range) {
-  return declare_number<int>(parser_, name, value, help, range);
+template <class Number>
+Option Subcommand::option(const std::string& name, Number& value, const std::string& help, Range range) {
+  constexpr bool is_optional = std::is_same_v<Number, std::optional<double>>;
+  using Value = std::conditional_t<is_optional, double, Number>;
+  constexpr bool is_whole = std::is_integral_v<Value>;
+  if constexpr (std::is_unsigned_v<Value>) range.least = 0;
+  if constexpr (sizeof(Value) < sizeof(int)) range.most = std::numeric_limits<Value>::max();
+  CLI::Option* parsed = parser_.add_option(name, value, help);
+  parsed->type_name(is_whole ? "INT" : "NUMBER");
+  if constexpr (!is_optional)
+    if (contains(range, static_cast<double>(value))) parsed->capture_default_str();
+  // The parser converts the text only after this check.
+  parsed->check([range](const std::string& text) {
+    Value number{};
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, number);
+    const bool accepted =
+        read.ec == std::errc{} && read.ptr == end && contains(range, static_cast<double>(number));
+    return accepted ? "" : "'" + text + "' " + rule_text(is_whole, range);
+  });
+  return Option(parsed);
 }
 
-Option Subcommand::option(const std::string& name, std::uint16_t& value, const std::string& help) {
-  return declare_number<std::uint16_t>(parser_, name, value, help);
-}
-
-Option Subcommand::option(const std::string& name, std::uint64_t& value, const std::string& help) {
-  return declare_number<std::uint64_t>(parser_, name, value, help);
-}
-
-Option Subcommand::option(const std::string& name, double& value, const std::string& help, Range range) {
-  return declare_number<double>(parser_, name, value, help, range);
-}
-
-Option Subcommand::option(const std::string& name, std::optional<double>& value, const std::string& help,
-                          Range range) {
-  return declare_number<double>(parser_, name, value, help, range);
-}
+template Option Subcommand::option(const std::string&, int&, const std::string&, Range);
+template Option Subcommand::option(const std::string&, std::uint16_t&, const std::string&, Range);
+template Option Subcommand::option(const std::string&, std::uint64_t&, const std::string&, Range);
+template Option Subcommand::option(const std::string&, double&, const std::string&, Range);
+template Option Subcommand::option(const std::string&, std::optional<double>&, const std::string&, Range);
 
 Option Subcommand::flag(const std::string& name, bool& value, const std::string& help) {
   return Option(parser_.add_flag(name, value, help));

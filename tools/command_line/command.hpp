@@ -85,12 +85,9 @@ class Subcommand {
   /// the same words.
   Option option(const std::string& name, std::string& value, const std::string& help);
   Option option(const std::string& name, std::vector<std::string>& value, const std::string& help);
-  Option option(const std::string& name, int& value, const std::string& help, Range range = {});
-  Option option(const std::string& name, std::uint16_t& value, const std::string& help);
-  Option option(const std::string& name, std::uint64_t& value, const std::string& help);
-  Option option(const std::string& name, double& value, const std::string& help, Range range = {});
-  Option option(const std::string& name, std::optional<double>& value, const std::string& help,
-                Range range = {});
+  /// A number: int, std::uint16_t, std::uint64_t, double, or std::optional<double>.
+  template <class Number>
+  Option option(const std::string& name, Number& value, const std::string& help, Range range = {});
   /// Declares --json, the file to which the command writes `what`.
   Option json(std::string& file, const std::string& what);
   Option flag(const std::string& name, bool& value, const std::string& help);

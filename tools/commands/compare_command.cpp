@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -22,79 +24,47 @@ struct CompareArguments {
   std::string first, second, json;
 };
 
-/// An experiment with its laps, in their order.
-struct Side {
-  Experiment experiment;
-  std::vector<LapRow> rows;
-};
-
-Side side_of(const StoredEvaluation& stored, std::size_t experiment) {
-  Side side{stored.experiments[experiment], {}};
-  for (const LapRow& row : stored.rows)
-    if (row.experiment == static_cast<int>(experiment)) side.rows.push_back(row);
-  std::sort(side.rows.begin(), side.rows.end(),
-            [](const LapRow& a, const LapRow& b) { return a.lap < b.lap; });
-  return side;
-}
-
-/// An experiment of both evaluations.
+/// An experiment of both evaluations, and its laps in both: the row's experiment is 0 or 1.
 struct Match {
-  std::string place;  ///< the evaluation's name, where folders of several are compared
-  std::string name;
-  Side a, b;
-  ExperimentResult result_a = {}, result_b = {};
-  bool paired = false;  ///< lap k of both has the same seed: the same obstacles
+  std::string place;  ///< name of the evaluation, where folders of several are compared
+  std::vector<Experiment> experiments;
+  std::vector<LapRow> rows;
+  bool is_paired;  ///< lap k of both has the same seed: the same obstacles
+  std::vector<ExperimentResult> results = {};
   double ms_p = 1, success_p = 1, collision_p = 1;
+
+  std::string name() const {
+    const std::string first = experiments[0].label(), second = experiments[1].label();
+    return first == second ? first : first + " | " + second;
+  }
 };
 
-ExperimentResult result_of(const Side& side) {
-  std::vector<LapRow> rows = side.rows;
-  for (LapRow& row : rows) row.experiment = 0;
-  return summarise(rows, {side.experiment}).front();
-}
-
-Match match(const std::string& place, Side a, Side b, bool paired) {
-  const std::string label = a.experiment.label(), other = b.experiment.label();
-  Match m{.place = place,
-          .name = label == other ? label : label + " | " + other,
-          .a = std::move(a),
-          .b = std::move(b),
-          .paired = paired};
-  m.result_a = result_of(m.a);
-  m.result_b = result_of(m.b);
-  if (m.paired) {
-    std::vector<LapRow> both;
-    for (int experiment = 0; const Side* side : {&m.a, &m.b}) {
-      for (LapRow row : side->rows) {
-        row.experiment = experiment;
-        both.push_back(row);
-      }
-      ++experiment;
-    }
-    Experiment second = m.a.experiment;
-    second.laps = m.b.experiment.laps;
-    const PairedComparison c = compare_pairs(both, {m.a.experiment, second}).front();
+/// Compares the laps of a match.
+void evaluate(Match& m) {
+  std::stable_sort(m.rows.begin(), m.rows.end(),
+                   [](const LapRow& a, const LapRow& b) { return a.lap < b.lap; });
+  m.results = summarise(m.rows, m.experiments);
+  if (m.is_paired) {
+    Experiment second = m.experiments[0];
+    second.laps = m.experiments[1].laps;
+    const PairedComparison c = compare_pairs(m.rows, {m.experiments[0], second}).front();
     m.ms_p = c.ms_p;
     m.success_p = c.success_p;
     m.collision_p = c.collision_p;
-    return m;
+    return;
   }
-  const auto costs = [](const Side& side) {
-    std::vector<double> list;
-    for (const LapRow& row : side.rows) list.push_back(row.mean_sequence_cost());
-    return list;
-  };
-  const auto successes = [](const Side& side) {
-    return std::count_if(side.rows.begin(), side.rows.end(), [](const LapRow& row) { return row.success; });
-  };
-  const auto obstacles = [](const Side& side, const ExperimentResult& result) {
-    return std::int64_t{side.experiment.obstacles} * result.laps;
-  };
-  m.ms_p = bootstrap_difference_p(costs(m.a), costs(m.b));
-  m.success_p = fisher_p(successes(m.a), m.result_a.laps, successes(m.b), m.result_b.laps);
-  m.collision_p = fisher_p(m.result_a.collisions, obstacles(m.a, m.result_a), m.result_b.collisions,
-                           obstacles(m.b, m.result_b));
-  return m;
+  std::array<std::vector<double>, 2> costs;
+  std::array<std::int64_t, 2> successes{}, obstacles{};
+  for (const LapRow& row : m.rows) {
+    const auto side = static_cast<std::size_t>(row.experiment);
+    costs[side].push_back(row.mean_sequence_cost());
+    successes[side] += row.success;
+    obstacles[side] += m.experiments[side].obstacles;
+  }
+  const auto &a = m.results[0], &b = m.results[1];
+  m.ms_p = bootstrap_difference_p(costs[0], costs[1]);
+  m.success_p = fisher_p(successes[0], a.laps, successes[1], b.laps);
+  m.collision_p = fisher_p(a.collisions, obstacles[0], b.collisions, obstacles[1]);
 }
 
 /// For each name and scenario, the comparison of the laps of all places where they are paired.
@@ -102,28 +72,30 @@ std::vector<Match> together(const std::vector<Match>& matches) {
   std::vector<Match> sums;
   std::vector<bool> taken(matches.size());
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (taken[i] || !matches[i].paired) continue;
-    Side a{matches[i].a.experiment, {}}, b{matches[i].b.experiment, {}};
+    if (taken[i] || !matches[i].is_paired) continue;
+    Match sum{"", matches[i].experiments, {}, true};
+    const Experiment& first = sum.experiments[0];
     int places = 0;
     for (std::size_t j = i; j < matches.size(); ++j) {
       const Match& other = matches[j];
-      if (!other.paired || other.name != matches[i].name ||
-          other.a.experiment.scenario != a.experiment.scenario ||
-          other.a.experiment.obstacles != a.experiment.obstacles)
+      const Experiment& own = other.experiments[0];
+      if (!other.is_paired || other.name() != matches[i].name() || own.scenario != first.scenario ||
+          own.obstacles != first.obstacles)
         continue;
       taken[j] = true;
       // The laps of each place get numbers of their own, so that pairs remain pairs.
-      for (auto [from, to] : {std::pair{&other.a, &a}, std::pair{&other.b, &b}}) {
-        for (LapRow row : from->rows) {
-          row.lap += places * 1'000'000;
-          to->rows.push_back(row);
-        }
+      for (LapRow row : other.rows) {
+        row.lap += places * 1'000'000;
+        sum.rows.push_back(row);
       }
       ++places;
     }
-    a.experiment.laps = static_cast<int>(a.rows.size());
-    b.experiment.laps = static_cast<int>(b.rows.size());
-    if (places > 1) sums.push_back(match("all " + std::to_string(places), std::move(a), std::move(b), true));
+    if (places < 2) continue;
+    for (Experiment& experiment : sum.experiments) experiment.laps = 0;
+    for (const LapRow& row : sum.rows) ++sum.experiments[static_cast<std::size_t>(row.experiment)].laps;
+    sum.place = "all " + std::to_string(places);
+    evaluate(sum);
+    sums.push_back(std::move(sum));
   }
   return sums;
 }
@@ -143,49 +115,63 @@ Json differing_settings(const Json& a, const Json& b) {
 
 std::string p_text(double p) {
   if (!std::isfinite(p)) return "-";
-  if (p < 0.001) return "< 0.001 *";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f%s", p, p < 0.05 ? " *" : "");
-  return text;
+  return p < 0.001 ? "< 0.001 *" : formatted("%.3f%s", p, p < 0.05 ? " *" : "");
 }
 
 void print(const std::vector<Match>& matches, std::FILE* out) {
   std::size_t width = 10;
-  const auto title = [](const Match& m) { return m.place.empty() ? m.name : m.place + ": " + m.name; };
+  const auto title = [](const Match& m) { return m.place.empty() ? m.name() : m.place + ": " + m.name(); };
   for (const Match& m : matches) width = std::max(width, title(m).size());
   std::fprintf(out, "%-*s     %11s %20s %20s %-10s %17s %-10s %17s %-10s %s\n", static_cast<int>(width), "",
                "laps", "MS", "MS", "p", "collisions", "p", "success, %", "p", "");
   for (const Match& m : matches) {
+    const ExperimentResult &a = m.results[0], &b = m.results[1];
     const auto ms = [](const ExperimentResult& r) {
-      char text[48];
-      std::snprintf(text, sizeof text, "%.3f (%.3f-%.3f)", r.ms_mean, r.ms_ci.low, r.ms_ci.high);
-      return std::string(text);
+      return formatted("%.3f (%.3f-%.3f)", r.ms_mean, r.ms_ci.low, r.ms_ci.high);
     };
     std::fprintf(out, "%-*s %-3s %5d %5d %20s %20s %-10s %8d %8d %-10s %8.1f %8.1f %-10s %s\n",
-                 static_cast<int>(width), title(m).c_str(), m.a.experiment.scenario.c_str(), m.result_a.laps,
-                 m.result_b.laps, ms(m.result_a).c_str(), ms(m.result_b).c_str(), p_text(m.ms_p).c_str(),
-                 m.result_a.collisions, m.result_b.collisions, p_text(m.collision_p).c_str(),
-                 100 * m.result_a.success_rate, 100 * m.result_b.success_rate, p_text(m.success_p).c_str(),
-                 m.paired ? "paired" : "unpaired");
+                 static_cast<int>(width), title(m).c_str(), m.experiments[0].scenario.c_str(), a.laps, b.laps,
+                 ms(a).c_str(), ms(b).c_str(), p_text(m.ms_p).c_str(), a.collisions, b.collisions,
+                 p_text(m.collision_p).c_str(), 100 * a.success_rate, 100 * b.success_rate,
+                 p_text(m.success_p).c_str(), m.is_paired ? "paired" : "unpaired");
   }
 }
 
+/// The match of an experiment of each evaluation. Throws IoError if one has no laps.
+Match match(const std::string& place, const StoredEvaluation& a, std::size_t i, const StoredEvaluation& b,
+            std::size_t j, bool is_paired) {
+  Match made{place, {a.experiments[i], b.experiments[j]}, {}, is_paired};
+  for (int side = 0; const auto& [stored, index] : {std::pair(&a, i), std::pair(&b, j)}) {
+    const std::size_t before = made.rows.size();
+    for (LapRow row : stored->rows) {
+      if (row.experiment != static_cast<int>(index)) continue;
+      row.experiment = side;
+      made.rows.push_back(row);
+    }
+    const Experiment& experiment = stored->experiments[index];
+    if (made.rows.size() == before)
+      throw IoError(stored->folder.string(), 0,
+                    "has no lap of " + experiment.label() + ", " + experiment.scenario +
+                        "; both folders must have laps of the experiments that are compared");
+    ++side;
+  }
+  evaluate(made);
+  return made;
+}
+
 std::vector<Match> match_all(const std::string& place, const StoredEvaluation& a, const StoredEvaluation& b,
-                             bool paired) {
+                             bool is_paired) {
   std::vector<Match> matches;
-  const auto with = [&](bool exactly) {
-    for (std::size_t i = 0; i < a.experiments.size(); ++i) {
+  // Evaluations without a common experiment are compared experiment by experiment of the same scenario.
+  for (const bool exactly : {true, false}) {
+    for (std::size_t i = 0; i < a.experiments.size(); ++i)
       for (std::size_t j = 0; j < b.experiments.size(); ++j) {
         const Experiment &ea = a.experiments[i], &eb = b.experiments[j];
         if (ea.scenario != eb.scenario || ea.obstacles != eb.obstacles) continue;
-        if (!exactly || ea.label() == eb.label())
-          matches.push_back(match(place, side_of(a, i), side_of(b, j), paired));
+        if (!exactly || ea.label() == eb.label()) matches.push_back(match(place, a, i, b, j, is_paired));
       }
-    }
-  };
-  with(true);
-  // Evaluations without a common experiment are compared experiment by experiment of the same scenario.
-  if (matches.empty()) with(false);
+    if (!matches.empty()) break;
+  }
   return matches;
 }
 
@@ -214,11 +200,11 @@ Json json_of(const Match& m) {
   };
   Json entry = Json::object();
   if (!m.place.empty()) entry["place"] = m.place;
-  entry["name"] = m.name;
-  entry["scenario"] = m.a.experiment.scenario;
-  entry["paired"] = m.paired;
-  entry["first"] = side(m.result_a);
-  entry["second"] = side(m.result_b);
+  entry["name"] = m.name();
+  entry["scenario"] = m.experiments[0].scenario;
+  entry["paired"] = m.is_paired;
+  entry["first"] = side(m.results[0]);
+  entry["second"] = side(m.results[1]);
   entry["ms_p"] = std::isfinite(m.ms_p) ? Json(m.ms_p) : Json(nullptr);
   entry["contacts_p"] = m.collision_p;
   entry["success_p"] = m.success_p;
@@ -238,13 +224,6 @@ int compare(const CompareArguments& arguments) {
     auto found = match_all(place, a, b, same_world);
     if (found.empty())
       throw IoError(b.folder.string(), 0, "has no scenario that " + a.folder.string() + " has");
-    for (const Match& m : found) {
-      for (const auto& [side, stored] : {std::pair{&m.a, &a}, std::pair{&m.b, &b}})
-        if (side->rows.empty())
-          throw IoError(stored->folder.string(), 0,
-                        "has no lap of " + side->experiment.label() + ", " + side->experiment.scenario +
-                            "; both folders must have laps of the experiments that are compared");
-    }
     matches.insert(matches.end(), found.begin(), found.end());
     for (const auto* e : {&a, &b})
       if (!e->complete) std::fprintf(words, "note: %s is not complete\n", e->folder.c_str());

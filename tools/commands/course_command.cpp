@@ -12,7 +12,7 @@
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/command_line/shell_word.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_pictures.hpp"
 #include "tools/recording/driven_recording.hpp"
@@ -141,16 +141,14 @@ void course(CourseArguments arguments) {
   const Json summary = summary_of(course, car, arguments);
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
   for (const std::string& note : course.notes) words << "note: " << note << "\n";
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
+  words << formatted(
       "%s: %.1f m long, %.2f m wide at least, %s %.2f s at %.1f to %.1f m/s, radius %.2f m at least, "
       "%.2f m from body to wall\n",
       arguments.name.c_str(), vehicle::length(course.corridor), summary["narrowest_m"].get<double>(),
       course.corridor.closed ? "lap" : "drive", course.raceline.time, summary["slowest_mps"].get<double>(),
       summary["fastest_mps"].get<double>(), 1 / std::max(summary["max_curvature_per_m"].get<double>(), 1e-9),
       summary["min_clearance_m"].get<double>());
-  words << text << "written to " << arguments.out << "\n";
+  words << "written to " << arguments.out << "\n";
   if (!arguments.json.empty()) write_json(summary, arguments.json);
 }
 

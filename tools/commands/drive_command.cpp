@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "slalom/core/error.hpp"
-#include "slalom/core/version.hpp"
 #include "slalom/evaluation/statistics.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
@@ -160,16 +159,12 @@ class DriveJob {
   }
 
   Json results(const Json& total) const {
-    Json laps = Json::array();
-    for (std::size_t i = 0; i < laps_.size(); ++i)
-      laps.push_back(lap_json(laps_[i], static_cast<int>(i) + 1));
-    Json settings = settings_;
-    settings["threads"] = scenario_.lap.threads;
-    return {{"program", std::string("slalom ") + version()},
-            {"settings", settings},
-            {"summary", total},
-            {"laps", laps},
-            {"solve_ms", times_json(solve_times(laps_))}};
+    Json json = results_json(settings_, scenario_);
+    json["summary"] = total;
+    for (const LapResult& lap : laps_)
+      json["laps"].push_back(lap_json(lap, static_cast<int>(json["laps"].size()) + 1));
+    json["solve_ms"] = times_json(solve_times(laps_));
+    return json;
   }
 
   const DriveArguments& arguments_;

@@ -149,8 +149,6 @@ void declare_identify(Subcommand& command) {
   const auto arguments = std::make_shared<IdentifyArguments>();
   command.option("recording", arguments->recording, "Recording of slalom drive --record in JSON lines")
       .required();
-  command.option("--least-speed", arguments->options.min_speed, "Samples below this speed are ignored, m/s",
-                 {0.01, 100.0});
   const auto tyres =
       command.flag("--tyres", arguments->tyres,
                    "Find friction and cornering stiffness, of a drive close to the limit of grip");

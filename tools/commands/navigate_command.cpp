@@ -9,7 +9,6 @@
 #include "slalom/solvers/registry.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/commands/navigate_picture.hpp"
 #include "tools/commands/navigate_report.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"

@@ -1,4 +1,4 @@
-#include "tools/commands/navigate_picture.hpp"
+#include "tools/commands/navigate_report.hpp"
 
 #include <cmath>
 #include <filesystem>

@@ -6,6 +6,7 @@
 
 #include "slalom/evaluation/statistics.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -54,10 +55,8 @@ int count_of(const Drives& drives, double (*value)(const RoomDrive&)) {
 }
 
 std::string text_of(double value, int digits) {
-  char text[32];
   // Without the sign of a zero.
-  std::snprintf(text, sizeof text, "%.*f", digits, std::abs(value) < 0.5 * std::pow(10, -digits) ? 0 : value);
-  return text;
+  return formatted("%.*f", digits, std::abs(value) < 0.5 * std::pow(10, -digits) ? 0 : value);
 }
 
 /// "mean [low, high]", with the 95 % bootstrap interval.

@@ -4,11 +4,11 @@
 #include <utility>
 
 #include "slalom/core/error.hpp"
-#include "slalom/core/version.hpp"
 #include "slalom/evaluation/grip_learning.hpp"
 #include "slalom/evaluation/race.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/race_picture.hpp"
 #include "tools/racing/grid_race_job.hpp"
@@ -172,19 +172,14 @@ class RaceJob {
   void print_learned() const {
     const vehicle::Configuration learned = learned_configuration();
     std::string shares;
-    for (const double share : learned.planner.grip_shares.values()) {
-      char text[16];
-      std::snprintf(text, sizeof text, "%s%.3f", shares.empty() ? "" : ",", share);
-      shares += text;
-    }
+    for (const double share : learned.planner.grip_shares.values())
+      shares += formatted("%s%.3f", shares.empty() ? "" : ",", share);
     std::fprintf(words_, "learned: --set vehicle.usable_grip=%.3f --set planner.grip_shares=[%s]\n",
                  learned.vehicle.own_of<vehicle::SingleTrackOptions>().usable_grip, shares.c_str());
   }
 
   Json results(const RacingLap* best, const RacingLap* theirs) const {
-    Json settings = settings_;
-    settings["threads"] = scenario_.lap.threads;
-    Json json{{"program", std::string("slalom ") + version()}, {"settings", settings}};
+    Json json = results_json(settings_, scenario_);
     json.update(race_json(race_));
     json["along"] = best ? along_json(race_, *best, theirs) : Json(nullptr);
     if (theirs)
@@ -202,14 +197,11 @@ class RaceJob {
 
   void plot(const RacingLap& best, const RacingLap* theirs) const {
     const auto named = [](std::string name, const RacingLap& lap) {
-      char time[32];
-      std::snprintf(time, sizeof time, ", %.3f s", lap.time());
-      return NamedLap{std::move(name) + time, lap};
+      return NamedLap{std::move(name) + formatted(", %.3f s", lap.time()), lap};
     };
     const auto use = evaluation::grip_use(best.samples, race_.grip);
-    char facts[160];
-    std::snprintf(facts, sizeof facts,
-                  "configuration %s \xC2\xB7 %.1f m \xC2\xB7 acceleration p50 %.2f, p99 %.2f m/s\xC2\xB2",
+    const std::string facts =
+        formatted("configuration %s \xC2\xB7 %.1f m \xC2\xB7 acceleration p50 %.2f, p99 %.2f m/s\xC2\xB2",
                   arguments_.scenario.config.c_str(), race_.length, use.p50, use.p99);
     const RacingLap& profile = profile_of(race_, best);
     draw_race({.lap = {lap_words(race_, best), best},

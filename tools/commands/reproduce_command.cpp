@@ -4,7 +4,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/command_line/shell_word.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/claims.hpp"
 #include "tools/evaluation/evaluation_job.hpp"

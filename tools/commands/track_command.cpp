@@ -9,7 +9,7 @@
 
 #include "slalom/vehicle/course/track_generator.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/command_line/shell_word.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_pictures.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -31,18 +31,10 @@ struct TrackArguments {
 
 /// The command that generates the same track again. --out has only the last part of the path of the folder.
 std::string command_of(const TrackArguments& arguments, const TrackGeneratorOptions& options) {
-  const TrackGeneratorOptions defaults;
   std::string text = "slalom track --seed " + std::to_string(options.seed) + " --length " +
                      short_number(options.length) + " --width " + short_number(options.width) +
                      " --character " + arguments.character;
-  const auto add = [&](const char* flag, double value, double usual) {
-    if (value != usual) text += std::string(" ") + flag + " " + short_number(value);
-  };
-  add("--top-speed", options.limits.top_speed, vehicle::usual_top_speed(options.character));
-  add("--lateral-acceleration", options.limits.lateral_acceleration, defaults.limits.lateral_acceleration);
-  add("--acceleration", options.limits.acceleration, defaults.limits.acceleration);
-  add("--braking", options.limits.braking, defaults.limits.braking);
-  add("--wall-margin", options.wall_margin, defaults.wall_margin);
+  if (arguments.top_speed) text += " --top-speed " + short_number(*arguments.top_speed);
   const std::string folder = folder_name(arguments.out);
   if (arguments.name != folder) text += " --name " + shell_word(arguments.name);
   if (!arguments.description.empty()) text += " --description " + shell_word(arguments.description);
@@ -90,11 +82,11 @@ void track(TrackArguments arguments) {
 
   const auto summary = summary_of(track, arguments, command);
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
-  char text[256];
-  std::snprintf(text, sizeof text, "%s: %.0f m long, %.1f m wide, %.1f to %.1f m/s, profile lap %.1f s\n",
-                arguments.name.c_str(), options.length, options.width, summary["slowest_mps"].get<double>(),
-                summary["fastest_mps"].get<double>(), track.lap_time);
-  words << text << "written to " << arguments.out << "\n";
+  words << formatted("%s: %.0f m long, %.1f m wide, %.1f to %.1f m/s, profile lap %.1f s\n",
+                     arguments.name.c_str(), options.length, options.width,
+                     summary["slowest_mps"].get<double>(), summary["fastest_mps"].get<double>(),
+                     track.lap_time);
+  words << "written to " << arguments.out << "\n";
   if (!arguments.json.empty()) write_json(summary, arguments.json);
 }
 
@@ -112,13 +104,6 @@ void declare_track(Subcommand& command) {
   command.option("--character", arguments->character, "balanced, fast, twisty or narrow");
   command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s [by character: 6, 7, 5, 4.5]",
                  {0.5, 20});
-  command.option("--lateral-acceleration", options.limits.lateral_acceleration,
-                 "Limit of the speed profile, m/s^2", {0.5, 15});
-  command.option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2",
-                 {0.5, 15});
-  command.option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2", {0.5, 15});
-  command.option("--wall-margin", options.wall_margin, "Minimum distance of the raceline from the walls, m",
-                 {0.3, 4.9});
   command.option("--name", arguments->name, "Name of the course [name of the folder]");
   command.option("--description", arguments->description, "Description for course.yaml");
   command.json(arguments->json, "a summary");

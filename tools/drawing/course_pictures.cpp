@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "slalom/sim/shapes.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/drawing/map_picture.hpp"
 #include "tools/report/lap_json.hpp"
 
@@ -81,9 +82,7 @@ void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup,
   for (const auto& collision : lap.first_collisions)
     draw_cross(picture, {collision.pose.x, collision.pose.y}, cross);
 
-  char facts[200];
-  std::snprintf(
-      facts, sizeof facts,
+  const std::string facts = formatted(
       "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collision%s \xC2\xB7 cost %.2f \xC2\xB7 %zu "
       "obstacles, seed %llu",
       end_name(lap), lap.time, lap.mean_speed, lap.collisions, lap.collisions == 1 ? "" : "s",
@@ -123,9 +122,7 @@ void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& ca
   picture.disc(line[tight], 8, tightest);
   picture.arrow(course.start, 18, ink);
 
-  char facts[400];
-  std::snprintf(
-      facts, sizeof facts,
+  const std::string facts = formatted(
       "%s \xC2\xB7 %.1f m \xC2\xB7 %s %.2f s \xC2\xB7 %.2f m from body to wall (red) \xC2\xB7 radius %.2f m "
       "(violet), the car turns %.2f m",
       car.name.c_str(), vehicle::length(corridor), corridor.closed ? "lap" : "drive", course.raceline.time,
@@ -148,9 +145,8 @@ void draw_track(const vehicle::GeneratedTrack& track, const std::string& title,
   picture.line({moved(foot, across, -half), moved(foot, across, half)}, ink, 4, false);
   picture.arrow({start.x, start.y, start.yaw}, 20, ink);
 
-  char facts[160];
-  std::snprintf(facts, sizeof facts,
-                "%s, seed %llu \xC2\xB7 %.0f m long, %.1f m wide \xC2\xB7 profile lap %.1f s",
+  const std::string facts =
+      formatted("%s, seed %llu \xC2\xB7 %.0f m long, %.1f m wide \xC2\xB7 profile lap %.1f s",
                 vehicle::name(track.options.character), static_cast<unsigned long long>(track.options.seed),
                 track.options.length, track.options.width, track.lap_time);
   picture.legend(title, facts, slowest, fastest);

@@ -59,7 +59,7 @@ Field smoothed_cells(const maps::OccupancyGrid& map, maps::Occupancy kind) {
   return field;
 }
 
-/// How far a pixel lies inside a contour at `level`, 0..1, over about one pixel; `cell` is a cell's size in
+/// The depth of a pixel inside a contour at `level`, 0..1, over about one pixel; `cell` is a cell's size in
 /// pixels.
 double edge(double value, double level, double cell) {
   return std::clamp(0.5 + (value - level) * 2.5 * std::max(cell, 1.0), 0.0, 1.0);

@@ -1,4 +1,5 @@
 #include "tools/drawing/map_picture.hpp"
+#include "tools/command_line/words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,12 +16,6 @@ double round_length(double longest) {
   for (const double digit : {5.0, 2.0})
     if (digit * decade <= longest) return digit * decade;
   return decade;
-}
-
-std::string number(double value, int digits) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
-  return buffer;
 }
 
 MapView view_of(const maps::OccupancyGrid& map, int long_side) {
@@ -133,8 +128,8 @@ void MapPicture::legend(const std::string& title, const std::string& facts, doub
   for (int k = 0; k < static_cast<int>(bar_width); ++k) {
     pen_.rectangle(bar_left + k, bar_top, 1.5, 14, speed_colour(k / (bar_width - 1)));
   }
-  pen_.text(bar_left, bar_top + 38, 20, number(slowest, 1), faint_ink);
-  pen_.text(bar_left + bar_width, bar_top + 38, 20, number(fastest, 1) + " m/s", faint_ink, 1);
+  pen_.text(bar_left, bar_top + 38, 20, formatted("%.1f", slowest), faint_ink);
+  pen_.text(bar_left + bar_width, bar_top + 38, 20, formatted("%.1f m/s", fastest), faint_ink, 1);
 
   scale_bar(bar_width, view_.width - margin, base + 46);
 }
@@ -142,7 +137,8 @@ void MapPicture::legend(const std::string& title, const std::string& facts, doub
 void MapPicture::scale_bar(double longest, double right, double at) {
   const double metres = round_length(longest / view_.scale), pixels = metres * view_.scale;
   pen_.path({{right - pixels, at - 8}, {right - pixels, at}, {right, at}, {right, at - 8}}, ink, 3);
-  pen_.text(right - pixels - 12, at + 2, 20, number(metres, metres < 1 ? 1 : 0) + " m", faint_ink, 1);
+  pen_.text(right - pixels - 12, at + 2, 20, formatted(metres < 1 ? "%.1f m" : "%.0f m", metres), faint_ink,
+            1);
 }
 
 void MapPicture::key(const std::string& title, const std::string& facts,

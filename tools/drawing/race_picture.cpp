@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/command_line/words.hpp"
 #include "tools/drawing/axis.hpp"
 #include "tools/drawing/drawing.hpp"
 
@@ -22,21 +23,15 @@ constexpr double width = 1240, height = 720, left = 64, right = 800, speed_top =
                  circle_top = 112, circle_bottom = circle_top + circle_right - circle_left;
 constexpr int delta_steps = 400;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 void draw_frame(Pen& pen, const Axis& x, const Axis& y, const std::string& title, const std::string& below) {
   pen.text(x.from, y.to - 12, 14, title, ink, 0, true);
   for (const double tick : x.ticks) {
     pen.line(x(tick), y.from, x(tick), y.to, rule, 1);
-    pen.text(x(tick), y.from + 17, 12, number(tick), faint_ink, 0.5);
+    pen.text(x(tick), y.from + 17, 12, short_number(tick), faint_ink, 0.5);
   }
   for (const double tick : y.ticks) {
     pen.line(x.from, y(tick), x.to, y(tick), tick == 0 ? faint_ink : rule, 1);
-    pen.text(x.from - 8, y(tick) + 4, 12, number(tick), faint_ink, 1);
+    pen.text(x.from - 8, y(tick) + 4, 12, short_number(tick), faint_ink, 1);
   }
   pen.text(0.5 * (x.from + x.to), y.from + 36, 12.5, below, faint_ink, 0.5);
 }
@@ -115,10 +110,9 @@ void draw_circle(Pen& pen, const RacePicture& picture) {
     colour.opacity = 0.6;
     pen.disc(x(s.lateral), y(s.longitudinal), 2.4, colour);
   }
-  char words[120];
   const auto use = evaluation::grip_use(picture.lap.lap.samples, picture.grip);
-  std::snprintf(words, sizeof words, "circle: %.2f m/s\xC2\xB2; %.1f %% of the time beyond it (red)",
-                picture.grip, 100 * use.beyond);
+  const std::string words = formatted("circle: %.2f m/s\xC2\xB2; %.1f %% of the time beyond it (red)",
+                                      picture.grip, 100 * use.beyond);
   pen.text(circle_left, circle_bottom + 62, 12.5, words, faint_ink);
 }
 

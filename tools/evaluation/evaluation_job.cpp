@@ -11,6 +11,7 @@
 #include "slalom/core/version.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/terminal/interrupt.hpp"
@@ -115,9 +116,7 @@ std::string course_hash(const Environment& environment) {
     const double values[] = {point.x, point.y};
     mix(values, sizeof values);
   }
-  char text[20];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  return formatted("%016llx", static_cast<unsigned long long>(hash));
 }
 
 Option add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
@@ -251,14 +250,13 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
                "laps", "MS", "95 %", "collisions", "collision rate", "success", "solve ms");
   for (const ExperimentResult& r : evaluated.results) {
     const Experiment& e = evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
-    char rate[40] = "-";
-    if (r.collision_rate) {
-      std::snprintf(rate, sizeof rate, "%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,
-                    100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high);
-    }
+    const std::string rate = r.collision_rate
+                                 ? formatted("%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,
+                                             100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high)
+                                 : "-";
     std::fprintf(out, "%-*s  %-3s %5d %9.3f %8.3f - %8.3f %9d %17s %6.1f %% %9.3f\n", static_cast<int>(width),
                  e.label().c_str(), e.scenario.c_str(), r.laps, r.ms_mean, r.ms_ci.low, r.ms_ci.high,
-                 r.collisions, rate, 100 * r.success_rate, r.solve_ms_p50);
+                 r.collisions, rate.c_str(), 100 * r.success_rate, r.solve_ms_p50);
   }
   for (const ExperimentResult& r : evaluated.results) {
     if (!r.tracking) continue;

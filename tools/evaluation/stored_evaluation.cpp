@@ -62,6 +62,16 @@ std::string stored_course(const Json& settings) {
   return member<std::string>(settings, "course");
 }
 
+/// Hands the settings of an evaluation to `read`. Throws IoError if they are invalid.
+template <class Read>
+void with_settings(const StoredEvaluation& stored, const Read& read) {
+  try {
+    read(parse_json(stored.settings));
+  } catch (const std::invalid_argument& error) {
+    throw IoError((stored.folder / "settings.json").string(), 0, std::string("is invalid: ") + error.what());
+  }
+}
+
 }  // namespace
 
 StoredEvaluation load_evaluation(const fs::path& folder) {
@@ -72,8 +82,7 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
     throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
   stored.settings = read_file(file, max_json_bytes);
   std::uint64_t seed0 = 0;
-  try {
-    const auto settings = parse_json(stored.settings);
+  with_settings(stored, [&](const Json& settings) {
     evaluation::verify_checksum(stored.settings);
     for (const auto& e : member(settings, "experiments")) {
       stored.experiments.push_back({member<std::string>(e, "method"),
@@ -83,9 +92,7 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
     }
     if (stored.experiments.empty()) throw std::invalid_argument("experiments: must be at least one");
     seed0 = member<std::uint64_t>(settings, "seed0");
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
-  }
+  });
   const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
   stored.complete = fs::exists(table);
   stored.rows =
@@ -120,10 +127,8 @@ int StoredEvaluation::find(const std::string& name, const std::string& scenario)
 }
 
 ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std::string& course) {
-  const fs::path file = stored.folder / "settings.json";
   ScenarioArguments arguments;
-  try {
-    const auto settings = parse_json(stored.settings);
+  with_settings(stored, [&](const Json& settings) {
     arguments.course = course.empty() ? stored_course(settings) : course;
     arguments.config = member<std::string>(settings, "config");
     arguments.evaluation = member<std::string>(settings, "evaluation");
@@ -133,18 +138,14 @@ ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std
     for (const auto& [section, options] : member(settings, "options").items())
       for (const auto& [key, value] : options.items())
         arguments.set.push_back(section + "." + key + "=" + value_text(value));
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
-  }
+  });
   return arguments;
 }
 
 evaluation::Evaluation rebuild_evaluation(const StoredEvaluation& stored, const std::string& course,
                                           Scenario& scenario) {
-  const fs::path file = stored.folder / "settings.json";
   evaluation::Evaluation evaluation;
-  try {
-    const auto settings = parse_json(stored.settings);
+  with_settings(stored, [&](const Json& settings) {
     const ScenarioArguments arguments = evaluation_arguments(stored, course);
     scenario = load_scenario(arguments, stored.experiments.front().method);
     if (const auto hash = member<std::string>(settings, "course_hash");
@@ -157,9 +158,7 @@ evaluation::Evaluation rebuild_evaluation(const StoredEvaluation& stored, const 
     evaluation.latency = scenario.lap.latency;
     evaluation.hardware = arguments.hardware;
     evaluation.settings = stored.settings;
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
-  }
+  });
   return evaluation;
 }
 

@@ -1,4 +1,5 @@
 #include "tools/explanation/explain_picture.hpp"
+#include "tools/command_line/words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +19,6 @@ constexpr double margin = 22, header = 92, caption = 46, space_width = 330, spac
 constexpr double cell_width = axis_left + space_width + gap + density_width,
                  cell_height = caption + space_height + axis_below;
 constexpr int drawn_samples = 100;
-
-std::string number(const char* form, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, form, value);
-  return text;
-}
 
 /// The colour of a sample, from cheap (deep green) over yellow to expensive (pale).
 Colour cost_colour(double share, double opacity) {
@@ -122,9 +117,9 @@ void draw_space(Pen& pen, const Cell& cell) {
   pen.unclip();
   pen.box(cell.left, cell.top, space_width, space_height, {0, 0, 0, 0}, frame, 1, 0);
   for (int i = 0; i <= static_cast<int>(cell.length() + 1e-9); ++i)
-    pen.text(cell.x(i), cell.top + space_height + 15, 11, number("%g", i), faint_ink, 0.5);
+    pen.text(cell.x(i), cell.top + space_height + 15, 11, formatted("%g", i), faint_ink, 0.5);
   for (const double at : {-1.0, 0.0, 1.0})
-    pen.text(cell.left - 7, cell.y(at) + 4, 11, number("%g", at), faint_ink, 1);
+    pen.text(cell.left - 7, cell.y(at) + 4, 11, formatted("%g", at), faint_ink, 1);
   pen.text(cell.left + space_width / 2, cell.top + space_height + 29, 11, "ahead, m", faint_ink, 0.5);
 }
 
@@ -185,12 +180,13 @@ void draw_caption(Pen& pen, const Cell& cell) {
   pen.text(cell.left, cell.top - 26, 16, e.method, ink, 0, true);
   pen.text(cell.left + space_width + gap + density_width, cell.top - 26, 12, e.about, faint_ink, 1);
   const std::string verdict = e.plan_collides ? "The plan hits the disc."
-                              : place > 0 ? "The plan passes on the left, " + number("%.2f m", place) + "."
-                                          : "The plan passes on the right, " + number("%.2f m", -place) + ".";
+                              : place > 0
+                                  ? "The plan passes on the left, " + formatted("%.2f m", place) + "."
+                                  : "The plan passes on the right, " + formatted("%.2f m", -place) + ".";
   pen.text(cell.left, cell.top - 8, 12.5, verdict, e.plan_collides ? bad_verdict : good_verdict, 0, true);
   pen.text(cell.left + space_width + gap + density_width, cell.top - 8, 12,
-           number("%.0f of ", e.effective_samples) +
-               number("%.0f samples count", static_cast<double>(e.samples.size())),
+           formatted("%.0f of ", e.effective_samples) +
+               formatted("%.0f samples count", static_cast<double>(e.samples.size())),
            faint_ink, 1);
 }
 
@@ -243,7 +239,7 @@ Drawing draw_explanations(const std::vector<Explanation>& explanations) {
     if (columns > 1) {
       pen.text(margin + columns * cell_width + (columns - 1) * between, 30, 12,
                "solve " + std::to_string(first.solves) + " from the same state, temperature " +
-                   number("%g", first.temperature),
+                   formatted("%g", first.temperature),
                faint_ink, 1);
     }
   };

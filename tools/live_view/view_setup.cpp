@@ -13,7 +13,7 @@
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/command_line/shell_word.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 
 namespace slalom::tools {

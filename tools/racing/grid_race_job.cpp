@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "slalom/core/error.hpp"
-#include "slalom/core/version.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "src/evaluation/json.hpp"
@@ -170,9 +169,7 @@ class GridRaceJob {
   }
 
   Json results() const {
-    Json settings = settings_;
-    settings["threads"] = scenario_.lap.threads;
-    Json json{{"program", std::string("slalom ") + version()}, {"settings", settings}};
+    Json json = results_json(settings_, scenario_);
     json.update(grid_races_json(races_));
     std::vector<float> solve_ms;
     for (const GridRaceResult& race : races_.results)

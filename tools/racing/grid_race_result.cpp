@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -41,11 +42,9 @@ CarSummary car_summary(const GridRaces& races, int entry) {
   return summary;
 }
 
-std::string number_text(const char* format, double value) {
-  if (!std::isfinite(value)) return "-";
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+/// A number with so many decimals; "-" if it is not finite.
+std::string number_text(double value, int digits) {
+  return std::isfinite(value) ? formatted("%.*f", digits, value) : "-";
 }
 
 /// Describes how a race ended for a car.
@@ -61,10 +60,8 @@ int widest(const std::vector<std::string>& names) {
 }
 
 std::string contacts_text(const ContactRate& rate) {
-  char text[80];
-  std::snprintf(text, sizeof text, "%.1f (%.1f to %.1f)", rate.per_100_km, rate.interval.low,
-                rate.interval.high);
-  return rate.kilometres > 0 ? text : "-";
+  if (rate.kilometres <= 0) return "-";
+  return formatted("%.1f (%.1f to %.1f)", rate.per_100_km, rate.interval.low, rate.interval.high);
 }
 
 Json rate_json(const ContactRate& rate) {
@@ -148,8 +145,9 @@ void print_standings(std::FILE* out, const std::vector<std::string>& names, cons
     const CarResult& car = race.cars[static_cast<std::size_t>(entry)];
     std::fprintf(out, "%5d  %-*s %5d %5zu %10.3f %9s %12s %9d %9d %9d %7d %10.1f   %s\n", car.place + 1,
                  width, names[static_cast<std::size_t>(entry)].c_str(), car.grid_place + 1,
-                 car.lap_times.size(), car.time, number_text("%+.3f", car.gap).c_str(),
-                 number_text("%.3f", car.best_lap()).c_str(), car.overtakes, car.overtaken, car.contacts,
+                 car.lap_times.size(), car.time,
+                 (std::isfinite(car.gap) ? formatted("%+.3f", car.gap) : "-").c_str(),
+                 number_text(car.best_lap(), 3).c_str(), car.overtakes, car.overtaken, car.contacts,
                  car.caused, car.distance, end_text(car).c_str());
   }
   for (const evaluation::CarContact& contact : race.contacts)
@@ -164,8 +162,7 @@ void print_race_line(std::FILE* out, const std::vector<std::string>& names, cons
   std::fprintf(out, "race %d:", number);
   for (const int entry : race.standings) {
     const CarResult& car = race.cars[static_cast<std::size_t>(entry)];
-    const std::string time =
-        car.place == 0 ? number_text("%.2f s", car.time) : number_text("%+.2f s", car.gap);
+    const std::string time = car.place == 0 ? formatted("%.2f s", car.time) : formatted("%+.2f s", car.gap);
     std::fprintf(out, "%s %s (%s)", car.place == 0 ? "" : ",", names[static_cast<std::size_t>(entry)].c_str(),
                  (car.end == CarEnd::finished ? time : end_text(car)).c_str());
   }
@@ -182,15 +179,13 @@ void print_race_summary(std::FILE* out, const GridRaces& races) {
   for (std::size_t entry = 0; entry < races.names.size(); ++entry) {
     const CarSummary car = car_summary(races, static_cast<int>(entry));
     const evaluation::Interval rate = evaluation::wilson_interval(car.wins, car.races);
-    char wins[48];
-    std::snprintf(wins, sizeof wins, "%d of %d (%.0f to %.0f %%)", car.wins, car.races, 100 * rate.low,
-                  100 * rate.high);
+    const std::string wins =
+        formatted("%d of %d (%.0f to %.0f %%)", car.wins, car.races, 100 * rate.low, 100 * rate.high);
     std::fprintf(out, "%-*s %24s %10s %8d %4d %7d %11s %8d %8d %6d %7.2f  %s\n", width,
-                 races.names[entry].c_str(), wins,
-                 number_text("%.2f", static_cast<double>(car.places) / car.races).c_str(), car.finished,
-                 car.walls, car.timeouts, number_text("%.3f", car.best_lap).c_str(), car.overtakes,
-                 car.contacts.contacts, car.contacts.caused, car.contacts.kilometres,
-                 contacts_text(car.contacts).c_str());
+                 races.names[entry].c_str(), wins.c_str(),
+                 number_text(static_cast<double>(car.places) / car.races, 2).c_str(), car.finished, car.walls,
+                 car.timeouts, number_text(car.best_lap, 3).c_str(), car.overtakes, car.contacts.contacts,
+                 car.contacts.caused, car.contacts.kilometres, contacts_text(car.contacts).c_str());
   }
   const ContactRate all = evaluation::contact_rate(races.results);
   std::fprintf(out, "all cars: %d contacts in %.2f km, %s per 100 km\n", all.contacts, all.kilometres,

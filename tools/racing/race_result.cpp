@@ -8,6 +8,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -111,10 +112,7 @@ std::optional<RacingLap> best_of(const Json& run, const char* key) {
 constexpr int parts = 10;  // parts of the way in the table of a lap
 
 std::string seconds(double time) {
-  if (!std::isfinite(time)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", time);
-  return text;
+  return std::isfinite(time) ? formatted("%.3f", time) : "-";
 }
 
 void print_group(std::FILE* out, const char* label, const RaceStatistics& group, const RacingLap& profile) {
@@ -279,10 +277,8 @@ void print_along(std::FILE* out, const RaceResult& race, const RacingLap& lap, c
 }
 
 std::string lap_words(const RaceResult& race, const RacingLap& lap) {
-  char text[80];
-  std::snprintf(text, sizeof text, "lap %d (%s) %.3f s", static_cast<int>(&lap - race.laps.data()) + 1,
-                lap.standing ? "standing start" : "flying", lap.time());
-  return text;
+  return formatted("lap %d (%s) %.3f s", static_cast<int>(&lap - race.laps.data()) + 1,
+                   lap.standing ? "standing start" : "flying", lap.time());
 }
 
 }  // namespace slalom::tools

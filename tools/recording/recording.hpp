@@ -31,7 +31,8 @@ struct RecordingFacts {
   bool times = false;                      ///< with figures of the wall clock, MCAP only
 };
 
-/// As MCAP where the file's name ends in .mcap, otherwise as JSON lines (docs/recording.md). Throws IoError.
+/// Begins a recording: in MCAP if the file's name ends in .mcap, otherwise in JSON lines (docs/recording.md).
+/// Throws IoError.
 std::unique_ptr<Recording> make_recording(const std::string& file, const RecordingFacts& facts);
 
 }  // namespace slalom::tools

@@ -7,6 +7,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
+#include "slalom/core/version.hpp"
 #include "slalom/vehicle/course/course_check.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
@@ -231,6 +232,12 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
   if (const std::string folder = folder_without_name(scenario); !folder.empty())
     settings["course_folder"] = folder;
   return settings;
+}
+
+Json results_json(const Json& settings, const Scenario& scenario) {
+  Json results{{"program", std::string("slalom ") + version()}, {"settings", settings}};
+  results["settings"]["threads"] = scenario.lap.threads;
+  return results;
 }
 
 }  // namespace slalom::tools

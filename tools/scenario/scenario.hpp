@@ -83,4 +83,7 @@ nlohmann::ordered_json options_json(const vehicle::Configuration& configuration,
 nlohmann::ordered_json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
                                      const std::string& method);
 
+/// The beginning of a file of results: the program, and the settings with the number of threads.
+nlohmann::ordered_json results_json(const nlohmann::ordered_json& settings, const Scenario& scenario);
+
 }  // namespace slalom::tools

@@ -1,4 +1,5 @@
 #include "tools/terminal/progress.hpp"
+#include "tools/command_line/words.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -14,13 +15,6 @@ namespace {
 constexpr int longest_bar = 30, shortest_bar = 6;  // characters
 constexpr const char* green = "\033[32m";
 constexpr const char* plain = "\033[0m";
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string time_text(double seconds) {
   // An estimate below a second would be shown for longer than that.

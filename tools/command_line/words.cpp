@@ -1,12 +1,23 @@
-#include "tools/command_line/shell_word.hpp"
+#include "tools/command_line/words.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <cstdarg>
+#include <cstdio>
 #include <filesystem>
 #include <locale>
 #include <sstream>
 
 namespace slalom::tools {
+
+std::string formatted(const char* format, ...) {
+  char text[500];
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(text, sizeof text, format, values);
+  va_end(values);
+  return text;
+}
 
 std::string short_number(double value) {
   std::ostringstream stream;

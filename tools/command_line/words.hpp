@@ -2,8 +2,11 @@
 
 #include <string>
 
-/// Parts of the commands that are written into files.
+/// Words of the commands: numbers, and parts of command lines that are written into files.
 namespace slalom::tools {
+
+/// A text in printf's format.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
 /// A number as short as six digits allow.
 std::string short_number(double value);
