@@ -47,13 +47,6 @@ maps::Point moved(const maps::Point& from, const maps::Point& normal, double way
   return {from.x + way * normal.x, from.y + way * normal.y};
 }
 
-void draw_cross(MapPicture& picture, const maps::Point& at, double size) {
-  for (const auto& [colour, width] : {std::pair(white, 9.0), std::pair(hit_fill, 4.5)})
-    for (const double side : {1.0, -1.0})
-      picture.line({{at.x - size, at.y - side * size}, {at.x + size, at.y + side * size}}, colour, width,
-                   false);
-}
-
 }  // namespace
 
 void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup, const DrivenLine& driven,
@@ -61,8 +54,7 @@ void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup,
   const std::vector<maps::Point> path = positions(setup.environment->path);
   std::vector<maps::Point> shown = driven.points;
   shown.insert(shown.end(), path.begin(), path.end());
-  const maps::OccupancyGrid part = cropped(map, shown, 3.0);
-  MapPicture picture(part, long_side);
+  MapPicture picture(map, long_side, shown, 3);
   picture.line(path, line_colour, 2, setup.environment->course.closed, true);
   // Acceleration from standstill would take up most of the scale.
   const auto [slowest, fastest] = speed_scale(driven.speeds, 0.02);
@@ -78,9 +70,8 @@ void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup,
     picture.polygon({corners.begin(), corners.end()}, was_hit(i + 1) ? hit_fill : obstacle_fill, white);
   }
   picture.arrow(setup.start(), 20, ink);
-  const double cross = 0.010 * std::max(part.width, part.height) * part.resolution;
   for (const auto& collision : lap.first_collisions)
-    draw_cross(picture, {collision.pose.x, collision.pose.y}, cross);
+    picture.cross({collision.pose.x, collision.pose.y}, 14, hit_fill);
 
   const std::string facts = formatted(
       "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collision%s \xC2\xB7 cost %.2f \xC2\xB7 %zu "
@@ -111,7 +102,7 @@ void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& ca
                                points.begin());
   std::vector<maps::Point> shown = left;
   shown.insert(shown.end(), right.begin(), right.end());
-  MapPicture picture(cropped(course.map, shown, 2.0), long_side);
+  MapPicture picture(course.map, long_side, shown, 2);
   picture.line(left, corridor_side, 2, corridor.closed);
   picture.line(right, corridor_side, 2, corridor.closed);
   picture.line(corridor.centre_line, line_colour, 1.5, corridor.closed, true);

@@ -18,31 +18,67 @@ double round_length(double longest) {
   return decade;
 }
 
-MapView view_of(const maps::OccupancyGrid& map, int long_side) {
-  const double along = map.width * map.resolution, across = map.height * map.resolution;
-  double left = map.origin.x, right = left, low = map.origin.y, top = low;
-  for (const maps::Point& corner : {maps::Point{along, 0}, {along, across}, {0, across}}) {
-    const maps::Point at = maps::transform(map.origin, corner);
-    left = std::min(left, at.x);
-    right = std::max(right, at.x);
-    low = std::min(low, at.y);
-    top = std::max(top, at.y);
+constexpr Colour ground{0.925, 0.935, 0.95};  // beyond the walls
+constexpr Colour wall{0.20, 0.24, 0.32};
+
+/// A rectangle in the map frame, m.
+struct Bounds {
+  double left = 1e300, right = -1e300, low = 1e300, top = -1e300;
+
+  void include(const maps::Point& point, double margin = 0) {
+    left = std::min(left, point.x - margin);
+    right = std::max(right, point.x + margin);
+    low = std::min(low, point.y - margin);
+    top = std::max(top, point.y + margin);
   }
-  const double wide = right - left, high = top - low;
+};
+
+/// The part of a map within `margin` around the points; all of it if there are none or if they are elsewhere.
+Bounds bounds_of(const maps::OccupancyGrid& map, const std::vector<maps::Point>& points, double margin) {
+  const double along = map.width * map.resolution, across = map.height * map.resolution;
+  Bounds whole, part;
+  for (const maps::Point& corner : {maps::Point{0, 0}, {along, 0}, {along, across}, {0, across}})
+    whole.include(maps::transform(map.origin, corner));
+  for (const maps::Point& point : points) part.include(point, margin);
+  part = {std::max(part.left, whole.left), std::min(part.right, whole.right), std::max(part.low, whole.low),
+          std::min(part.top, whole.top)};
+  return part.left < part.right && part.low < part.top ? part : whole;
+}
+
+MapView view_of(const Bounds& bounds, int long_side) {
+  const double wide = bounds.right - bounds.left, high = bounds.top - bounds.low;
   MapView view;
   view.scale = long_side / std::max(wide, high);
   view.height = static_cast<int>(std::ceil(high * view.scale - 1e-6));
   view.width = std::max(static_cast<int>(std::ceil(wide * view.scale - 1e-6)), 900);
-  view.left = left - 0.5 * (view.width / view.scale - wide);
-  view.top = top;
+  view.left = bounds.left - 0.5 * (view.width / view.scale - wide);
+  view.top = bounds.top;
   return view;
+}
+
+/// The cells of a map, row by row from the top.
+std::vector<Colour> cell_colours(const maps::OccupancyGrid& map) {
+  std::vector<Colour> colours;
+  for (int row = map.height; row-- > 0;)
+    for (int column = 0; column < map.width; ++column) {
+      const maps::Occupancy cell = map.at(column, row);
+      colours.push_back(cell == maps::Occupancy::occupied ? wall
+                        : cell == maps::Occupancy::free   ? white
+                                                          : ground);
+    }
+  return colours;
 }
 
 }  // namespace
 
-MapPicture::MapPicture(const maps::OccupancyGrid& map, int long_side)
-    : view_(view_of(map, long_side)), canvas_(view_.width, view_.height + band) {
-  pen_.image(map_pixels(map, view_), view_.width);
+MapPicture::MapPicture(const maps::OccupancyGrid& map, int long_side, const std::vector<maps::Point>& points,
+                       double margin)
+    : view_(view_of(bounds_of(map, points, margin), long_side)), canvas_(view_.width, view_.height + band) {
+  pen_.clip(0, 0, view_.width, view_.height);
+  pen_.fill_surface(ground);
+  const maps::Point corner = view_.pixel(maps::transform(map.origin, {0, map.height * map.resolution}));
+  pen_.image(cell_colours(map), map.width, corner.x, corner.y, -map.origin.yaw, view_.scale * map.resolution);
+  pen_.unclip();
 }
 
 Pen::Points MapPicture::pixels(const std::vector<maps::Point>& points) const {
@@ -78,6 +114,13 @@ void MapPicture::polygon(const std::vector<maps::Point>& corners, Colour fill, C
 void MapPicture::disc(const maps::Point& centre, double radius, Colour fill) {
   const maps::Point at = view_.pixel(centre);
   pen_.disc(at.x, at.y, radius, fill, white, 2.5);
+}
+
+void MapPicture::cross(const maps::Point& centre, double size, Colour colour) {
+  const maps::Point at = view_.pixel(centre);
+  for (const auto& [ink_of_line, width] : {std::pair(white, 9.0), std::pair(colour, 4.5)})
+    for (const double side : {1.0, -1.0})
+      pen_.line(at.x - size, at.y - side * size, at.x + size, at.y + side * size, ink_of_line, width);
 }
 
 void MapPicture::arrow(const maps::Pose& at, double size, Colour fill) {

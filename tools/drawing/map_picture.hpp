@@ -9,16 +9,29 @@
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"
 #include "tools/drawing/drawing.hpp"
-#include "tools/drawing/map_cells.hpp"
 
 namespace slalom::tools {
+
+/// The place of a picture in the map frame: `scale` pixels per m, `left` and `top` in m.
+struct MapView {
+  double scale = 1;
+  double left = 0, top = 0;
+  int width = 0, height = 0;  ///< size of the picture, pixels
+
+  /// The pixel coordinates of a point of the map frame.
+  maps::Point pixel(const maps::Point& point) const {
+    return {(point.x - left) * scale, (top - point.y) * scale};
+  }
+};
 
 /// A picture of a place seen from above, with a band for title, scale bar and speed scale below it. Lengths
 /// are metres of the map frame unless they are called pixels.
 class MapPicture {
  public:
-  /// Shows the cells of `map` that are known, `long_side` pixels along the longer side of the map.
-  explicit MapPicture(const maps::OccupancyGrid& map, int long_side = 1200);
+  /// Shows the map, or the part of it within `margin` (m) around the points if there are any, `long_side`
+  /// pixels along its longer side: free cells white, walls dark.
+  explicit MapPicture(const maps::OccupancyGrid& map, int long_side = 1200,
+                      const std::vector<maps::Point>& points = {}, double margin = 0);
 
   /// A line through points, `width` pixels.
   void line(const std::vector<maps::Point>& points, Colour colour, double width, bool closed,
@@ -33,6 +46,9 @@ class MapPicture {
 
   /// A disc of `radius` pixels with a white rim.
   void disc(const maps::Point& centre, double radius, Colour fill);
+
+  /// A cross with a white rim whose arms are `size` pixels long.
+  void cross(const maps::Point& centre, double size, Colour colour);
 
   /// An arrow head of `size` pixels at a pose.
   void arrow(const maps::Pose& at, double size, Colour fill);
