@@ -35,7 +35,7 @@ std::vector<tracking::TrackedObject> cars_near(const std::vector<maps::Reference
   return objects;
 }
 
-void update(benchmark::State& state) {
+void planner_among_cars(benchmark::State& state) {
   const auto course = reference_course();
   const auto configuration = vehicle::load_configuration(SLALOM_CONFIGS "/default.yaml");
   std::vector<double> solves;
@@ -58,7 +58,7 @@ void update(benchmark::State& state) {
   state.counters["solve_p50"] = times.p50;
   state.counters["solve_p99"] = times.p99;
 }
-BENCHMARK(update)->ArgName("cars")->Arg(0)->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond);
+BENCHMARK(planner_among_cars)->ArgName("cars")->Arg(0)->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace slalom::workload

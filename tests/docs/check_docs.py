@@ -84,7 +84,7 @@ def translation_unit(text, name, before):
         [f"namespace {name} {{", *(f"using namespace {other};" for other in before), *outside, "void statements() {", *inside, "}", "}"])
 
 
-def check_cpp(root, compiler):
+def check_cpp(root, *compiler):
     errors = []
     preamble = (Path(__file__).parent / "preamble.hpp").read_text()
     for page in pages(root):
@@ -143,6 +143,7 @@ def check_patches(root):
 def check_shell(root, program):
     """Commands of the program exist and have the options that the page gives them; scripts exist in the tree."""
     errors, help_of = [], {}
+    program = program if os.path.exists(program) else None
     for page in pages(root):
         for line, text in blocks(page, "sh"):
             if subprocess.run(["bash", "-n"], input=text, text=True, capture_output=True).returncode:
@@ -191,20 +192,12 @@ def check_site(folder):
     return sorted(set(errors))
 
 
+CHECKS = {"links": check_links, "cpp": check_cpp, "python": check_python, "patches": check_patches,
+          "shell": check_shell, "site": check_site}
+
+
 def main(what, root, *rest):
-    root = Path(root).resolve()
-    if what == "links":
-        errors = check_links(root)
-    elif what == "cpp":
-        errors = check_cpp(root, rest)
-    elif what == "python":
-        errors = check_python(root)
-    elif what == "patches":
-        errors = check_patches(root)
-    elif what == "shell":
-        errors = check_shell(root, rest[0] if rest and os.path.exists(rest[0]) else None)
-    else:
-        errors = check_site(root)
+    errors = CHECKS[what](Path(root).resolve(), *rest)
     print("\n".join(errors) if errors else f"{what}: no errors")
     return bool(errors)
 

@@ -34,7 +34,7 @@ const Target image_target(
     []() -> Seeds {
       maps::GreyImage image{5, 4, {}, {}};
       for (int i = 0; i < 20; ++i) image.grey.push_back(static_cast<std::uint8_t>(12 * i));
-      const std::string png = scratch_folder() + "/seed.png";
+      const auto png = scratch_folder().path() / "seed.png";
       maps::save_png(image, png);
       return {testing::content(png), "P5\n# by hand\n3 2\n255\nabcdef", "P2\n3 2\n15\n0 1 2\n13 14 15\n"};
     },

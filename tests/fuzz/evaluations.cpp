@@ -104,7 +104,7 @@ void check_json(std::string_view bytes) {
 }
 
 /// Loads an evaluation and the arguments of its laps. Throws IoError.
-void load(const std::string& folder) {
+void load(const std::filesystem::path& folder) {
   const tools::StoredEvaluation stored = tools::load_evaluation(folder);
   require(!stored.experiments.empty(), "an evaluation has experiments");
   for (const evaluation::Experiment& each : stored.experiments)
@@ -113,7 +113,7 @@ void load(const std::string& folder) {
 }
 
 /// Continues an evaluation whose settings are those stored. Throws IoError.
-void resume(const std::string& folder, const std::string& settings) {
+void resume(const std::filesystem::path& folder, const std::string& settings) {
   evaluation::Evaluation wanted;
   wanted.settings = settings;
   wanted.experiments = {{"mppi", {}, "oa", 5, 2}};
@@ -147,9 +147,9 @@ const Target settings_target(
       const std::string text(bytes);
       const bool is_object = parse_json_or_null(bytes).is_object();
       scratch_file("settings.json", is_object ? evaluation::with_checksum(text) : text);
-      const bool valid = is_valid([] { load(scratch_folder()); });
+      const bool valid = is_valid([] { load(scratch_folder().path()); });
       scratch_file("laps.journal.csv", evaluation::checked_header() + "\n");
-      is_valid([&] { resume(scratch_folder(), is_object ? text : "{}"); });
+      is_valid([&] { resume(scratch_folder().path(), is_object ? text : "{}"); });
       return valid;
     });
 

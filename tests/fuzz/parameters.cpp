@@ -25,7 +25,7 @@ const Target configuration_target(
     [](std::string_view bytes) {
       static const std::string other = scratch_file("other.yaml", "mppi:\n  samples: 100\n");
       const auto configuration =
-          vehicle::load_configuration(scratch_file("configuration.yaml", bytes), {scratch_folder()});
+          vehicle::load_configuration(scratch_file("configuration.yaml", bytes), {scratch_folder().path()});
       const std::string text = vehicle::to_yaml(configuration);
       require(vehicle::to_yaml(vehicle::load_configuration(scratch_file("again.yaml", text))) == text,
               "a configuration that is written reads back as the same");

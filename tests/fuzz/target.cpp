@@ -1,10 +1,5 @@
 #include "fuzz/target.hpp"
 
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-
 namespace slalom::fuzz {
 namespace {
 
@@ -12,20 +7,6 @@ std::vector<const Target*>& all_targets() {
   static std::vector<const Target*> all;
   return all;
 }
-
-/// A folder that is removed with its files when the process ends.
-struct Folder {
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const std::string path =
-      std::filesystem::temp_directory_path() / ("slalom_fuzz_" + std::to_string(::getpid()));
-};
 
 }  // namespace
 
@@ -44,18 +25,13 @@ const std::vector<const Target*>& targets() {
   return all_targets();
 }
 
-const std::string& scratch_folder() {
-  static const Folder folder;
-  return folder.path;
+const testing::ScopedFolder& scratch_folder() {
+  static const testing::ScopedFolder folder;
+  return folder;
 }
 
 std::string scratch_file(const std::string& name, std::string_view bytes) {
-  const std::string file = scratch_folder() + "/" + name;
-  std::ofstream stream(file, std::ios::binary);
-  stream << bytes;
-  stream.close();
-  if (!stream) throw std::runtime_error(file + ": cannot be written");
-  return file;
+  return scratch_folder().write(name, std::string(bytes)).string();
 }
 
 }  // namespace slalom::fuzz

@@ -8,6 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "support/promise.hpp"
+#include "support/temporary_folder.hpp"
 
 /// Fuzz targets: each hands bytes to a part of Slalom that takes something from outside, and checks the
 /// result. All targets are compiled twice: into a fuzzer (libFuzzer), and into `fuzz_test`, which needs no
@@ -49,7 +50,7 @@ struct Target {
 const std::vector<const Target*>& targets();
 
 /// The folder of this process for files of targets.
-const std::string& scratch_folder();
+const testing::ScopedFolder& scratch_folder();
 
 /// Writes a file in the scratch folder; returns its path.
 std::string scratch_file(const std::string& name, std::string_view bytes);

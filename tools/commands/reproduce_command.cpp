@@ -152,7 +152,7 @@ int run_racing(ReproduceArguments arguments) {
     const auto driver =
         gap ? make_gap_driver()
             : make_planner_driver(map, load_configuration(scenario, arguments.driver), arguments.driver, car);
-    const auto laps = drive_benchmark_laps(map, *driver, arguments.quick ? 1 : racing_laps);
+    const auto laps = drive_benchmark_laps(map, driver, arguments.quick ? 1 : racing_laps);
     const Json results = racing_results(laps);
     summary["maps"][name] = results;
     const Json& mean = results["mean_s"];

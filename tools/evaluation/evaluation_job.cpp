@@ -292,12 +292,14 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
   if (impassable > 0)
     std::fprintf(out, "a car of this width cannot pass %d of the obstacles, in laps %s\n", impassable,
                  laps.c_str());
-  if (evaluated.results.empty()) return;
-  const std::vector<int> begun = evaluated.laps_begun_in_contact(evaluated.results.front().experiment);
-  if (begun.empty()) return;
-  std::fprintf(out, "an obstacle stands where the car starts, in laps");
-  for (std::size_t i = 0; i < begun.size(); ++i) std::fprintf(out, "%s %d", i > 0 ? "," : "", begun[i]);
-  std::fprintf(out, "; no driver avoids these collisions\n");
+  std::string begun;
+  if (!evaluated.results.empty())
+    for (const int lap : evaluated.laps_begun_in_contact(evaluated.results.front().experiment))
+      begun += (begun.empty() ? "" : ", ") + std::to_string(lap);
+  if (!begun.empty())
+    std::fprintf(out,
+                 "an obstacle stands where the car starts, in laps %s; no driver avoids these collisions\n",
+                 begun.c_str());
 }
 
 }  // namespace slalom::tools

@@ -19,15 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class GapDriver : public RacingDriver {
- public:
-  Command command(const sim::RacingObservation& seen) override { return driver_.command(seen.scan); }
-
- private:
-  sim::FollowTheGap driver_;
-};
-
-class PlannerDriver : public RacingDriver {
+/// Drives with a planner of this library.
+class PlannerDriver {
  public:
   using Path = std::vector<maps::ReferencePoint>;
   using MakePlanner = std::function<vehicle::Planner(const Path&)>;
@@ -41,7 +34,7 @@ class PlannerDriver : public RacingDriver {
         car_(car),
         lidar_(lidar) {}
 
-  Command command(const sim::RacingObservation& seen) override {
+  Command operator()(const sim::RacingObservation& seen) {
     const sim::CarState& state = seen.state;
     if (laps_ == 0 || seen.time <= time_) begin_lap({state.x, state.y});
     time_ = seen.time;
@@ -76,11 +69,9 @@ class PlannerDriver : public RacingDriver {
 
 /// A driver in the loop; a step of the world is a control period.
 struct DriverOfWorld {
-  RacingDriver& driver;
+  const RacingDriver& driver;
   Command decided{};
-  const Command& decide(const sim::RacingBenchmark& world) {
-    return decided = driver.command(world.observation());
-  }
+  const Command& decide(const sim::RacingBenchmark& world) { return decided = driver(world.observation()); }
   Command command(const sim::RacingBenchmark&) const { return decided; }
   void moved(const sim::RacingBenchmark&) const {}
 };
@@ -128,8 +119,10 @@ RacingMap load_racing_map(const fs::path& folder, const std::string& name) {
   return map;
 }
 
-std::unique_ptr<RacingDriver> make_gap_driver() {
-  return std::make_unique<GapDriver>();
+RacingDriver make_gap_driver() {
+  return [driver = sim::FollowTheGap()](const sim::RacingObservation& seen) mutable {
+    return driver.command(seen.scan);
+  };
 }
 
 std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
@@ -167,9 +160,8 @@ std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
   return led;
 }
 
-std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
-                                                  const vehicle::Configuration& configuration,
-                                                  const std::string& method, const vehicle::RacingCar& car) {
+RacingDriver make_planner_driver(const RacingMap& map, const vehicle::Configuration& configuration,
+                                 const std::string& method, const vehicle::RacingCar& car) {
   const vehicle::RaceCourse course = vehicle::race_course(map.grid, car);
   std::vector<maps::ReferencePoint> path;
   for (const vehicle::RacelinePoint& point : course.raceline.points)
@@ -184,10 +176,10 @@ std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
     return vehicle::Planner(options, vehicle::make_vehicle_model(configuration.vehicle), along,
                             vehicle::make_solver(configuration, method, 1));
   };
-  return std::make_unique<PlannerDriver>(std::move(path), map.centre_line, make, simulated, lidar);
+  return PlannerDriver(std::move(path), map.centre_line, make, simulated, lidar);
 }
 
-std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, RacingDriver& driver, int laps) {
+std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, const RacingDriver& driver, int laps) {
   evaluation::Drive<sim::RacingBenchmark, DriverOfWorld> drive{
       {std::make_shared<const sim::Track>(map.grid), map.centre_line}, {{driver}}};
   sim::RacingBenchmark& world = drive.world;

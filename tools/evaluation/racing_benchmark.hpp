@@ -2,7 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -32,16 +32,12 @@ struct RacingMap {
 /// Loads `folder/NAME/NAME.yaml` and `NAME_centerline.csv`, or both from `folder` itself. Throws IoError.
 RacingMap load_racing_map(const std::filesystem::path& folder, const std::string& name);
 
-/// Drives laps by what it sees.
-class RacingDriver {
- public:
-  virtual ~RacingDriver() = default;
-  /// The command for the next control period. A time that is not later than the last one means a new lap.
-  virtual Command command(const sim::RacingObservation& seen) = 0;
-};
+/// Returns the command for the next control period. A time that is not later than the last one means a new
+/// lap.
+using RacingDriver = std::function<Command(const sim::RacingObservation& seen)>;
 
 /// The driver by which the world is compared with the published one (sim::FollowTheGap).
-std::unique_ptr<RacingDriver> make_gap_driver();
+RacingDriver make_gap_driver();
 
 /// The path (closed) for a lap that starts and ends at `start`: `path`, led to the centre line there so that
 /// the benchmark sees the end of the lap; empty if `path` itself will do. The benchmark looks for the car
@@ -54,9 +50,8 @@ std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
 /// A planner of this library along the minimum-time line of a map for `car`, which leads through the end of
 /// each lap (path_through_finish). The planner drives no faster than the car's top speed. Throws
 /// std::invalid_argument where the map leaves no such line.
-std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
-                                                  const vehicle::Configuration& configuration,
-                                                  const std::string& method, const vehicle::RacingCar& car);
+RacingDriver make_planner_driver(const RacingMap& map, const vehicle::Configuration& configuration,
+                                 const std::string& method, const vehicle::RacingCar& car);
 
 /// A lap as it ended.
 struct BenchmarkLap {
@@ -68,7 +63,7 @@ struct BenchmarkLap {
 };
 
 /// Drives the laps of a map.
-std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, RacingDriver& driver, int laps);
+std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, const RacingDriver& driver, int laps);
 
 /// `mean_s` (of completed laps, null without any), `completed`, `at_time_limit` (of the completed), `laps`,
 /// `beyond_grip` (share of all steps), `lap_times_s` (null for a collision).
