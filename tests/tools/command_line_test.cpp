@@ -96,7 +96,7 @@ TEST_F(CommandLine, EveryNumberIsCheckedInTheSameWords) {
         refuses(begin + " " + value, {"slalom: " + option + ": '" + value + "' must be a "}, 2);
       }
     }
-  EXPECT_GT(options, 50);
+  EXPECT_GT(options, 40);
   EXPECT_GT(ranges, 30);
 }
 

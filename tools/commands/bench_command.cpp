@@ -43,8 +43,8 @@ std::vector<vehicle::VehicleOptions> models_to_compare() {
   vehicle::VehicleOptions gripping;
   static_cast<vehicle::PathTrackingOptions&>(gripping) = sliding;
   std::vector<vehicle::VehicleOptions> made{gripping, gripping, sliding, sliding};
-  made[0].options.model = vehicle::vehicle_model("kinematic");
-  made[1].options.model = vehicle::vehicle_model("kinematic_acceleration");
+  made[0].model = vehicle::vehicle_model("kinematic");
+  made[1].model = vehicle::vehicle_model("kinematic_acceleration");
   made[2].own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::linear;
   made[3].own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::saturating;
   return made;

@@ -12,13 +12,13 @@
 namespace slalom::tools {
 namespace {
 
-constexpr Colour line_colour{0.62, 0.66, 0.73, 0.9};  // of centre lines and paths
+constexpr Colour line_colour{0.62, 0.66, 0.73, 0.9};  // centre lines and paths
 constexpr Colour corridor_side{0.16, 0.52, 0.36, 0.7};
 constexpr Colour nearest{0.80, 0.13, 0.18, 1};
 constexpr Colour tightest{0.42, 0.20, 0.62, 1};
 constexpr Colour obstacle_fill{0.32, 0.36, 0.44, 1};
 constexpr Colour hit_fill{0.80, 0.13, 0.23, 1};
-constexpr int long_side = 1400;  // pixels
+constexpr int picture_side = 1400;  // pixels
 
 template <class Points>
 std::vector<maps::Point> positions(const Points& points) {
@@ -54,7 +54,7 @@ void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup,
   const std::vector<maps::Point> path = positions(setup.environment->path);
   std::vector<maps::Point> shown = driven.points;
   shown.insert(shown.end(), path.begin(), path.end());
-  MapPicture picture(map, long_side, shown, 3);
+  MapPicture picture(map, picture_side, shown, 3);
   picture.line(path, line_colour, 2, setup.environment->course.closed, true);
   // Acceleration from standstill would take up most of the scale.
   const auto [slowest, fastest] = speed_scale(driven.speeds, 0.02);
@@ -102,7 +102,7 @@ void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& ca
                                points.begin());
   std::vector<maps::Point> shown = left;
   shown.insert(shown.end(), right.begin(), right.end());
-  MapPicture picture(course.map, long_side, shown, 2);
+  MapPicture picture(course.map, picture_side, shown, 2);
   picture.line(left, corridor_side, 2, corridor.closed);
   picture.line(right, corridor_side, 2, corridor.closed);
   picture.line(corridor.centre_line, line_colour, 1.5, corridor.closed, true);

@@ -3,8 +3,6 @@
 #include <cairo.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
 
 namespace slalom::tools {
@@ -98,23 +96,14 @@ void Pen::show(cairo_surface_t* surface) {
   set({});  // keeps no reference to the surface
 }
 
-void Pen::image(const std::vector<Colour>& colours, int width, double x, double y, double angle,
-                double scale) {
-  const auto byte = [](double part) { return static_cast<std::uint32_t>(std::lround(255 * part)); };
-  std::vector<std::uint32_t> pixels;
-  for (const Colour& c : colours) pixels.push_back(byte(c.red) << 16 | byte(c.green) << 8 | byte(c.blue));
-  cairo_surface_t* source =
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, static_cast<int>(colours.size()) / width);
+void Pen::image(const std::vector<std::uint32_t>& pixels, int width) {
+  const int height = static_cast<int>(pixels.size()) / width;
+  cairo_surface_t* source = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
   if (unsigned char* const bytes = cairo_image_surface_get_data(source)) {
     std::memcpy(bytes, pixels.data(), pixels.size() * sizeof pixels[0]);  // a row has no padding
     cairo_surface_mark_dirty(source);
   }
-  cairo_save(cairo_);
-  cairo_translate(cairo_, x, y);
-  cairo_rotate(cairo_, angle);
-  cairo_scale(cairo_, scale, scale);
   show(source);
-  cairo_restore(cairo_);
   cairo_surface_destroy(source);
 }
 

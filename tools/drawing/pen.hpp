@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,10 +48,8 @@ class Pen {
             bool bold = false);
   /// The width of a text.
   double text_width(const std::string& words, double size, bool bold = false);
-  /// An image of opaque pixels, row by row, `width` in a row. Its upper left corner is at (x, y), it is
-  /// turned by `angle` (rad, clockwise), and its pixels are `scale` wide, with smooth transitions between
-  /// them.
-  void image(const std::vector<Colour>& colours, int width, double x, double y, double angle, double scale);
+  /// An image of pixels 0xAARRGGBB, row by row, `width` in a row, with the upper left corner at the origin.
+  void image(const std::vector<std::uint32_t>& pixels, int width);
   /// Copies the picture of another surface, with its upper left corner at the origin.
   void show(_cairo_surface* surface);
   void fill_surface(Colour colour);

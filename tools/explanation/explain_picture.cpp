@@ -117,7 +117,7 @@ void draw_space(Pen& pen, const Cell& cell) {
   pen.unclip();
   pen.box(cell.left, cell.top, space_width, space_height, {0, 0, 0, 0}, frame, 1, 0);
   for (int i = 0; i <= static_cast<int>(cell.length() + 1e-9); ++i)
-    pen.text(cell.x(i), cell.top + space_height + 15, 11, formatted("%g", i), faint_ink, 0.5);
+    pen.text(cell.x(i), cell.top + space_height + 15, 11, formatted("%d", i), faint_ink, 0.5);
   for (const double at : {-1.0, 0.0, 1.0})
     pen.text(cell.left - 7, cell.y(at) + 4, 11, formatted("%g", at), faint_ink, 1);
   pen.text(cell.left + space_width / 2, cell.top + space_height + 29, 11, "ahead, m", faint_ink, 0.5);

@@ -41,7 +41,7 @@ void draw(const Evaluated& evaluated, const std::string& scenario, const std::fi
   const int obstacles = evaluation.experiments[static_cast<std::size_t>(mppi)].obstacles;
   std::vector<maps::Point> path;
   for (const auto& point : evaluation.environment->path) path.push_back({point.x, point.y});
-  MapPicture picture(cropped(course.map, path, 3.0), 1400);
+  MapPicture picture(course.map, 1400, path, 3);
   picture.line(path, path_colour, 2, course.closed, true);
   std::vector<std::pair<std::string, Colour>> key;
   for (const auto& [name, experiment] :

@@ -34,7 +34,7 @@ class ProgressLine {
   std::FILE* stream_;
   bool terminal_, colour_ = false;
   bool shown_ = false;
-  int tenth_ = -1;  ///< of an evaluation, printed last
+  int tenth_ = -1;  ///< tenth of an evaluation that was printed last
   std::chrono::steady_clock::time_point next_{};
 };
 
