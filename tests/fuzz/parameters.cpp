@@ -16,11 +16,11 @@ namespace {
 const Target configuration_target(
     "configuration", 8192,
     []() -> Seeds {
-      return {
-          vehicle::to_yaml({}),
-          "base: other\nsvg_mppi:\n  samples: 4000\n  variance: [0.1]\nvehicle:\n  max_speed: 6\n  model: "
-          "kinematic\n",
-          "mppi: {temperature: 0.5, input_min: -.inf}\nplanner: {stop_when_blocked: true}\n"};
+      return {vehicle::to_yaml({}),
+              "base: other\nsvg_mppi:\n  samples: 4000\n  variance: [0.1]\nplanner:\n  max_speed: "
+              "6\nvehicle:\n  model: "
+              "kinematic\n",
+              "mppi: {temperature: 0.5, input_min: -.inf}\nplanner: {stop_when_blocked: true}\n"};
     },
     [](std::string_view bytes) {
       static const std::string other = scratch_file("other.yaml", "mppi:\n  samples: 100\n");

@@ -147,7 +147,7 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
 }
 
 TEST_F(DriveCommand, FailsWhereALapIsNotFinishedButWritesResults) {
-  std::ofstream(folder_ / "slow.yaml") << "base: default\nvehicle:\n  max_speed: 0.02\n";
+  std::ofstream(folder_ / "slow.yaml") << "base: default\nplanner:\n  max_speed: 0.02\n";
   const fs::path course = spoiled();
   std::ofstream(course / "course.yaml") << "timeout: 0.5\n";
   const auto run = run_program("drive --course spoiled --config slow.yaml --json out.json", folder_.string());

@@ -34,6 +34,14 @@ struct Maps {
 
 using Car = PathTracking<Kinematic>;
 
+/// A vehicle problem on these maps.
+template <class Problem = Car>
+Problem on(const Maps& maps, const PathTrackingOptions& options) {
+  Problem car(options);
+  maps.give_to(car);
+  return car;
+}
+
 // The cost map of a box holds the whole body, seen from the rear axle; the map of clearances holds a point.
 TEST(ObstacleCost, LooksAheadOfTheRearAxleWithDiscsOnly) {
   BodyOptions body;
@@ -47,9 +55,8 @@ TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
   PathTrackingOptions options;
   options.time_step = 0.001;
   options.speed = SpeedModel::constant;
-  Car car(options);
   const Maps maps;
-  maps.give_to(car);
+  const Car car = on(maps, options);
   const double steer = 0.3, radius = 0.3302 / std::tan(steer);
   Car::State<double> s{0, 0, 0, 1, steer, 0};
   const double turn = 1.0 / radius;  // after 1 s at 1 m/s
@@ -101,9 +108,8 @@ TEST(PathTracking, CostIsThatOfDistanceYawAndCollision) {
   options.cost.outside_cost = 70;
   options.cost.outside_terminal_cost = 11;
   options.body.model = BodyModel::box;
-  Car car(options);
   const Maps maps;
-  maps.give_to(car);
+  const Car car = on(maps, options);
   const Car::State<double> inside{0.2, 0.3, 6.5, 1, 0, 0}, outside{50, 0, 1, 1, 0, 0};
   const Input<double, 1> u{{0}};
   const double error = 6.5 - 2 * std::acos(-1.0);
@@ -118,9 +124,8 @@ TEST(PathTracking, SpeedFollowsTheReferenceWithinItsLimits) {
   PathTrackingOptions options;
   options.max_acceleration = 4;
   options.max_deceleration = 2;
-  Car car(options);
   const Maps maps;
-  maps.give_to(car);
+  const Car car = on(maps, options);
   const auto next_speed = [&](double speed) {
     const Car::State<double> s{0, 0, 0, speed, 0, 0};
     return car.step(s, car.look_up(s), Input<double, 1>{{0}}, 0).speed;
@@ -136,10 +141,11 @@ TEST(PathTracking, AccelerationAsAnInputStaysWithinTheCarsLimitsAndThePathsSpeed
   options.max_deceleration = 2;
   options.cost.speed_weight = 0.5;
   options.body.model = BodyModel::box;
-  PathTracking<KinematicAcceleration> car(options);
   const Maps maps;  // 3 m/s, 2 m off the path
-  maps.give_to(car);
-  const auto at = [](double speed) { return decltype(car)::State<double>{0, 0, 0, speed, 0, 0}; };
+  const auto car = on<PathTracking<KinematicAcceleration>>(maps, options);
+  const auto at = [](double speed) {
+    return PathTracking<KinematicAcceleration>::State<double>{0, 0, 0, speed, 0, 0};
+  };
   const auto next_speed = [&](double speed, double acceleration) {
     return car.step(at(speed), car.look_up(at(speed)), Input<double, 2>{{0, acceleration}}, 0).speed;
   };
@@ -179,8 +185,7 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
   options.body.model = BodyModel::discs;
   options.body.front = 1.2;
   options.body.rear = 0;
-  Car car(options);
-  maps.give_to(car);
+  const Car car = on(maps, options);
   const Car::State<double> towards{0.5, 0.5, 0, 1, 0, 0}, away{0.5, 0.5, std::acos(-1.0), 1, 0, 0};
   EXPECT_EQ(car.look_up(towards).obstacle, 100);
   EXPECT_EQ(car.look_up(away).obstacle, 0);
@@ -197,9 +202,7 @@ TEST(PathTracking, SmallClearanceCostsBeforeACollision) {
   const auto value_at = [&](double clearance) {
     Maps maps;
     for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : static_cast<float>(clearance);
-    Car car(options);
-    maps.give_to(car);
-    return car.look_up(Car::State<double>{0, 0, 0, 1, 0, 0}).obstacle;
+    return on(maps, options).look_up(Car::State<double>{0, 0, 0, 1, 0, 0}).obstacle;
   };
   EXPECT_EQ(value_at(radius + options.body.margin - 0.01), 100);
   EXPECT_NEAR(value_at(radius + options.body.margin + 0.5 * options.body.soft_margin), 8 * 0.25, 1e-4);

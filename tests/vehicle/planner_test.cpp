@@ -8,10 +8,10 @@
 #include <tuple>
 #include <vector>
 
-#include "slalom/solvers/svg_mppi_options.hpp"
 #include "support/lane.hpp"
 #include "support/thrown_words.hpp"
 #include "vehicle/planner/back_up.hpp"
+#include "vehicle/planner/lane_scan.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -36,16 +36,7 @@ VehicleOptions small_car() {
 }
 
 SvgMppiOptions few_samples() {
-  SvgMppiOptions method;
-  method.horizon = 20;
-  method.samples = 512;
-  method.variance = 0.03;
-  method.guides.variance = method.guides.gradient_variance = 0.01;
-  method.guides.step = 0.005;
-  method.variance_min = 0.001;
-  method.variance_max = 0.1;
-  method.input_min = -0.4;
-  method.input_max = 0.4;
+  SvgMppiOptions method = testing::few_steering_samples();
   method.seed = 7;
   return method;
 }
@@ -55,32 +46,16 @@ Planner make_planner(const PlannerOptions& options = careful(),
   return {options, make_vehicle_model(small_car()), lane(), make_solver(method, 1)};
 }
 
-/// The ranges that a laser 0.275 m ahead of the rear axle measures in a corridor of half width 1.5 m round
-/// the lane and of a wall across it `wall` m ahead of the axle, from `gap` m on to the left of it.
-struct Corridor {
-  double wall = 1e9, gap = 1e9;  ///< m
-  std::vector<float> ranges = std::vector<float>(271);
-
-  maps::LaserScanView scan(double y = 0) {
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const double angle = angle_min + static_cast<double>(i) * step;
-      const double c = std::cos(angle), s = std::sin(angle);
-      double range = 29;
-      if (s > 1e-6) range = std::min(range, (1.5 - y) / s);
-      if (s < -1e-6) range = std::min(range, (-1.5 - y) / s);
-      if (c > 1e-6) {
-        const double to_wall = (wall - 0.275) / c;
-        if (y + to_wall * s < gap) range = std::min(range, to_wall);
-      }
-      ranges[i] = static_cast<float>(range);
-    }
-    return {ranges, angle_min, step, 0.05, 30};
-  }
-  static constexpr double angle_min = -2.35, step = 4.7 / 270;
-};
+/// The scan in a corridor of half width 1.5 m round the lane with a wall across it `wall` m ahead of the
+/// axle, which leaves a gap from `gap` m on to the left.
+testing::LaneScan corridor(double wall = 100, double gap = 1.5, double y = 0) {
+  std::vector<testing::Wall> walls = testing::beside_lane(1.5, y);
+  walls.push_back({{wall, -1.5 - y}, {wall, gap - y}});
+  return testing::LaneScan(walls);
+}
+const testing::LaneScan free_lane = corridor();
 
 TEST(Planner, FollowsAFreeLaneAtItsSpeed) {
-  Corridor corridor;
   // With few samples a plan's end is left to chance.
   SvgMppiOptions method = few_samples();
   method.samples = 4096;
@@ -90,7 +65,7 @@ TEST(Planner, FollowsAFreeLaneAtItsSpeed) {
   for (method.seed = 0; method.seed < 20; ++method.seed) {
     Planner planner = make_planner(careful(), method);
     for (int i = 0; i < 5; ++i) {
-      const PlannerOutput& out = planner.update({corridor.scan(), {{5, 0, 0}, 3}});
+      const PlannerOutput& out = planner.update({free_lane.view(), {{5, 0, 0}, 3}});
       EXPECT_EQ(out.status, PlannerStatus::ok);
       EXPECT_DOUBLE_EQ(out.command.speed, 3);
       ASSERT_EQ(out.predicted.size(), 21u);
@@ -102,9 +77,9 @@ TEST(Planner, FollowsAFreeLaneAtItsSpeed) {
 
 TEST(Planner, SteersRoundAnObstacleOnTheSideThatIsFree) {
   Planner planner = make_planner();
-  Corridor corridor{.wall = 3, .gap = 0.1};
-  for (int i = 0; i < 20; ++i) planner.update({corridor.scan(), {{5, 0, 0}, 3}});
-  const PlannerOutput& out = planner.update({corridor.scan(), {{5, 0, 0}, 3}});
+  const testing::LaneScan scan = corridor(3, 0.1);
+  for (int i = 0; i < 20; ++i) planner.update({scan.view(), {{5, 0, 0}, 3}});
+  const PlannerOutput& out = planner.update({scan.view(), {{5, 0, 0}, 3}});
   double sideways = 0;
   for (const PredictedState& s : out.predicted) sideways = std::max(sideways, s.pose.y);
   EXPECT_GT(sideways, 0.2);
@@ -112,21 +87,20 @@ TEST(Planner, SteersRoundAnObstacleOnTheSideThatIsFree) {
 
 TEST(Planner, ObstaclesFromOutsideCountAsTheScansDo) {
   Planner planner = make_planner();
-  Corridor corridor;
   std::vector<maps::Point> wall;
   for (double y = -1.5; y < 1.5; y += 0.04) wall.push_back({1.5, y});
   const PlannerOutput* out = nullptr;
-  for (int i = 0; i < 5; ++i) out = &planner.update({corridor.scan(), {{5, 0, 0}, 3}, wall});
+  for (int i = 0; i < 5; ++i) out = &planner.update({free_lane.view(), {{5, 0, 0}, 3}, wall});
   EXPECT_EQ(out->status, PlannerStatus::blocked);
   EXPECT_LT(out->command.speed, 3);
 }
 
 TEST(Planner, BrakesWhereEveryPlanCollides) {
   Planner planner = make_planner();
-  Corridor corridor{.wall = 1.5};
+  const testing::LaneScan scan = corridor(1.5);
   double speed = 3;
   for (int i = 0; i < 60; ++i) {
-    const PlannerOutput& out = planner.update({corridor.scan(), {{5, 0, 0}, speed}});
+    const PlannerOutput& out = planner.update({scan.view(), {{5, 0, 0}, speed}});
     EXPECT_EQ(out.status, PlannerStatus::blocked);
     EXPECT_LE(out.command.speed, speed);
     speed = std::max(out.command.speed, 0.2);
@@ -156,8 +130,8 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
     double x = 5, speed = 3;
     bool blocked = false;
     for (int i = 0; i < 120; ++i) {
-      Corridor corridor{.wall = wall - x};
-      const PlannerOutput& out = planner.update({corridor.scan(), {{x, 0, 0}, speed}});
+      const testing::LaneScan scan = corridor(wall - x);
+      const PlannerOutput& out = planner.update({scan.view(), {{x, 0, 0}, speed}});
       EXPECT_EQ(out.inputs_per_step, 2);
       EXPECT_EQ(out.inputs.size(), 40u);
       EXPECT_EQ(out.predicted.size(), 21u);
@@ -187,9 +161,9 @@ TEST(Planner, CommandsAnglesAtWhichTheSteeringSettles) {
   options.steer_resolution = 0.05;
   Planner planner(options, make_vehicle_model(car), lane(), make_solver(method, 2));
   double largest = 0;
+  const testing::LaneScan scan = corridor(100, 1.5, 0.5);
   for (int i = 0; i < 10; ++i) {
-    Corridor corridor;
-    const double steer = planner.update({corridor.scan(0.5), {{5 + 0.05 * i, 0.5, 0}, 2}}).command.steer;
+    const double steer = planner.update({scan.view(), {{5 + 0.05 * i, 0.5, 0}, 2}}).command.steer;
     EXPECT_NEAR(steer / 0.05, std::round(steer / 0.05), 1e-9);
     EXPECT_LE(std::abs(steer), options.steer_limit);
     largest = std::max(largest, std::abs(steer));
@@ -202,11 +176,10 @@ TEST(Planner, ReversesFromAnObstacleInCollision) {
     PlannerOptions options = careful();
     options.back_up = back_up;
     Planner planner = make_planner(options);
-    Corridor corridor{.wall = 0.48};
+    const testing::LaneScan scan = corridor(0.48);
     double slowest = 100;
-    for (int i = 0; i < 40; ++i) {
-      slowest = std::min(slowest, planner.update({corridor.scan(), {{5, 0, 0}, 0}}).command.speed);
-    }
+    for (int i = 0; i < 40; ++i)
+      slowest = std::min(slowest, planner.update({scan.view(), {{5, 0, 0}, 0}}).command.speed);
     EXPECT_EQ(slowest < 0, back_up);
   }
 }
@@ -230,32 +203,35 @@ TEST(PlannerReversing, WaitsThenReversesUntilTheWayIsFree) {
 
 /// An input from which no plan can be made: a status, and a car that stops with its wheels held.
 TEST(Planner, InvalidInputStopsTheCarAndValidInputRestartsIt) {
-  Corridor corridor;
   const Odometry good{{5, 0, 0}, 3};
   const std::vector<float> nothing(271, std::numeric_limits<float>::infinity()),
       nonsense(271, std::numeric_limits<float>::quiet_NaN()), one(1, 2.0F), many(5000, 2.0F);
-  const auto scan_of = [](const std::vector<float>& ranges) {
-    return maps::LaserScanView{ranges, Corridor::angle_min, Corridor::step, 0.05, 30};
-  };
+  const auto scan_of = [](const std::vector<float>& ranges) { return free_lane.view_of(ranges); };
   struct Case {
     const char* what;
     maps::LaserScanView scan;
     Odometry odometry;
     PlannerStatus status;
   };
-  const std::vector<float> seen(corridor.scan().ranges.begin(), corridor.scan().ranges.end());
-  const maps::LaserScanView fine = scan_of(seen);
+  const maps::LaserScanView fine = free_lane.view();
+  maps::LaserScanView turned = fine;
+  turned.angle_min = nan;
   const Case cases[] = {
       {"no ranges", {}, good, PlannerStatus::bad_scan},
       {"one range", scan_of(one), good, PlannerStatus::bad_scan},
       {"too many ranges", scan_of(many), good, PlannerStatus::bad_scan},
       {"only infinite ranges", scan_of(nothing), good, PlannerStatus::bad_scan},
       {"only NaN ranges", scan_of(nonsense), good, PlannerStatus::bad_scan},
-      {"NaN angle", {seen, nan, Corridor::step, 0.05, 30}, good, PlannerStatus::bad_scan},
+      {"NaN angle", turned, good, PlannerStatus::bad_scan},
       {"NaN x", fine, {{nan, 0, 0}, 3}, PlannerStatus::bad_odometry},
       {"infinite y", fine, {{5, INFINITY, 0}, 3}, PlannerStatus::bad_odometry},
       {"NaN yaw", fine, {{5, 0, nan}, 3}, PlannerStatus::bad_odometry},
       {"NaN speed", fine, {{5, 0, 0}, nan}, PlannerStatus::bad_odometry},
+      {"fast", fine, {{5, 0, 0}, 4132}, PlannerStatus::bad_odometry},
+      {"fast backwards", fine, {{5, 0, 0}, -1e300}, PlannerStatus::bad_odometry},
+      {"far x", fine, {{1.1e7, 0, 0}, 1}, PlannerStatus::bad_odometry},
+      {"far y", fine, {{0, -1e300, 0}, 1}, PlannerStatus::bad_odometry},
+      {"many turns", fine, {{0, 0, 1.1e7}, 1}, PlannerStatus::bad_odometry},
       {"far off the path", fine, {{5, 400, 0}, 3}, PlannerStatus::off_course},
   };
   Planner planner = make_planner();
@@ -273,26 +249,23 @@ TEST(Planner, InvalidInputStopsTheCarAndValidInputRestartsIt) {
 }
 
 TEST(Planner, SomeBadRangesAreLeftOut) {
-  Corridor corridor;
-  corridor.scan();
-  for (std::size_t i = 0; i < corridor.ranges.size(); i += 3) {
-    corridor.ranges[i] = i % 2 ? std::numeric_limits<float>::quiet_NaN() : -1.0F;
-  }
+  testing::LaneScan scan = corridor();
+  for (std::size_t i = 0; i < scan.ranges().size(); i += 3)
+    scan.ranges()[i] = i % 2 ? std::numeric_limits<float>::quiet_NaN() : -1.0F;
   Planner planner = make_planner();
-  const PlannerOutput& out =
-      planner.update({{corridor.ranges, Corridor::angle_min, Corridor::step, 0.05, 30}, {{5, 0, 0}, 3}});
+  const PlannerOutput& out = planner.update({scan.view(), {{5, 0, 0}, 3}});
   EXPECT_EQ(out.status, PlannerStatus::ok);
   EXPECT_EQ(out.scan.invalid, 91);
 }
 
 TEST(Planner, ResetMakesItNew) {
-  Corridor corridor{.wall = 3, .gap = 0.1};
+  const testing::LaneScan scan = corridor(3, 0.1);
   Planner planner = make_planner();
   const auto drive = [&] {
     planner.reset(11);
     std::vector<double> steers;
     for (int i = 0; i < 10; ++i) {
-      steers.push_back(planner.update({corridor.scan(), {{5 + 0.05 * i, 0, 0}, 3}}).command.steer);
+      steers.push_back(planner.update({scan.view(), {{5 + 0.05 * i, 0, 0}, 3}}).command.steer);
     }
     return steers;
   };

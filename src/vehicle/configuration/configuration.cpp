@@ -5,9 +5,8 @@
 namespace slalom::vehicle {
 namespace {
 
-/// `vehicle.max_speed` is an alias: the limit is one of the car, though the planner applies it.
+/// Returns the key with its section.
 std::string resolved(std::string_view key, std::string_view default_section) {
-  if (key == "vehicle.max_speed") return "planner.max_speed";
   if (key.find('.') == std::string_view::npos && !default_section.empty())
     return std::string(default_section) + "." + std::string(key);
   return std::string(key);
@@ -15,7 +14,7 @@ std::string resolved(std::string_view key, std::string_view default_section) {
 
 [[noreturn]] void throw_unknown_key(const Configuration& configuration, std::string_view key) {
   std::string sections;
-  std::vector<std::string> keys = {"vehicle.max_speed"};
+  std::vector<std::string> keys;
   bool section_known = false;
   const std::string_view section = key.substr(0, key.find('.'));
   for (const Section& each : list_sections(configuration)) {
@@ -31,13 +30,6 @@ std::string resolved(std::string_view key, std::string_view default_section) {
   if (const std::string near = nearest_name(key, keys); !near.empty())
     message += "; did you mean " + near + "?";
   throw std::invalid_argument(message);
-}
-
-/// Values that another key has since the versions before.
-void check_moved_value(std::string_view key, std::string_view text) {
-  if (key == "vehicle.speed" && text == "input")
-    throw std::invalid_argument(
-        "'input' is no longer a speed model; set vehicle.model: kinematic_acceleration");
 }
 
 /// A list of the wrong length would only be found when a solver is made, far from the line that sets it.
@@ -89,7 +81,6 @@ void set_option(Configuration& configuration, std::string_view key, std::string_
     visit_sections(configuration, [&](std::string_view section, auto& options) {
       if (dot == std::string::npos || section != std::string_view(full).substr(0, dot)) return;
       const std::string_view name = std::string_view(full).substr(dot + 1);
-      check_moved_value(full, text);
       auto changed = options;
       found = slalom::set_option(changed, name, text);
       check_count(changed, name, text, configuration.vehicle);

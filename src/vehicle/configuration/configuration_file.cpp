@@ -79,14 +79,6 @@ void check_section(const Configuration& configuration, const fs::path& file, con
 
 /// Rules between the keys of a file, in whatever order they are.
 void check_together(const Configuration& configuration, const fs::path& file, Lines& lines) {
-  const std::string speed = "planner.max_speed", same = "vehicle.max_speed";
-  if (lines.count(speed) && lines.count(same)) {
-    const bool ordered = lines[same] < lines[speed];
-    const std::string &first = ordered ? same : speed, &second = ordered ? speed : same;
-    throw IoError(file.string(), lines[second],
-                  "key " + second + ": duplicate key; it is an alias of " + first + ", which line " +
-                      std::to_string(lines[first]) + " sets");
-  }
   const int inputs = input_count(configuration.vehicle);
   for (const Section& section : list_sections(configuration)) {
     for (const OptionEntry& entry : section.options) {

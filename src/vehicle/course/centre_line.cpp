@@ -14,31 +14,6 @@ constexpr double turning_radius = 0.9;  // m, more than the 0.74 m of a 1/10 car
 constexpr double step = 0.1;            // m, of the finished centre line
 constexpr int max_draws = 6000;
 
-/// The parameters of the polygons of a character.
-struct Style {
-  double corner_spacing;              ///< m of centre line per corner
-  double depth;                       ///< how far corners move inwards, as a fraction of the radius
-  double stretch;                     ///< largest ratio of the sides
-  double swirl;                       ///< largest rotation of the rim against the centre, rad
-  double small_radius, large_radius;  ///< m, range of the radii of corners
-  double smoothing;                   ///< m, standard deviation along the path
-  double min_winding, max_winding;    ///< integral of |curvature| in multiples of 2 pi, at 60 m of length
-};
-
-Style style_of(TrackCharacter character) {
-  switch (character) {
-    case TrackCharacter::fast:
-      return {11.0, 0.35, 2.0, 0.3, 3.0, 9.0, 1.2, 1.15, 1.6};
-    case TrackCharacter::twisty:
-      return {4.3, 0.74, 1.7, 1.1, 1.1, 2.0, 0.45, 2.6, 9.0};
-    case TrackCharacter::narrow:
-      return {6.0, 0.60, 1.6, 0.8, 1.2, 3.5, 0.55, 1.6, 4.0};
-    case TrackCharacter::balanced:
-      break;
-  }
-  return {7.0, 0.60, 1.8, 0.7, 1.3, 4.5, 0.6, 1.4, 2.6};
-}
-
 /// The SplitMix64 generator (Steele, Lea & Flood, OOPSLA 2014): the same numbers on every machine.
 class Draw {
  public:
@@ -176,13 +151,23 @@ void lay_flat(Curve& curve) {
 
 }  // namespace
 
+const Style& style_of(TrackCharacter character) noexcept {
+  static constexpr Style styles[] = {
+      {"balanced", 6.0, 2.2, 7.0, 0.60, 1.8, 0.7, 1.3, 4.5, 0.6, 1.4, 2.6},
+      {"fast", 7.0, 2.6, 11.0, 0.35, 2.0, 0.3, 3.0, 9.0, 1.2, 1.15, 1.6},
+      {"twisty", 5.0, 2.2, 4.3, 0.74, 1.7, 1.1, 1.1, 2.0, 0.45, 2.6, 9.0},
+      {"narrow", 4.5, 1.5, 6.0, 0.60, 1.6, 0.8, 1.2, 3.5, 0.55, 1.6, 4.0},
+  };
+  return styles[static_cast<int>(character)];
+}
+
 double min_radius(const TrackGeneratorOptions& options) {
   const double half = 0.5 * options.width;
   return std::max(half + options.wall, half - options.wall_margin + turning_radius);
 }
 
 Curve make_centre_line(const TrackGeneratorOptions& options) {
-  const Style style = style_of(options.character);
+  const Style& style = style_of(options.character);
   Draw draw(options.seed);
   const double small = std::max(style.small_radius, 1.1 * min_radius(options));
   const double large = std::max(style.large_radius, 1.5 * small);

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "vehicle/course/closed_curve.hpp"
+#include "vehicle/course/curve.hpp"
 
 namespace slalom::vehicle {
 namespace {

@@ -3,26 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "slalom/core/gravity.hpp"
 #include "vehicle/course/speed_passes.hpp"
+#include "vehicle/require.hpp"
 
 namespace slalom::vehicle {
 namespace {
-
-void require_positive(const char* key, double value) {
-  if (!(value > 0) || !std::isfinite(value))
-    throw std::invalid_argument(std::string(key) + ": " + std::to_string(value) +
-                                " must be finite and above 0");
-}
-
-void require_positive(const SpeedLimits& limits) {
-  require_positive("top_speed", limits.top_speed);
-  require_positive("lateral_acceleration", limits.lateral_acceleration);
-  require_positive("acceleration", limits.acceleration);
-  require_positive("braking", limits.braking);
-}
 
 double yaw_of(const maps::Point& from, const maps::Point& to) {
   return std::atan2(to.y - from.y, to.x - from.x);
@@ -37,7 +24,7 @@ SpeedLimits grip_limits(double friction, double top_speed, double acceleration, 
 
 std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
                                   const SpeedLimits& limits) {
-  require_positive("step", step);
+  detail::require_positive("step", step);
   const std::size_t n = curvature.size();
   return feasible_speeds(std::vector<double>(n, limits.top_speed), curvature, std::vector<double>(n, step),
                          true, limits);
@@ -45,7 +32,7 @@ std::vector<double> speed_profile(const std::vector<double>& curvature, double s
 
 std::vector<double> feasible_speeds(std::span<const double> given, std::span<const double> curvature,
                                     std::span<const double> step, bool closed, const SpeedLimits& limits) {
-  require_positive(limits);
+  detail::require_positive(limits);
   const std::size_t n = given.size();
   if (curvature.size() != n || step.size() != n)
     throw std::invalid_argument("feasible_speeds: speed, curvature and step must have the same size");
@@ -54,13 +41,15 @@ std::vector<double> feasible_speeds(std::span<const double> given, std::span<con
   for (std::size_t i = 0; i < n; ++i)
     speed[i] = std::min({given[i], limits.top_speed,
                          std::sqrt(limits.lateral_acceleration / std::max(std::abs(curvature[i]), 1e-9))});
-  const auto strongest = [&](double strength) {
-    return [&limits, strength](double v, double k) {
-      return strength * detail::share_left(v, k, limits.lateral_acceleration);
+  // The acceleration at the start of a piece holds for all of it.
+  const auto reach = [&](double strength) {
+    return [&, strength](std::size_t from, std::size_t to, double way) {
+      const double v = speed[from];
+      const double a = strength * detail::share_left(v, curvature[from], limits.lateral_acceleration);
+      speed[to] = std::min(speed[to], std::sqrt(v * v + 2 * a * way));
     };
   };
-  detail::lower_to_reachable(speed, curvature, step, closed, strongest(limits.acceleration),
-                             strongest(limits.braking));
+  detail::for_each_piece(speed, step, closed, reach(limits.acceleration), reach(limits.braking));
   return speed;
 }
 

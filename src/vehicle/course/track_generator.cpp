@@ -5,8 +5,9 @@
 #include <stdexcept>
 
 #include "slalom/vehicle/course/raceline.hpp"
-#include "vehicle/course/closed_curve.hpp"
+#include "vehicle/course/curve.hpp"
 #include "vehicle/course/track_parts.hpp"
+#include "vehicle/require.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -20,11 +21,6 @@ using detail::operator*;
 constexpr double program_step = 0.25;   // m between the points of the raceline's quadratic program
 constexpr double raceline_step = 0.11;  // m
 constexpr int curvature_reach = 3;      // rows, reduces the noise of second differences
-
-void require(bool holds, const char* key, double value, const char* rule) {
-  if (!holds)
-    throw std::invalid_argument(std::string(key) + ": " + std::to_string(value) + " must be " + rule);
-}
 
 Curve make_raceline(const Curve& centre_line, const TrackGeneratorOptions& options) {
   // A multiple of 16 halves evenly down to the coarsest level.
@@ -109,54 +105,26 @@ std::size_t detail::start_row(const std::vector<double>& speed) {
 }
 
 const char* name(TrackCharacter character) noexcept {
-  switch (character) {
-    case TrackCharacter::balanced:
-      return "balanced";
-    case TrackCharacter::fast:
-      return "fast";
-    case TrackCharacter::twisty:
-      return "twisty";
-    case TrackCharacter::narrow:
-      return "narrow";
-  }
-  return "unknown";
+  return detail::style_of(character).name;
 }
 
 TrackCharacter track_character(const std::string& text) {
   for (const auto character :
        {TrackCharacter::balanced, TrackCharacter::fast, TrackCharacter::twisty, TrackCharacter::narrow})
-    if (text == name(character)) return character;
+    if (text == detail::style_of(character).name) return character;
   throw std::invalid_argument("character: '" + text + "' must be balanced, fast, twisty or narrow");
 }
 
 double usual_top_speed(TrackCharacter character) noexcept {
-  switch (character) {
-    case TrackCharacter::fast:
-      return 7.0;
-    case TrackCharacter::twisty:
-      return 5.0;
-    case TrackCharacter::narrow:
-      return 4.5;
-    case TrackCharacter::balanced:
-      break;
-  }
-  return 6.0;
+  return detail::style_of(character).top_speed;
 }
 
 double usual_width(TrackCharacter character) noexcept {
-  switch (character) {
-    case TrackCharacter::fast:
-      return 2.6;
-    case TrackCharacter::narrow:
-      return 1.5;
-    case TrackCharacter::twisty:
-    case TrackCharacter::balanced:
-      break;
-  }
-  return 2.2;
+  return detail::style_of(character).width;
 }
 
 void validate(const TrackGeneratorOptions& options) {
+  using detail::require;
   const auto within = [](double v, double low, double high) { return v >= low && v <= high; };
   require(within(options.length, 20, 1000), "length", options.length, "within 20 and 1000 m");
   require(within(options.width, 1.2, 10), "width", options.width, "within 1.2 and 10 m");

@@ -4,9 +4,24 @@
 #include <vector>
 
 #include "slalom/vehicle/course/track_generator.hpp"
-#include "vehicle/course/closed_curve.hpp"
+#include "vehicle/course/curve.hpp"
 
 namespace slalom::vehicle::detail {
+
+/// The style of a character: its usual values, and the parameters of its polygons.
+struct Style {
+  const char* name;
+  double top_speed;                   ///< m/s, usual
+  double width;                       ///< m from wall to wall, usual
+  double corner_spacing;              ///< m of centre line per corner
+  double depth;                       ///< how far corners move inwards, as a fraction of the radius
+  double stretch;                     ///< largest ratio of the sides
+  double swirl;                       ///< largest rotation of the rim against the centre, rad
+  double small_radius, large_radius;  ///< m, range of the radii of corners
+  double smoothing;                   ///< m, standard deviation along the path
+  double min_winding, max_winding;    ///< integral of |curvature| in multiples of 2 pi, at 60 m of length
+};
+const Style& style_of(TrackCharacter character) noexcept;
 
 /// The tightest radius (m) that a centre line may have: the inner wall must fit, and a 1/10 car must be able
 /// to follow it.

@@ -9,33 +9,35 @@ namespace {
 
 struct PredictAll {
   template <class Target>
-  SLALOM_KERNEL static void run(const BankInput& in) {
+  SLALOM_KERNEL static void run(const SingleTrackDynamics& dynamics, const HypothesisGrid& grid,
+                                const Stretch& in, float* lateral_error, float* yaw_error) {
     using F = Pack<Target>;
     const F period(in.period);
     const F sine(__builtin_sinf(in.yaw)), cosine(__builtin_cosf(in.yaw));
-    for (int d = 0; d < in.delays; ++d)
-      for (int g = 0; g < in.gains; ++g)
-        for (int f = 0; f < in.frictions; f += F::lanes) {
-          const F gain(in.gain[g]), friction = F::load(in.friction + f);
-          SingleTrackState<F> s{F(0.0f),        F(0.0f),      F(0.0f), F(in.speed[0]), gain * F(in.angles[d]),
-                                F(in.yaw_rate), F(in.lateral)};
-          for (int k = 0; k < in.steps; ++k) {
+    std::size_t at = 0;
+    for (std::size_t d = 0; d < HypothesisGrid::delays; ++d)
+      for (const float each : grid.gain)
+        for (std::size_t f = 0; f < HypothesisGrid::frictions; f += F::lanes, at += F::lanes) {
+          const F gain(each), friction = F::load(grid.friction.data() + f);
+          SingleTrackState<F> s{
+              F(0.0f),        F(0.0f),      F(0.0f), F(in.speed[0]), gain * F(in.angle[0][d]),
+              F(in.yaw_rate), F(in.lateral)};
+          for (std::size_t k = 0; k < static_cast<std::size_t>(in.steps); ++k) {
             s.speed = F(in.speed[k]);
-            const F angle = gain * F(in.angles[(k + 1) * in.delays + d]);
-            s = in.dynamics->advance(s, angle, F(in.acceleration[k]), friction, period);
+            s = dynamics.advance(s, gain * F(in.angle[k + 1][d]), F(in.acceleration[k]), friction, period);
           }
           const F dx = s.x - F(in.x), dy = s.y - F(in.y);
-          const int at = (d * in.gains + g) * in.frictions + f;
-          (cosine * dy - sine * dx).store(in.lateral_error + at);
-          (s.yaw - F(in.yaw)).store(in.yaw_error + at);
+          (cosine * dy - sine * dx).store(lateral_error + at);
+          (s.yaw - F(in.yaw)).store(yaw_error + at);
         }
   }
 };
 
 }  // namespace
 
-void predict_all(const BankInput& input) noexcept {
-  simd::dispatch<PredictAll>(input);
+void predict_all(const SingleTrackDynamics& dynamics, const HypothesisGrid& grid, const Stretch& stretch,
+                 float* lateral_error, float* yaw_error) noexcept {
+  simd::dispatch<PredictAll>(dynamics, grid, stretch, lateral_error, yaw_error);
 }
 
 }  // namespace slalom::vehicle::detail

@@ -1,36 +1,49 @@
-#include "slalom/vehicle/estimation/parameter_estimator.hpp"
+#include "vehicle/estimation/parameter_estimator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "slalom/core/math.hpp"
-#include "vehicle/estimation/hypothesis_bank.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double lowest_friction = 0.25, highest_friction = 1.5;
 constexpr double lowest_gain = 0.85, highest_gain = 1.15;
-constexpr double max_delay = 0.2;  // s
-constexpr double slowest = 1.0;    // m/s, below it tyres hardly slip
-constexpr double turning = 3.0;    // m/s^2, lateral acceleration at which old evidence fades at the full rate
-constexpr double farthest = 0.5;   // m or rad between poses: a jump of the localisation
+constexpr double max_delay = 0.2;        // s
+constexpr double friction_spread = 0.5;  // standard deviation of the friction's logarithm, in advance
+constexpr double gain_spread = 0.05;     // standard deviation, in advance
+constexpr double delay_spread = 0.06;    // s, standard deviation, in advance
+constexpr double window_time = 0.4;      // s of driving that each hypothesis predicts
+constexpr double memory = 2.0;           // s of turning after which what was learned is forgotten
+constexpr double yaw_noise = 0.02;       // rad, deviation of a predicted heading
+constexpr double slowest = 1.0;          // m/s, below it tyres hardly slip
+constexpr double turning = 3.0;   // m/s^2, lateral acceleration at which old evidence fades at the full rate
+constexpr double farthest = 0.5;  // m or rad between poses: a jump of the localisation
 constexpr double largest_error = 5;  // deviations
+constexpr double strongest = 15;     // m/s^2, of a measured acceleration
 
 double ratio() noexcept {
-  return std::log(highest_friction / lowest_friction) / (ParameterEstimator::frictions - 1);
+  return std::log(highest_friction / lowest_friction) / (HypothesisGrid::frictions - 1);
+}
+double friction_at(int i) noexcept {
+  return lowest_friction * std::exp(ratio() * i);
 }
 double gain_at(int i) noexcept {
-  return lowest_gain + (highest_gain - lowest_gain) * i / (ParameterEstimator::gains - 1);
+  return lowest_gain + (highest_gain - lowest_gain) * i / (HypothesisGrid::gains - 1);
 }
 double delay_at(int i) noexcept {
-  return max_delay * i / (ParameterEstimator::delays - 1);
+  return max_delay * i / (HypothesisGrid::delays - 1);
 }
+
+}  // namespace
+
 /// Returns mean and deviation of a value over a marginal distribution on a grid. Each grid point stands for
 /// the interval of length `step` around it.
 template <std::size_t n, class At>
-detail::Moments moments(const std::array<double, n>& share, double step, At&& at) noexcept {
-  detail::Moments made;
+ParameterEstimator::Moments ParameterEstimator::Moments::of(const std::array<double, n>& share, double step,
+                                                            At&& at) noexcept {
+  Moments made;
   for (std::size_t i = 0; i < n; ++i) made.mean += share[i] * at(static_cast<int>(i));
   double variance = step * step / 12;
   for (std::size_t i = 0; i < n; ++i) variance += share[i] * square(at(static_cast<int>(i)) - made.mean);
@@ -38,31 +51,29 @@ detail::Moments moments(const std::array<double, n>& share, double step, At&& at
   return made;
 }
 
-}  // namespace
-
-double ParameterEstimator::friction_at(int i) noexcept {
-  return lowest_friction * std::exp(ratio() * i);
-}
-
 ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, const EstimationOptions& options,
                                        double friction, double delay, double period)
     : dynamics_(dynamics),
-      options_(options),
+      friction_quantile_(options.friction_quantile),
+      lateral_noise_(options.lateral_noise),
       friction_(friction),
       delay_(delay),
       period_(period),
-      window_(std::clamp(static_cast<int>(std::lround(options.window / period)), 2, max_window)),
-      log_prior_(hypotheses),
-      evidence_(hypotheses),
-      lateral_error_(hypotheses),
-      yaw_error_(hypotheses) {
+      window_(std::clamp(static_cast<int>(std::lround(window_time / period)), 2, Stretch::max_steps)),
+      log_prior_(HypothesisGrid::count),
+      evidence_(log_prior_.size()),
+      lateral_error_(log_prior_.size()),
+      yaw_error_(log_prior_.size()) {
+  for (int g = 0; g < gains; ++g) grid_.gain[static_cast<std::size_t>(g)] = static_cast<float>(gain_at(g));
+  for (int f = 0; f < frictions; ++f)
+    grid_.friction[static_cast<std::size_t>(f)] = static_cast<float>(friction_at(f));
   std::size_t at = 0;
   for (int d = 0; d < delays; ++d)
     for (int g = 0; g < gains; ++g)
       for (int f = 0; f < frictions; ++f)
-        log_prior_[at++] = -0.5 * (square((delay_at(d) - delay_) / options_.delay_spread) +
-                                   square((gain_at(g) - 1) / options_.gain_spread) +
-                                   square(std::log(friction_at(f) / friction_) / options_.friction_spread));
+        log_prior_[at++] =
+            -0.5 * (square((delay_at(d) - delay_) / delay_spread) + square((gain_at(g) - 1) / gain_spread) +
+                    square(std::log(friction_at(f) / friction_) / friction_spread));
   reset();
 }
 
@@ -124,53 +135,49 @@ const ParameterEstimate& ParameterEstimator::update(const MeasuredMotion& now) n
   return estimate_;
 }
 
-void ParameterEstimator::weigh() noexcept {
-  std::array<float, (max_window + 1) * delays> angles;
-  std::array<float, max_window + 1> speed, acceleration;
-  std::array<float, gains> gain;
-  std::array<float, frictions> friction;
-  double used = 0;
-  for (int k = 0; k <= window_; ++k) {
-    const Moment& moment = ago(window_ - k);
-    for (int d = 0; d < delays; ++d)
-      angles[static_cast<std::size_t>(k * delays + d)] =
-          static_cast<float>(moment.angle[static_cast<std::size_t>(d)]);
-    speed[static_cast<std::size_t>(k)] = static_cast<float>(moment.motion.speed);
-    used += square(moment.motion.speed * moment.motion.yaw_rate) / (window_ + 1);
-    if (k == window_) break;
-    const int before = window_ - k + 1, after = std::max(window_ - k - 2, 0);
-    acceleration[static_cast<std::size_t>(k)] = static_cast<float>(std::clamp(
-        (ago(after).motion.speed - ago(before).motion.speed) / ((before - after) * period_), -15.0, 15.0));
-  }
-  for (int g = 0; g < gains; ++g) gain[static_cast<std::size_t>(g)] = static_cast<float>(gain_at(g));
-  for (int f = 0; f < frictions; ++f)
-    friction[static_cast<std::size_t>(f)] = static_cast<float>(friction_at(f));
+/// Returns the motion within the window, relative to the pose at its begin.
+Stretch ParameterEstimator::last_stretch() const noexcept {
   const MeasuredMotion &begin = ago(window_).motion, &end = ago(0).motion;
   const maps::Point moved = maps::inverse_transform(begin.pose, {end.pose.x, end.pose.y});
-  detail::predict_all({.dynamics = &dynamics_,
-                       .steps = window_,
-                       .period = static_cast<float>(period_),
-                       .delays = delays,
-                       .gains = gains,
-                       .frictions = frictions,
-                       .angles = angles.data(),
-                       .gain = gain.data(),
-                       .friction = friction.data(),
-                       .speed = speed.data(),
-                       .acceleration = acceleration.data(),
-                       .yaw_rate = static_cast<float>(begin.yaw_rate),
-                       .lateral = static_cast<float>(begin.speed * std::sin(begin.slip)),
-                       .x = static_cast<float>(moved.x),
-                       .y = static_cast<float>(moved.y),
-                       .yaw = static_cast<float>(maps::wrap_angle(end.pose.yaw - begin.pose.yaw)),
-                       .lateral_error = lateral_error_.data(),
-                       .yaw_error = yaw_error_.data()});
+  Stretch stretch;
+  stretch.steps = window_;
+  stretch.period = static_cast<float>(period_);
+  stretch.yaw_rate = static_cast<float>(begin.yaw_rate);
+  stretch.lateral = static_cast<float>(begin.speed * std::sin(begin.slip));
+  stretch.x = static_cast<float>(moved.x);
+  stretch.y = static_cast<float>(moved.y);
+  stretch.yaw = static_cast<float>(maps::wrap_angle(end.pose.yaw - begin.pose.yaw));
+  for (int k = 0; k <= window_; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    const Moment& moment = ago(window_ - k);
+    stretch.speed[row] = static_cast<float>(moment.motion.speed);
+    for (std::size_t d = 0; d < delays; ++d) stretch.angle[row][d] = static_cast<float>(moment.angle[d]);
+    if (k == window_) break;
+    const int before = window_ - k + 1, after = std::max(window_ - k - 2, 0);
+    const double gained = ago(after).motion.speed - ago(before).motion.speed;
+    stretch.acceleration[row] =
+        static_cast<float>(std::clamp(gained / ((before - after) * period_), -strongest, strongest));
+  }
+  return stretch;
+}
+
+/// Returns how much the car turned within the window, 0 to 1.
+double ParameterEstimator::turning_share() const noexcept {
+  double mean_square = 0;  // m^2/s^4, of the lateral acceleration
+  for (int k = window_; k >= 0; --k)
+    mean_square += square(ago(k).motion.speed * ago(k).motion.yaw_rate) / (window_ + 1);
+  return std::min(1.0, mean_square / square(turning));
+}
+
+/// Updates the evidence for each hypothesis by the errors of its prediction of the window.
+void ParameterEstimator::weigh() noexcept {
+  predict_all(dynamics_, grid_, last_stretch(), lateral_error_.data(), yaw_error_.data());
+  const double remembered = std::exp(-period_ / memory * turning_share());
   const double share = 0.5 / window_, most = square(largest_error);
-  const double remembered = std::exp(-period_ / options_.memory * std::min(1.0, used / square(turning)));
   double best = -INFINITY;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    const double aside = square(lateral_error_[i] / options_.lateral_noise);
-    const double turned = square(yaw_error_[i] / options_.yaw_noise);
+    const double aside = square(lateral_error_[i] / lateral_noise_);
+    const double turned = square(yaw_error_[i] / yaw_noise);
     // A prediction that diverges may have an error that is not a number, which counts as the largest.
     const double error = (aside < most ? aside : most) + (turned < most ? turned : most);
     evidence_[i] = remembered * evidence_[i] - share * error;
@@ -185,8 +192,8 @@ double ParameterEstimator::log_quantile(const std::array<double, frictions>& sha
   double below = 0;
   for (int f = 0; f < frictions; ++f) {
     const double share = shares[static_cast<std::size_t>(f)];
-    if (below + share >= options_.friction_quantile)
-      return std::log(friction_at(f)) + ratio() * ((options_.friction_quantile - below) / share - 0.5);
+    if (below + share >= friction_quantile_)
+      return std::log(friction_at(f)) + ratio() * ((friction_quantile_ - below) / share - 0.5);
     below += share;
   }
   return std::log(highest_friction);
@@ -212,10 +219,10 @@ void ParameterEstimator::summarise() noexcept {
   for (double& each : of_gain) each /= total;
   for (double& each : of_delay) each /= total;
 
-  using detail::Moments;
-  const Moments logarithm = moments(of_friction, ratio(), [](int i) { return std::log(friction_at(i)); });
-  const Moments gain = moments(of_gain, (highest_gain - lowest_gain) / (gains - 1), gain_at);
-  const Moments delay = moments(of_delay, max_delay / (delays - 1), delay_at);
+  const auto log_friction_at = [](int i) { return std::log(friction_at(i)); };
+  const Moments logarithm = Moments::of(of_friction, ratio(), log_friction_at);
+  const Moments gain = Moments::of(of_gain, (highest_gain - lowest_gain) / (gains - 1), gain_at);
+  const Moments delay = Moments::of(of_delay, max_delay / (delays - 1), delay_at);
   if (moments_ == 0) prior_ = {logarithm, gain, delay};
   // The grid cuts the prior off, so the mean of the prior is not the given value. Estimates therefore begin
   // at the given value and move by what has been learned.
@@ -236,4 +243,4 @@ void ParameterEstimator::summarise() noexcept {
   estimate_.cautious_friction = std::min(std::exp(log_quantile(of_friction)), friction_);
 }
 
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::detail

@@ -1,17 +1,21 @@
-#include "slalom/vehicle/estimation/state_observer.hpp"
+#include "vehicle/estimation/state_observer.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "slalom/core/math.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::detail {
 namespace {
 
 enum Index { x, y, yaw, speed, yaw_rate, lateral, bias };
+
+// Standard deviations of measurements: a speed, and the means over a control period of gyro and
+// accelerometers (with their bias).
+constexpr double speed_noise = 0.1, gyro_noise = 0.01, accelerometer_noise = 0.5;  // m/s, rad/s, m/s^2
+// Standard deviations of the model's accelerations: along the car, across it, and of the yaw.
+constexpr double acceleration_noise = 5, sideways_noise = 2, yaw_acceleration_noise = 8;  // m/s^2, rad/s^2
 
 constexpr double piece = 0.005;         // s, of a prediction
 constexpr double reset_distance = 0.5;  // m or rad; a pose further from the predicted one is a jump
@@ -21,19 +25,12 @@ constexpr double max_variance = 1e6;    // m^2 and rad^2, of a pose
 constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
 constexpr double max_bias = 0.5;  // rad/s, largest bias of a working gyro; more comes from a wrong reading
 
-/// The values of an array as a vector of Eigen.
-template <std::size_t n>
-auto map(std::array<double, n>& values) {
-  return Eigen::Map<Eigen::Matrix<double, n, 1>>(values.data());
-}
-template <std::size_t n>
-auto map(const std::array<double, n>& values) {
-  return Eigen::Map<const Eigen::Matrix<double, n, 1>>(values.data());
-}
-/// The values of an array of rows as a matrix of Eigen.
-template <std::size_t n>
-auto map(std::array<std::array<double, n>, n>& rows) {
-  return Eigen::Map<Eigen::Matrix<double, n, n, Eigen::RowMajor>>(rows.front().data());
+/// The product of two matrices. Its sums have a fixed order on every machine.
+template <class Matrix>
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix sum = Matrix::Zero();
+  for (Eigen::Index k = 0; k < a.cols(); ++k) sum += a.col(k) * b.row(k);
+  return sum;
 }
 
 double slip_from(double sideways, double along) noexcept {
@@ -41,9 +38,9 @@ double slip_from(double sideways, double along) noexcept {
   return std::asin(std::clamp(sideways / safe, -std::sin(max_slip), std::sin(max_slip)));
 }
 
-/// Adds the options' variances to the covariance of a pose. An invalid covariance counts as 0: not finite,
-/// larger than that of any car, or with correlations above 1.
-PoseCovariance with_noise(PoseCovariance pose, const ObserverOptions& options) noexcept {
+/// Adds the variances of noise (m, rad) to the covariance of a pose. An invalid covariance counts as 0: not
+/// finite, larger than that of any car, or with correlations above 1.
+PoseCovariance with_noise(PoseCovariance pose, double position_noise, double heading_noise) noexcept {
   double sum = 0;
   for (const auto& row : pose)
     for (const double value : row) sum += std::abs(value);
@@ -52,16 +49,21 @@ PoseCovariance with_noise(PoseCovariance pose, const ObserverOptions& options) n
     for (std::size_t j = 0; j < pose.size(); ++j)
       valid = valid && pose[i][i] >= 0 && square(pose[i][j]) <= (1 + 1e-6) * pose[i][i] * pose[j][j];
   if (!valid) pose = {};
-  pose[0][0] += square(options.position_noise);
-  pose[1][1] += square(options.position_noise);
-  pose[2][2] += square(options.heading_noise);
+  pose[0][0] += square(position_noise);
+  pose[1][1] += square(position_noise);
+  pose[2][2] += square(heading_noise);
   return pose;
 }
 
 }  // namespace
 
-StateObserver::StateObserver(const ObserverOptions& options, double period, double latency, double dead_time)
-    : options_(options), period_(period), latency_(latency), delay_(latency + dead_time) {
+StateObserver::StateObserver(const EstimationOptions& options, double period, double latency,
+                             double dead_time)
+    : position_noise_(options.position_noise),
+      heading_noise_(options.heading_noise),
+      period_(period),
+      latency_(latency),
+      delay_(latency + dead_time) {
   reset();
 }
 
@@ -105,8 +107,8 @@ StateObserver::Vector StateObserver::moved(const DynamicVehicleModel& model, con
                    slip_from(from[lateral], from[speed])};
   move(model, car, -period_, 0);
   steer = car.steer;
-  return {car.pose.x, car.pose.y, car.pose.yaw, car.speed, car.yaw_rate, car.speed * std::sin(car.slip),
-          from[bias]};
+  return Vector{car.pose.x, car.pose.y, car.pose.yaw, car.speed, car.yaw_rate, car.speed * std::sin(car.slip),
+                from[bias]};
 }
 
 /// Restarts the filter, with the state of a car whose tyres do not slip.
@@ -115,101 +117,105 @@ void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput&
   const double slope = std::tan(now_.steer) / traits.wheelbase;
   const double gyro = known_ ? state_[bias] : 0;
   now_ = {input.pose, input.speed, now_.steer, input.speed * slope, std::atan(traits.rear_length * slope)};
-  state_ = {now_.pose.x, now_.pose.y,   now_.pose.yaw,
-            now_.speed,  now_.yaw_rate, now_.speed * std::sin(now_.slip),
-            gyro};
-  const double bias_variance = known_ ? covariance_[bias][bias] : square(bias_spread);
-  covariance_ = {};
-  const PoseCovariance pose = with_noise(input.covariance, options_);
+  state_ = Vector{now_.pose.x, now_.pose.y,   now_.pose.yaw,
+                  now_.speed,  now_.yaw_rate, now_.speed * std::sin(now_.slip),
+                  gyro};
+  const double bias_variance = known_ ? covariance_(bias, bias) : square(bias_spread);
+  covariance_.setZero();
+  const PoseCovariance pose = with_noise(input.covariance, position_noise_, heading_noise_);
   for (std::size_t i = 0; i < pose.size(); ++i)
-    for (std::size_t j = 0; j < pose.size(); ++j) covariance_[i][j] = pose[i][j];
-  covariance_[speed][speed] = square(options_.speed_noise);
-  covariance_[yaw_rate][yaw_rate] = square(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
-  covariance_[lateral][lateral] = square(0.05 * std::abs(input.speed) + 0.01);
-  covariance_[bias][bias] = bias_variance;
+    for (std::size_t j = 0; j < pose.size(); ++j)
+      covariance_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = pose[i][j];
+  covariance_(speed, speed) = square(speed_noise);
+  covariance_(yaw_rate, yaw_rate) = square(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
+  covariance_(lateral, lateral) = square(0.05 * std::abs(input.speed) + 0.01);
+  covariance_(bias, bias) = bias_variance;
 }
 
-/// Predicts state and covariance one period ahead: F P F' + Q. Accelerometers share in the prediction.
+/// Predicts state and covariance one period ahead: F P F' + Q.
 void StateObserver::predict(const DynamicVehicleModel& model, const std::optional<ImuReading>& imu) noexcept {
   const Vector before = state_;
-  const double steer_before = now_.steer;
-  Matrix f{};
-  for (std::size_t i = 0; i < size; ++i) f[i][i] = 1;
+  const double steer_before = now_.steer, dt = period_;
   state_ = moved(model, before, now_.steer);
-  f[x][yaw] = -(state_[y] - before[y]);
-  f[y][yaw] = state_[x] - before[x];
-  constexpr double difference = 1e-4;
-  for (const std::size_t column : {std::size_t{speed}, std::size_t{yaw_rate}, std::size_t{lateral}}) {
-    Vector other = before;
-    other[column] += difference;
-    double steer = steer_before;
-    other = moved(model, other, steer);
-    for (std::size_t row = 0; row < bias; ++row) f[row][column] = (other[row] - state_[row]) / difference;
-  }
-  const double dt = period_;
+  Matrix slope = slopes(model, before, steer_before);
   Vector noise{1e-6,
                1e-6,
                1e-8,
-               square(options_.acceleration_noise * dt),
-               square(options_.yaw_acceleration_noise * dt),
-               square(options_.sideways_noise * dt),
+               square(acceleration_noise * dt),
+               square(yaw_acceleration_noise * dt),
+               square(sideways_noise * dt),
                square(bias_drift)};
-  if (imu) {
-    const double measured = square(options_.accelerometer_noise * dt);
-    const double slip = slip_from(before[lateral], before[speed]), s = std::sin(slip), c = std::cos(slip);
-    const auto share_in = [&](std::size_t row, double predicted, const Vector& derivative) {
-      const double share = noise[row] / (noise[row] + measured);
-      state_[row] += share * (predicted - state_[row]);
-      for (std::size_t i = 0; i < size; ++i) f[row][i] += share * (derivative[i] - f[row][i]);
-      noise[row] *= 1 - share;
-    };
-    const double rate = 0.5 * (before[yaw_rate] + state_[yaw_rate]);
-    Vector derivative{};
-    derivative[lateral] = 1;
-    derivative[speed] = -rate * c * dt;
-    derivative[yaw_rate] = -before[speed] * c * dt;
-    share_in(lateral, before[lateral] + dt * (imu->leftward - before[speed] * c * rate), derivative);
-    derivative = {};
-    derivative[speed] = 1;
-    share_in(speed, before[speed] + dt * (imu->forward * c + imu->leftward * s), derivative);
+  if (imu) use_accelerometers(*imu, before, slope, noise);
+  covariance_ = product<Matrix>(product<Matrix>(slope, covariance_), slope.transpose());
+  covariance_.diagonal() += noise;
+}
+
+/// Returns the derivatives of `state_` by the state one period before: for speeds by differences.
+StateObserver::Matrix StateObserver::slopes(const DynamicVehicleModel& model, const Vector& before,
+                                            double steer) const noexcept {
+  constexpr double difference = 1e-4;
+  Matrix slope = Matrix::Identity();
+  slope(x, yaw) = -(state_[y] - before[y]);
+  slope(y, yaw) = state_[x] - before[x];
+  for (const Index column : {speed, yaw_rate, lateral}) {
+    Vector other = before;
+    other[column] += difference;
+    double moved_steer = steer;
+    other = moved(model, other, moved_steer);
+    for (int row = 0; row < bias; ++row) slope(row, column) = (other[row] - state_[row]) / difference;
   }
-  Eigen::Matrix<double, size, size> half, made;
-  half.setZero();
-  made.setZero();
-  for (int k = 0; k < size; ++k) half += map(f).col(k) * map(covariance_).row(k);
-  for (int k = 0; k < size; ++k) made += half.col(k) * map(f).col(k).transpose();
-  map(covariance_) = made;
-  map(covariance_).diagonal() += map(noise);
+  return slope;
+}
+
+/// Lets the accelerometers share in the prediction of speed and sideways velocity.
+void StateObserver::use_accelerometers(const ImuReading& imu, const Vector& before, Matrix& slope,
+                                       Vector& noise) noexcept {
+  const double dt = period_, rate = 0.5 * (before[yaw_rate] + state_[yaw_rate]);
+  const double slip = slip_from(before[lateral], before[speed]), s = std::sin(slip), c = std::cos(slip);
+  const auto share_in = [&](Index row, double predicted, const Vector& derivative) {
+    const double share = noise[row] / (noise[row] + square(accelerometer_noise * dt));
+    state_[row] += share * (predicted - state_[row]);
+    for (int i = 0; i < size; ++i) slope(row, i) += share * (derivative[i] - slope(row, i));
+    noise[row] *= 1 - share;
+  };
+  Vector sideways = Vector::Unit(lateral);
+  sideways[speed] = -rate * c * dt;
+  sideways[yaw_rate] = -before[speed] * c * dt;
+  share_in(lateral, before[lateral] + dt * (imu.leftward - before[speed] * c * rate), sideways);
+  share_in(speed, before[speed] + dt * (imu.forward * c + imu.leftward * s), Vector::Unit(speed));
 }
 
 /// Takes a measurement of `row` times the state. `difference` is the measured minus the predicted value.
 void StateObserver::correct(const Vector& row, double difference, double variance) noexcept {
-  Eigen::Matrix<double, size, 1> shared;
-  shared.setZero();
-  for (int k = 0; k < size; ++k) shared += map(covariance_).col(k) * row[static_cast<std::size_t>(k)];
-  const double total = std::inner_product(row.begin(), row.end(), shared.begin(), variance);
-  map(state_) += shared * (difference / total);
-  map(covariance_) -= shared * shared.transpose() / total;
+  Vector shared = Vector::Zero();
+  for (int k = 0; k < size; ++k) shared += covariance_.col(k) * row[k];
+  double total = variance;
+  for (int k = 0; k < size; ++k) total += row[k] * shared[k];
+  state_ += shared * (difference / total);
+  covariance_ -= shared * shared.transpose() / total;
 }
 
 /// Takes the pose as three independent measurements. Its covariance is L D L^T (L has ones on its diagonal),
 /// so L^-1 times the pose has the variances D and no correlations.
 void StateObserver::correct_pose(const ObserverInput& input) noexcept {
-  const PoseCovariance c = with_noise(input.covariance, options_);
+  const PoseCovariance c = with_noise(input.covariance, position_noise_, heading_noise_);
   const double yx = c[1][0] / c[0][0], hx = c[2][0] / c[0][0];
   // These bounds hold for every positive semidefinite matrix. They protect against others.
-  const double y_variance = std::max(c[1][1] - yx * c[1][0], square(options_.position_noise));
+  const double y_variance = std::max(c[1][1] - yx * c[1][0], square(position_noise_));
   const double coupling = c[2][1] - hx * c[1][0], hy = coupling / y_variance;
-  const double yaw_variance =
-      std::max(c[2][2] - hx * c[2][0] - hy * coupling, square(options_.heading_noise));
-  const Vector rows[3] = {{1}, {-yx, 1}, {hy * yx - hx, -hy, 1}};
+  const double yaw_variance = std::max(c[2][2] - hx * c[2][0] - hy * coupling, square(heading_noise_));
+  const double rows[3][3] = {{1, 0, 0}, {-yx, 1, 0}, {hy * yx - hx, -hy, 1}};
   const double variances[3] = {c[0][0], y_variance, yaw_variance};
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i) {
     const double differences[3] = {input.pose.x - state_[x], input.pose.y - state_[y],
                                    maps::wrap_angle(input.pose.yaw - state_[yaw])};
+    Vector row = Vector::Zero();
     double difference = 0;
-    for (std::size_t j = 0; j < 3; ++j) difference += rows[i][j] * differences[j];
-    correct(rows[i], difference, variances[i]);
+    for (int j = 0; j < 3; ++j) {
+      row[j] = rows[i][j];
+      difference += row[j] * differences[j];
+    }
+    correct(row, difference, variances[i]);
   }
 }
 
@@ -230,10 +236,10 @@ void StateObserver::update(const DynamicVehicleModel& model, const ObserverInput
         std::abs(turned) < reset_distance))
     return begin(model, input);
   correct_pose(input);
-  correct({0, 0, 0, 1}, input.speed - state_[speed], square(options_.speed_noise));
+  correct(Vector::Unit(speed), input.speed - state_[speed], square(speed_noise));
   if (input.imu)
-    correct({0, 0, 0, 0, 1, 0, 1}, input.imu->yaw_rate - state_[yaw_rate] - state_[bias],
-            square(options_.gyro_noise));
+    correct(Vector::Unit(yaw_rate) + Vector::Unit(bias),
+            input.imu->yaw_rate - state_[yaw_rate] - state_[bias], square(gyro_noise));
   state_[bias] = std::clamp(state_[bias], -max_bias, max_bias);
   now_ = {{state_[x], state_[y], maps::wrap_angle(state_[yaw])},
           state_[speed],
@@ -255,4 +261,4 @@ double StateObserver::speed_ahead(const DynamicVehicleModel& model) const noexce
   return car.speed;
 }
 
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::detail

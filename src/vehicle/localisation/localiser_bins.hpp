@@ -26,7 +26,7 @@ class PoseBins {
 
   /// Adds to the bin of a pose (m, rad in [-pi, pi]); whether it was empty before.
   bool add(double x, double y, double yaw, double weight) noexcept {
-    const std::uint64_t key = (bin(x, per_meter_) << 42) ^ (bin(y, per_meter_) << 21) ^ bin(yaw, per_radian_);
+    const std::uint64_t key = key_of(x, y, yaw);
     // The finaliser of MurmurHash3 (A. Appleby), which mixes all bits into all others.
     std::uint64_t hash = key;
     hash = (hash ^ (hash >> 33)) * 0xff51afd7ed558ccdu;
@@ -50,7 +50,7 @@ class PoseBins {
 
   /// Whether a pose lies in the heaviest bin.
   bool in_heaviest(double x, double y, double yaw) const noexcept {
-    return ((bin(x, per_meter_) << 42) ^ (bin(y, per_meter_) << 21) ^ bin(yaw, per_radian_)) == heaviest_key_;
+    return key_of(x, y, yaw) == heaviest_key_;
   }
 
  private:
@@ -59,6 +59,9 @@ class PoseBins {
     std::uint64_t generation = 0;
     double weight = 0;
   };
+  std::uint64_t key_of(double x, double y, double yaw) const noexcept {
+    return (bin(x, per_meter_) << 42) ^ (bin(y, per_meter_) << 21) ^ bin(yaw, per_radian_);
+  }
   static std::uint64_t bin(double value, double scale) noexcept {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value * scale)) + (1 << 20)) &
            0x1fffff;

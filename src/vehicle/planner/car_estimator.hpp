@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slalom/vehicle/estimation/parameter_estimator.hpp"
-#include "slalom/vehicle/estimation/state_observer.hpp"
-#include "slalom/vehicle/planner/planner_options.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
+#include "vehicle/estimation/parameter_estimator.hpp"
+#include "vehicle/estimation/state_observer.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -18,8 +18,7 @@ class CarEstimator {
         latency_(options.latency),
         steer_resolution_(options.steer_resolution),
         friction_(model.traits().friction),
-        observer_(options.estimation.observer, options.control_period, options.latency,
-                  model.traits().dead_time),
+        observer_(options.estimation, options.control_period, options.latency, model.traits().dead_time),
         parameters_(model.dynamics(), options.estimation, model.traits().friction,
                     options.latency + model.traits().dead_time, options.control_period) {}
 

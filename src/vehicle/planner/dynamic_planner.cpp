@@ -17,17 +17,15 @@ namespace {
 /// learns friction and steering while it drives.
 class DynamicPlanner final : public PlannerBase {
  public:
-  DynamicPlanner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
-                 const maps::Point& origin, std::span<const maps::ReferencePoint> path,
-                 std::unique_ptr<Solver> solver)
-      : PlannerBase(options, std::move(model), origin, path, std::move(solver)),
-        car_(options, this->model()),
-        speeds_(limited_path(path, options, traits_), options.grip_shares.values()),
-        sight_(path, speeds_.length() > 0, reach_, options, traits_.body),
-        detour_(limited_path(path, options, traits_), speeds_.length() > 0, traits_.body),
-        ways_(path, speeds_.length() > 0, solver_->horizon(), solver_->inputs(), traits_,
-              options.steer_limit) {
-    conditions_.top_speed = options.max_speed;
+  explicit DynamicPlanner(PlannerParts& parts)
+      : PlannerBase(parts),
+        car_(options_, this->model()),
+        speeds_(limited_path(parts.path, options_, traits_), options_.grip_shares.values()),
+        sight_(parts.path, speeds_.length() > 0, reach_, options_, traits_.body),
+        detour_(limited_path(parts.path, options_, traits_), speeds_.length() > 0, traits_.body),
+        ways_(parts.path, speeds_.length() > 0, solver_->horizon(), solver_->inputs(), traits_,
+              options_.steer_limit) {
+    conditions_.top_speed = options_.max_speed;
     set_friction(traits_.friction);
     if (traits_.seeks_lap_time) field_.set_curvatures(speeds_.curvatures(), speeds_.length() > 0);
   }
@@ -59,11 +57,12 @@ class DynamicPlanner final : public PlannerBase {
     const SolveResult& result = solve();
 
     // Choose: the solution, the last plan, a slower sequence or a way around; a stop if all collide.
-    Choice chosen{result.inputs, choice_.predict(*model_, result.inputs, states_)};
-    if (options_.verify_plan) chosen = choose(result, chosen, start);
+    choice_.begin(model(), result);
+    const SequenceChoice::Choice& chosen = choice_.best();
+    if (options_.verify_plan) choose(start);
 
     // Command.
-    publish(chosen);
+    publish();
     output_.command = model().command(chosen.inputs, speed_ahead, options_.control_period);
     output_.command.steer = std::clamp(output_.command.steer, -options_.steer_limit, options_.steer_limit);
     choice_.sent(chosen.inputs);
@@ -119,19 +118,19 @@ class DynamicPlanner final : public PlannerBase {
     }
   }
 
-  /// Returns the sequence to send.
-  Choice choose(const SolveResult& result, Choice solution, const VehicleStart& start) noexcept {
-    Choice chosen = solution;
+  /// Replaces the solution by a better sequence, if there is one.
+  void choose(const VehicleStart& start) noexcept {
+    const SequenceChoice::Choice& chosen = choice_.best();
+    const bool solution_collides = chosen.cost.collided;
     if (!recovery_.reversing()) {
       ways_.draw(start, field_.nearest(), speeds_.speeds(), path_friction_);
-      if (traits_.seeks_lap_time) chosen = choice_.kept(*model_, chosen, options_.control_period, states_);
-      chosen = choice_.slower(*model_, chosen, states_);
-      chosen = choice_.better(*model_, chosen, ways_.cheapest(model_->evaluator()), states_);
+      if (traits_.seeks_lap_time) choice_.consider_last(options_.control_period);
+      choice_.consider_slower();
+      choice_.consider(ways_.cheapest(model_->evaluator()));
     }
-    if (chosen.cost.collided) chosen = choice_.cheapest(*model_, result, chosen, states_);
-    if (chosen.cost.collided) chosen = choice_.stop(*model_, result, chosen, recovery_.reversing(), states_);
-    if (solution.cost.collided && !chosen.cost.collided) output_.status = PlannerStatus::fallback_plan;
-    return chosen;
+    if (chosen.cost.collided) choice_.consider_samples();
+    if (chosen.cost.collided) choice_.stop(recovery_.reversing());
+    if (solution_collides && !chosen.cost.collided) output_.status = PlannerStatus::fallback_plan;
   }
 
   /// Completes the output: its estimates, and the command that turns the wheels to the planned angle.
@@ -171,12 +170,8 @@ class DynamicPlanner final : public PlannerBase {
 
 }  // namespace
 
-std::unique_ptr<PlannerBase> make_dynamic_planner(const PlannerOptions& options,
-                                                  std::unique_ptr<VehicleModel> model,
-                                                  const maps::Point& origin,
-                                                  std::span<const maps::ReferencePoint> path,
-                                                  std::unique_ptr<Solver> solver) {
-  return std::make_unique<DynamicPlanner>(options, std::move(model), origin, path, std::move(solver));
+std::unique_ptr<PlannerBase> make_dynamic_planner(PlannerParts& parts) {
+  return std::make_unique<DynamicPlanner>(parts);
 }
 
 }  // namespace slalom::vehicle::detail

@@ -12,12 +12,10 @@ namespace {
 /// that of the plan if the acceleration is an input.
 class KinematicPlanner final : public PlannerBase {
  public:
-  KinematicPlanner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
-                   const maps::Point& origin, std::span<const maps::ReferencePoint> path,
-                   std::unique_ptr<Solver> solver)
-      : PlannerBase(options, std::move(model), origin, path, std::move(solver)),
-        history_(options.control_period, options.latency + traits_.dead_time, options.observer_time_constant,
-                 traits_.wheelbase) {}
+  explicit KinematicPlanner(PlannerParts& parts)
+      : PlannerBase(parts),
+        history_(options_.control_period, options_.latency + traits_.dead_time,
+                 options_.observer_time_constant, traits_.wheelbase) {}
   std::unique_ptr<PlannerBase> clone() const override { return std::make_unique<KinematicPlanner>(*this); }
 
  private:
@@ -39,14 +37,15 @@ class KinematicPlanner final : public PlannerBase {
     const SolveResult& result = solve();
 
     // Choose: another sequence if the solution collides.
-    Choice chosen{result.inputs, choice_.predict(*model_, result.inputs, states_)};
+    choice_.begin(*model_, result);
+    const SequenceChoice::Choice& chosen = choice_.best();
     if (options_.verify_plan && chosen.cost.collided) {
-      chosen = choice_.cheapest(*model_, result, chosen, states_);
+      choice_.consider_samples();
       if (!chosen.cost.collided) output_.status = PlannerStatus::fallback_plan;
     }
 
     // Command.
-    publish(chosen);
+    publish();
     planned_steer_ = without_turns(static_cast<double>(chosen.inputs[0]));
     output_.command = {limited(planned_steer_), command_speed(here.speed)};
     if (options_.verify_plan && options_.stop_when_blocked) slow_down(chosen.cost, odometry.speed);
@@ -57,9 +56,10 @@ class KinematicPlanner final : public PlannerBase {
     if (!traits_.follows_path) return std::min(traits_.reference_speed, options_.max_speed);
     const bool planned = traits_.plans_speed;
     if (options_.speed_lookahead <= 0 && !planned) return here;
-    const double last = static_cast<double>(states_.size() - 1),
+    const std::span<const PredictedState> states = choice_.states();
+    const double last = static_cast<double>(states.size() - 1),
                  step = std::clamp(options_.speed_lookahead / traits_.time_step, planned ? 1.0 : 0.0, last);
-    const PredictedState& ahead = states_[static_cast<std::size_t>(std::round(step))];
+    const PredictedState& ahead = states[static_cast<std::size_t>(std::round(step))];
     if (planned) return ahead.speed;
     const maps::ReferenceCell cell = field_.at(ahead.pose.x, ahead.pose.y);
     return cell.distance < field_.options().outside.distance ? cell.speed : here;
@@ -81,14 +81,12 @@ class KinematicPlanner final : public PlannerBase {
     if (cost.collided) output_.status = PlannerStatus::blocked;
   }
 
-  /// Records the angle that the observer of the wheels follows: that of the command. The observer of the
-  /// paper's program follows the planned angle, which is not limited; so does this one with `wrap_steer`, if
-  /// the command is the limited planned angle.
+  /// Records the angle that the wheels turn to: that of the command. The observer of the paper's program
+  /// (`wrap_steer`) follows the planned angle instead, which is not limited, unless the command is another.
   void send() noexcept override {
     const double sent = output_.command.steer;
-    const bool unlimited =
-        options_.published.wrap_steer && !output_.inputs.empty() && sent == limited(planned_steer_);
-    history_.send(unlimited ? planned_steer_ : sent);
+    const bool sends_plan = !output_.inputs.empty() && sent == limited(planned_steer_);
+    history_.send(options_.published.wrap_steer && sends_plan ? planned_steer_ : sent);
   }
   void forget() noexcept override {
     history_.reset();
@@ -113,12 +111,8 @@ class KinematicPlanner final : public PlannerBase {
 
 }  // namespace
 
-std::unique_ptr<PlannerBase> make_kinematic_planner(const PlannerOptions& options,
-                                                    std::unique_ptr<VehicleModel> model,
-                                                    const maps::Point& origin,
-                                                    std::span<const maps::ReferencePoint> path,
-                                                    std::unique_ptr<Solver> solver) {
-  return std::make_unique<KinematicPlanner>(options, std::move(model), origin, path, std::move(solver));
+std::unique_ptr<PlannerBase> make_kinematic_planner(PlannerParts& parts) {
+  return std::make_unique<KinematicPlanner>(parts);
 }
 
 }  // namespace slalom::vehicle::detail

@@ -66,20 +66,17 @@ int check_value(double& value, double least, double most, double otherwise) noex
 
 }  // namespace
 
-PlannerBase::PlannerBase(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
-                         const maps::Point& origin, std::span<const maps::ReferencePoint> path,
-                         std::unique_ptr<Solver> solver)
-    : options_(options),
-      origin_(origin),
-      model_(std::move(model)),
+PlannerBase::PlannerBase(PlannerParts& parts)
+    : options_(parts.options),
+      origin_(parts.origin),
+      model_(std::move(parts.model)),
       traits_(model_->traits()),
-      solver_(std::move(solver)),
-      stopping_time_(stopping_time(path, options, traits_)),
-      reach_(plan_reach(path, options, traits_, horizon_time() + stopping_time_)),
-      obstacles_(options, traits_, solver_->horizon(), reach_),
-      field_(limited_path(path, options, traits_), field_options(options, traits_, reach_)),
-      choice_(solver_->horizon(), solver_->inputs(), traits_),
-      states_(static_cast<std::size_t>(solver_->horizon()) + 1) {
+      solver_(std::move(parts.solver)),
+      stopping_time_(stopping_time(parts.path, options_, traits_)),
+      reach_(plan_reach(parts.path, options_, traits_, horizon_time() + stopping_time_)),
+      obstacles_(options_, traits_, solver_->horizon(), reach_),
+      field_(limited_path(parts.path, options_, traits_), field_options(options_, traits_, reach_)),
+      choice_(solver_->horizon(), solver_->inputs(), traits_) {
   solver_->connect(model_->evaluator());
 }
 
@@ -99,7 +96,7 @@ const PlannerOutput& PlannerBase::update(const PlannerInput& input) noexcept {
     local.odometry.pose.x -= origin_.x;
     local.odometry.pose.y -= origin_.y;
     plan(local);
-    shift(states_, origin_);
+    shift(choice_.states(), origin_);
   }
   output_.corrections = check_command(input.odometry, steer_estimate());
   send();
@@ -144,10 +141,11 @@ const SolveResult& PlannerBase::solve() noexcept {
   return result;
 }
 
-void PlannerBase::publish(const Choice& chosen) noexcept {
+void PlannerBase::publish() noexcept {
+  const SequenceChoice::Choice& chosen = choice_.best();
   output_.inputs = chosen.inputs;
   output_.inputs_per_step = model_->inputs();
-  output_.predicted = states_;
+  output_.predicted = choice_.states();
   output_.state_cost = chosen.cost.state;
   output_.collision_cost = chosen.cost.collision;
 }
@@ -206,15 +204,14 @@ PredictedCost PlannerBase::predict(std::span<const float> inputs,
 Planner::Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
                  std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver) {
   detail::check_parts(options, model.get(), path, solver.get());
-  const maps::Point origin = detail::grid_origin(path);
-  std::vector<maps::ReferencePoint> local(path.begin(), path.end());
-  for (maps::ReferencePoint& point : local) {
-    point.x -= origin.x;
-    point.y -= origin.y;
-  }
   const bool slips = dynamic_cast<const DynamicVehicleModel*>(model.get());
-  const auto make = slips ? detail::make_dynamic_planner : detail::make_kinematic_planner;
-  implementation_ = make(options, std::move(model), origin, local, std::move(solver));
+  detail::PlannerParts parts{
+      options, std::move(model), detail::grid_origin(path), {path.begin(), path.end()}, std::move(solver)};
+  for (maps::ReferencePoint& point : parts.path) {
+    point.x -= parts.origin.x;
+    point.y -= parts.origin.y;
+  }
+  implementation_ = slips ? detail::make_dynamic_planner(parts) : detail::make_kinematic_planner(parts);
 }
 
 Planner::~Planner() = default;

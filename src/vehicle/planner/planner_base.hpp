@@ -13,13 +13,21 @@
 
 namespace slalom::vehicle::detail {
 
+/// The parts of which a planner is made.
+struct PlannerParts {
+  const PlannerOptions& options;
+  std::unique_ptr<VehicleModel> model;
+  maps::Point origin;                      ///< m, map frame; origin of the frame of all computations
+  std::vector<maps::ReferencePoint> path;  ///< in the frame that begins at `origin`
+  std::unique_ptr<Solver> solver;
+};
+
 /// The parts and steps that two planners share: KinematicPlanner for a car whose tyres do not slip, and
 /// DynamicPlanner for a car whose tyres slip. A copy shares only threads with the original.
 class PlannerBase {
  public:
-  /// `path` is in the frame that begins at `origin` (m, map frame).
-  PlannerBase(const PlannerOptions& options, std::unique_ptr<VehicleModel> model, const maps::Point& origin,
-              std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
+  /// Takes model and solver out of the parts.
+  explicit PlannerBase(PlannerParts& parts);
   virtual ~PlannerBase() = default;
   virtual std::unique_ptr<PlannerBase> clone() const = 0;
 
@@ -34,8 +42,6 @@ class PlannerBase {
   void take_own_maps() noexcept;
 
  protected:
-  using Choice = SequenceChoice::Choice;
-
   /// Plans from scan and odometry. The pose is relative to `origin_`.
   virtual void plan(const PlannerInput& input) noexcept = 0;
   /// Records the output's command as sent.
@@ -58,8 +64,8 @@ class PlannerBase {
   void begin_rollouts(const maps::Pose& robot, const VehicleStart& start, double path_speed) noexcept;
   /// Solves the problem and sets the status of the output.
   const SolveResult& solve() noexcept;
-  /// Writes a choice into the output. Its prediction is in `states_`.
-  void publish(const Choice& chosen) noexcept;
+  /// Writes the chosen sequence and its prediction into the output.
+  void publish() noexcept;
   /// The duration of a plan, s.
   double horizon_time() const noexcept { return traits_.time_step * solver_->horizon(); }
 
@@ -73,8 +79,7 @@ class PlannerBase {
   Obstacles obstacles_;
   maps::ReferenceField field_;
   SequenceChoice choice_;
-  std::vector<PredictedState> states_;  ///< predicted states of the plan
-  bool brakes_ = false;                 ///< the command must not be faster than the car
+  bool brakes_ = false;  ///< the command must not be faster than the car
   PlannerOutput output_;
 
  private:
@@ -91,17 +96,9 @@ class PlannerBase {
   std::optional<Rollouts> rollouts_;
 };
 
-/// Makes the planner of a car whose tyres do not slip. The arguments are those of PlannerBase.
-std::unique_ptr<PlannerBase> make_kinematic_planner(const PlannerOptions& options,
-                                                    std::unique_ptr<VehicleModel> model,
-                                                    const maps::Point& origin,
-                                                    std::span<const maps::ReferencePoint> path,
-                                                    std::unique_ptr<Solver> solver);
-/// Makes the planner of a car whose tyres slip; `model` is a DynamicVehicleModel.
-std::unique_ptr<PlannerBase> make_dynamic_planner(const PlannerOptions& options,
-                                                  std::unique_ptr<VehicleModel> model,
-                                                  const maps::Point& origin,
-                                                  std::span<const maps::ReferencePoint> path,
-                                                  std::unique_ptr<Solver> solver);
+/// Makes the planner of a car whose tyres do not slip.
+std::unique_ptr<PlannerBase> make_kinematic_planner(PlannerParts& parts);
+/// Makes the planner of a car whose tyres slip; the model is a DynamicVehicleModel.
+std::unique_ptr<PlannerBase> make_dynamic_planner(PlannerParts& parts);
 
 }  // namespace slalom::vehicle::detail

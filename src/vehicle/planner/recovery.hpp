@@ -63,33 +63,36 @@ class Recovery {
   static double way(double from, double to, double length) noexcept {
     return length > 0 ? std::remainder(to - from, length) : to - from;
   }
+  /// Watches a car that drives forwards, and decides whether it must reverse.
   void watch(double arc, double length, double speed_now, double period) noexcept {
-    double ahead = way(furthest_, arc, length);
-    if (std::abs(ahead) > 10) {  // the car was put somewhere else
-      furthest_ = arc;
-      ahead = since_progress_ = 0;
-      leaving_ = trying_again_ = confined_ = false;
-    }
+    const double ahead = way(furthest_, arc, length);
+    const bool was_moved = std::abs(ahead) > 10;  // the car was put somewhere else
+    if (was_moved) leaving_ = trying_again_ = confined_ = false;
     since_progress_ += period;
-    standing_for_ = std::abs(speed_now) < standing && period > 0 ? standing_for_ + period : 0;
-    if (ahead > progress) {
+    if (was_moved || ahead > progress) {
       furthest_ = arc;
-      since_progress_ = 0;
+      since_progress_ = was_moved ? period : 0;
     }
+    standing_for_ = std::abs(speed_now) < standing && period > 0 ? standing_for_ + period : 0;
+
+    // Past the places of trouble, everything is as usual again.
     if (leaving_ && way(stuck_, arc, length) > relief) {
       leaving_ = confined_ = false;
       distance_ = shortest;
     }
     if (way(reversed_at_, arc, length) > relief) trying_again_ = false;
-    if (crawling_for_ >= hesitation || since_progress_ >= patience) leave(arc, length);
-    if (since_progress_ < patience && standing_for_ < stand_still) return;
+
+    const bool no_progress = since_progress_ >= patience;
+    if (crawling_for_ >= hesitation || no_progress) {
+      if (!leaving_ || way(stuck_, arc, length) > 0) stuck_ = arc;
+      leaving_ = true;
+    }
+    if (no_progress || standing_for_ >= stand_still) begin_reversing(arc, length);
+  }
+  void begin_reversing(double arc, double length) noexcept {
     if (!trying_again_ || way(reversed_at_, arc, length) > 0) reversed_at_ = arc;
     reversing_ = trying_again_ = true;
     driven_ = reversing_for_ = standing_for_ = 0;
-  }
-  void leave(double arc, double length) noexcept {
-    if (!leaving_ || way(stuck_, arc, length) > 0) stuck_ = arc;
-    leaving_ = true;
   }
   void reverse(double speed_now, double period, double arc) noexcept {
     driven_ += std::max(-speed_now, 0.0) * period;

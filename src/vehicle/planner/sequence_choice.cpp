@@ -29,13 +29,6 @@ bool cheaper(const PredictedCost& one, const PredictedCost& other) {
   return one.state + one.collision < other.state + other.collision;
 }
 
-/// Calls `use` with each guide's sequence of `size` values.
-template <class Use>
-void for_each_guide(const SolveResult& result, std::size_t size, Use&& use) {
-  for (int g = 0; g < result.guides.sequences; ++g)
-    use(result.guides.values.subspan(static_cast<std::size_t>(g) * size, size));
-}
-
 /// The index of the cheapest sample without collision, -1 if there is none.
 int cheapest_sample(const SolveResult& result) {
   int cheapest = -1;
@@ -58,8 +51,9 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
       previous_(candidate_.size()),
       kept_(candidate_.size()),
       slower_(candidate_.size()),
-      candidate_states_(static_cast<std::size_t>(horizon) + 1),
-      path_(candidate_states_.size()) {
+      states_(static_cast<std::size_t>(horizon) + 1),
+      candidate_states_(states_.size()),
+      path_(states_.size()) {
   if (traits.seeks_lap_time && traits.body.margin > 0 && traits.obstacle_map == ObstacleMap::clearance)
     body_.emplace(bare(traits.body));
 }
@@ -70,10 +64,10 @@ void SequenceChoice::sees(const GridView<1>& clearances, const maps::MovingObsta
 }
 
 PredictedCost SequenceChoice::predict(const VehicleModel& model, std::span<const float> inputs,
-                                      std::vector<PredictedState>& states) const noexcept {
+                                      std::span<PredictedState> states) const noexcept {
   PredictedCost cost = model.predict(inputs, states);
   if (!body_ || !cost.collided) return cost;
-  const std::span<const PredictedState> predicted{states.data(), inputs.size() / inputs_ + 1};
+  const std::span<const PredictedState> predicted = states.first(inputs.size() / inputs_ + 1);
   cost.collided = body_collides(predicted) || others_collide(predicted);
   return cost;
 }
@@ -109,39 +103,23 @@ void SequenceChoice::sent(std::span<const float> inputs) noexcept {
   if (has_previous_) std::copy(inputs.begin(), inputs.end(), previous_.begin());
 }
 
-SequenceChoice::Choice SequenceChoice::cheapest(const VehicleModel& model, const SolveResult& result,
-                                                const Choice& solution,
-                                                std::vector<PredictedState>& states) noexcept {
-  Choice best = solution;
-  const auto consider = [&](std::span<const float> inputs) {
-    if (inputs.size() != candidate_.size()) return;
-    const PredictedCost cost = predict(model, inputs, candidate_states_);
-    if (!cheaper(cost, best.cost)) return;
-    best = {inputs, cost};
-    states.swap(candidate_states_);
-  };
-  consider(result.nominal);
-  for_each_guide(result, candidate_.size(), consider);
-  if (const int sample = cheapest_sample(result); sample >= 0) {
-    for (std::size_t row = 0; row < candidate_.size(); ++row)
-      candidate_[row] =
-          result.samples->at(static_cast<int>(row / inputs_), static_cast<int>(row % inputs_), sample);
-    consider(candidate_);
-  }
-  return best;
+void SequenceChoice::begin(const VehicleModel& model, const SolveResult& result) noexcept {
+  model_ = &model;
+  result_ = &result;
+  best_ = {result.inputs, predict(model, result.inputs, states_)};
 }
 
-SequenceChoice::Choice SequenceChoice::stop(const VehicleModel& model, const SolveResult& result,
-                                            const Choice& solution, bool reversing,
-                                            std::vector<PredictedState>& states) noexcept {
-  const bool begins_free = body_ && !body_collides({states.data(), 1}) && !others_collide({states.data(), 1});
-  if (begins_free && !reversing) return least_harm(model, result, solution, states);
-  return brake(model, result, solution, reversing, states);
+bool SequenceChoice::consider(std::span<const float> inputs) noexcept {
+  if (inputs.size() != candidate_.size()) return false;
+  const PredictedCost cost = predict(*model_, inputs, candidate_states_);
+  if (!cheaper(cost, best_.cost)) return false;
+  best_ = {inputs, cost};
+  states_.swap(candidate_states_);
+  return true;
 }
 
-SequenceChoice::Choice SequenceChoice::kept(const VehicleModel& model, const Choice& solution, double elapsed,
-                                            std::vector<PredictedState>& states) noexcept {
-  if (!has_previous_) return solution;
+void SequenceChoice::consider_last(double elapsed) noexcept {
+  if (!has_previous_) return;
   const std::size_t last = previous_.size() - inputs_;
   const double moved = elapsed / traits_.time_step, whole = std::floor(moved);
   const auto share = static_cast<float>(moved - whole);
@@ -151,32 +129,43 @@ SequenceChoice::Choice SequenceChoice::kept(const VehicleModel& model, const Cho
                       after = std::min(before + inputs_, last + row % inputs_);
     kept_[row] = previous_[before] + share * (previous_[after] - previous_[before]);
   }
-  return better(model, solution, kept_, states);
+  consider(kept_);
 }
 
-SequenceChoice::Choice SequenceChoice::better(const VehicleModel& model, const Choice& solution,
-                                              std::span<const float> other,
-                                              std::vector<PredictedState>& states) noexcept {
-  if (other.size() != candidate_.size()) return solution;
-  const PredictedCost cost = predict(model, other, candidate_states_);
-  if (!cheaper(cost, solution.cost)) return solution;
-  states.swap(candidate_states_);
-  return {other, cost};
-}
-
-SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const Choice& solution,
-                                              std::vector<PredictedState>& states) noexcept {
-  Choice best = solution;
-  std::copy(states.begin(), states.end(), path_.begin());
+void SequenceChoice::consider_slower() noexcept {
+  std::copy(states_.begin(), states_.end(), path_.begin());
   for (const int steps : {0, 3, 6, 10, 16}) {
     follow_slower(steps);
-    const PredictedCost cost = predict(model, candidate_, candidate_states_);
-    if (!cheaper(cost, best.cost)) continue;
-    candidate_.swap(slower_);
-    best = {slower_, cost};
-    states.swap(candidate_states_);
+    if (consider(candidate_)) candidate_.swap(slower_);
   }
-  return best;
+}
+
+void SequenceChoice::consider_samples() noexcept {
+  for_each_known({}, [&](std::span<const float> inputs) { consider(inputs); });
+  const int sample = cheapest_sample(*result_);
+  if (sample < 0) return;
+  for (std::size_t row = 0; row < candidate_.size(); ++row)
+    candidate_[row] =
+        result_->samples->at(static_cast<int>(row / inputs_), static_cast<int>(row % inputs_), sample);
+  consider(candidate_);
+}
+
+void SequenceChoice::stop(bool reversing) noexcept {
+  const std::span<const PredictedState> start(states_.data(), 1);
+  const bool begins_free = body_ && !body_collides(start) && !others_collide(start);
+  if (begins_free && !reversing) return least_harm();
+  brake(reversing ? max_deceleration_ : -max_deceleration_);
+}
+
+/// Calls `use` with the sequence sent last, as `last` has it, the nominal sequence and the guides: those that
+/// there are.
+template <class Use>
+void SequenceChoice::for_each_known(std::span<const float> last, Use&& use) const {
+  const std::size_t size = candidate_.size();
+  if (has_previous_ && !last.empty()) use(last);
+  if (result_->nominal.size() == size) use(result_->nominal);
+  for (int g = 0; g < result_->guides.sequences; ++g)
+    use(result_->guides.values.subspan(static_cast<std::size_t>(g) * size, size));
 }
 
 /// Sets `candidate_` to inputs that brake for `braking_steps` steps and then accelerate. At each place the
@@ -203,39 +192,35 @@ void SequenceChoice::follow_slower(int braking_steps) noexcept {
   }
 }
 
-/// Returns the cheapest full stop with the steering of one of the known sequences.
-SequenceChoice::Choice SequenceChoice::brake(const VehicleModel& model, const SolveResult& result,
-                                             const Choice& solution, bool reversing,
-                                             std::vector<PredictedState>& states) noexcept {
-  Choice best = solution;
+/// Sets `candidate_` to this steering, with the same acceleration (m/s^2) in all steps.
+void SequenceChoice::set_acceleration(std::span<const float> steering, float acceleration) noexcept {
+  for (std::size_t row = 0; row < candidate_.size(); ++row)
+    candidate_[row] = row % inputs_ == 0 ? steering[row] : acceleration;
+}
+
+/// Takes the cheapest full stop with the steering of one of the known sequences.
+void SequenceChoice::brake(float acceleration) noexcept {
   bool first = true;
-  const auto consider = [&](std::span<const float> steering) {
-    if (steering.size() != candidate_.size()) return;
-    const float braking = reversing ? max_deceleration_ : -max_deceleration_;
-    for (std::size_t row = 0; row < candidate_.size(); ++row)
-      candidate_[row] = row % inputs_ == 0 ? steering[row] : braking;
-    const PredictedCost cost = predict(model, candidate_, candidate_states_);
-    const bool better =
-        best.cost.collided != cost.collided ? best.cost.collided : cost.collision < best.cost.collision;
+  const auto consider_stop = [&](std::span<const float> steering) {
+    set_acceleration(steering, acceleration);
+    const PredictedCost cost = predict(*model_, candidate_, candidate_states_), &best = best_.cost;
+    const bool better = best.collided != cost.collided ? best.collided : cost.collision < best.collision;
     if (!first && !better) return;
     first = false;
     candidate_.swap(braking_);
-    best = {braking_, cost};
-    states.swap(candidate_states_);
+    best_ = {braking_, cost};
+    states_.swap(candidate_states_);
   };
-  consider(best.inputs);
-  if (has_previous_) consider(previous_);
-  consider(result.nominal);
-  for_each_guide(result, candidate_.size(), consider);
-  return best;
+  consider_stop(best_.inputs);
+  for_each_known(previous_, consider_stop);
 }
 
 /// Returns the harm of a sequence: the squared speed (m^2/s^2) of its first collision, times the share of its
 /// steps after it, since a collision far ahead can still be avoided. Returns 0 without a collision.
-double SequenceChoice::harm(const VehicleModel& model, std::span<const float> inputs) noexcept {
+double SequenceChoice::harm(std::span<const float> inputs) noexcept {
   const std::size_t steps = inputs.size() / inputs_;
   const auto collides = [&](std::size_t end) {
-    return predict(model, inputs.first(end * inputs_), candidate_states_).collided;
+    return predict(*model_, inputs.first(end * inputs_), candidate_states_).collided;
   };
   if (!collides(steps)) return 0;
   std::size_t free = 0, collided = steps;  // states; the start does not collide
@@ -248,45 +233,42 @@ double SequenceChoice::harm(const VehicleModel& model, std::span<const float> in
   return left * square(candidate_states_[collided].speed);
 }
 
-/// Returns the least harmful of sequences that all collide: the solution, the sequence sent last (`kept_`),
+/// Takes the least harmful of sequences that all collide: the best so far, the sequence sent last (`kept_`),
 /// the nominal sequence or a guide, each with its own acceleration and with full braking; or full braking
-/// with straight wheels, which leaves all the grip for braking. A braking sequence must do clearly less harm,
-/// since braking takes grip from the turn that the car is in.
-SequenceChoice::Choice SequenceChoice::least_harm(const VehicleModel& model, const SolveResult& result,
-                                                  const Choice& solution,
-                                                  std::vector<PredictedState>& states) noexcept {
-  std::copy(solution.inputs.begin(), solution.inputs.end(), braking_.begin());
-  double least = harm(model, braking_);
-  const auto consider = [&](double share) {
-    const double found = harm(model, candidate_);
-    if (found >= share * least) return false;
+/// with straight wheels, which leaves all the grip for braking.
+void SequenceChoice::least_harm() noexcept {
+  std::vector<float>& chosen = braking_;
+  std::copy(best_.inputs.begin(), best_.inputs.end(), chosen.begin());
+  double least = harm(chosen);
+  const auto take_candidate_below = [&](double limit) {
+    const double found = harm(candidate_);
+    if (found >= limit) return false;
     least = found;
-    candidate_.swap(braking_);
+    candidate_.swap(chosen);
     return true;
   };
-  const auto for_each = [&](auto&& use) {
-    if (has_previous_) use(std::span<const float>(kept_));
-    use(result.nominal);
-    for_each_guide(result, candidate_.size(), use);
-  };
-  for_each([&](std::span<const float> inputs) {
-    if (inputs.size() != candidate_.size()) return;
+
+  // Each sequence with its own acceleration.
+  for_each_known(kept_, [&](std::span<const float> inputs) {
     std::copy(inputs.begin(), inputs.end(), candidate_.begin());
-    consider(1);
+    take_candidate_below(least);
   });
-  constexpr double clearly = 0.8;
-  double share = clearly;
-  const auto braked = [&](std::span<const float> steering) {
-    if (!steering.empty() && steering.size() != candidate_.size()) return;
-    for (std::size_t row = 0; row < candidate_.size(); ++row)
-      candidate_[row] = row % inputs_ != 0 ? -max_deceleration_ : steering.empty() ? 0 : steering[row];
-    if (consider(share)) share = 1;
+
+  // Each steering with full braking. The first one must do clearly less harm, since braking takes grip from
+  // the turn that the car is in.
+  double share = 0.8;
+  const auto try_braking = [&](std::span<const float> steering) {
+    set_acceleration(steering, -max_deceleration_);
+    if (take_candidate_below(share * least)) share = 1;
   };
-  std::copy(braking_.begin(), braking_.end(), slower_.begin());
-  braked(slower_);
-  for_each(braked);
-  braked({});
-  return {braking_, predict(model, braking_, states)};
+  std::vector<float>& steering = slower_;
+  std::copy(chosen.begin(), chosen.end(), steering.begin());
+  try_braking(steering);
+  for_each_known(kept_, try_braking);
+  std::fill(steering.begin(), steering.end(), 0.0f);
+  try_braking(steering);
+
+  best_ = {chosen, predict(*model_, chosen, states_)};
 }
 
 }  // namespace slalom::vehicle::detail

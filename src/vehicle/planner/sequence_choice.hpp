@@ -10,10 +10,12 @@
 
 namespace slalom::vehicle::detail {
 
-/// Chooses the sequence to send, which may be better than the solver's solution.
+/// Chooses the sequence to send. It begins with the solver's solution and considers others, one kind after
+/// another. A sequence is better if it does not collide and the best so far does; if both or neither collide,
+/// the cheaper one is better.
 class SequenceChoice {
  public:
-  /// A sequence, valid until the next choice, and its cost.
+  /// A sequence, valid until the next `begin`, and its cost.
   struct Choice {
     std::span<const float> inputs;
     PredictedCost cost;
@@ -32,39 +34,34 @@ class SequenceChoice {
   /// braked for the margin at the limit of grip would turn in and hit the wall that it would otherwise have
   /// passed.
   PredictedCost predict(const VehicleModel& model, std::span<const float> inputs,
-                        std::vector<PredictedState>& states) const noexcept;
+                        std::span<PredictedState> states) const noexcept;
 
-  /// Returns the cheapest of the solution and of sequences along its path at other speeds: some brake first
-  /// for a few steps, one only accelerates. The solver alone would brake too late, since few samples brake
-  /// for long; and it would not drive off, since samples around a car at rest stand still. For models whose
-  /// tyres slip. `states` as in `cheapest`.
-  Choice slower(const VehicleModel& model, const Choice& solution,
-                std::vector<PredictedState>& states) noexcept;
+  /// Begins with the solution. Model and result are used until the next call.
+  void begin(const VehicleModel& model, const SolveResult& result) noexcept;
 
-  /// Returns the cheaper of the solution and the sequence sent last, moved forward by `elapsed` (s) with its
-  /// last inputs held. A solution is a mean over few samples and may be worse than the last plan. Collisions
-  /// count before costs. `states` as in `cheapest`.
-  Choice kept(const VehicleModel& model, const Choice& solution, double elapsed,
-              std::vector<PredictedState>& states) noexcept;
+  /// Considers one sequence, [step][input], unless it has another size. Returns whether it is now the best.
+  bool consider(std::span<const float> inputs) noexcept;
+  /// Considers the sequence sent last, moved forward by `elapsed` (s) with its last inputs held. A solution
+  /// is a mean over few samples and may be worse than the last plan.
+  void consider_last(double elapsed) noexcept;
+  /// Considers sequences along the path of the best one at other speeds: some brake first for a few steps,
+  /// one only accelerates. The solver alone would brake too late, since few samples brake for long; and it
+  /// would not drive off, since samples around a car at rest stand still. For models whose tyres slip.
+  void consider_slower() noexcept;
+  /// Considers the nominal sequence, the guides and the best sample.
+  void consider_samples() noexcept;
 
-  /// Returns the cheaper of the solution and another sequence. Collisions count before costs. `states` as in
-  /// `cheapest`.
-  Choice better(const VehicleModel& model, const Choice& solution, std::span<const float> other,
-                std::vector<PredictedState>& states) noexcept;
+  /// Replaces the best sequence by a full stop, for when every sequence collides. The car brakes as hard as
+  /// the tyres allow and steers like the solution, the sequence sent last, the nominal one or a guide: like
+  /// the cheapest one that does not collide, or else the cheapest of all. If plans seek the shortest time
+  /// with a margin, the sequence that does the least harm is taken instead. For models whose tyres slip.
+  void stop(bool reversing) noexcept;
 
-  /// Returns the cheapest of the solution, the nominal sequence, the guides and the best sample. Collisions
-  /// count before costs. `states` must hold the prediction of the solution and is replaced by that of the
-  /// choice.
-  Choice cheapest(const VehicleModel& model, const SolveResult& result, const Choice& solution,
-                  std::vector<PredictedState>& states) noexcept;
-
-  /// Returns a full stop, for when every sequence collides. The car brakes as hard as the tyres allow and
-  /// steers like the solution, the sequence sent last, the nominal one or a guide: like the cheapest one that
-  /// does not collide, or else the cheapest of all. If plans seek the shortest time with a margin, returns
-  /// the sequence that does the least harm instead (`least_harm`). For models whose tyres slip. `states` as
-  /// in `cheapest`.
-  Choice stop(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
-              std::vector<PredictedState>& states) noexcept;
+  /// The best sequence so far.
+  const Choice& best() const noexcept { return best_; }
+  /// The horizon + 1 predicted states of the best sequence.
+  std::span<PredictedState> states() noexcept { return states_; }
+  std::span<const PredictedState> states() const noexcept { return states_; }
 
   /// Remembers the sequence that is sent.
   void sent(std::span<const float> inputs) noexcept;
@@ -73,11 +70,12 @@ class SequenceChoice {
 
  private:
   void follow_slower(int braking_steps) noexcept;
-  Choice brake(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
-               std::vector<PredictedState>& states) noexcept;
-  Choice least_harm(const VehicleModel& model, const SolveResult& result, const Choice& solution,
-                    std::vector<PredictedState>& states) noexcept;
-  double harm(const VehicleModel& model, std::span<const float> inputs) noexcept;
+  void set_acceleration(std::span<const float> steering, float acceleration) noexcept;
+  template <class Use>
+  void for_each_known(std::span<const float> last, Use&& use) const;
+  void brake(float acceleration) noexcept;
+  void least_harm() noexcept;
+  double harm(std::span<const float> inputs) noexcept;
   bool body_collides(std::span<const PredictedState> states) const noexcept;
   bool others_collide(std::span<const PredictedState> states) const noexcept;
 
@@ -85,10 +83,13 @@ class SequenceChoice {
   VehicleTraits traits_;
   float max_deceleration_;
   std::vector<float> candidate_, braking_, previous_, kept_, slower_;
-  std::vector<PredictedState> candidate_states_, path_;
+  std::vector<PredictedState> states_, candidate_states_, path_;
   std::optional<ObstacleCost> body_;  ///< body without margin, if it has one and plans seek the shortest time
   maps::MovingObstaclesView others_;
   bool has_previous_ = false;
+  const VehicleModel* model_ = nullptr;
+  const SolveResult* result_ = nullptr;
+  Choice best_;
 };
 
 }  // namespace slalom::vehicle::detail

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "vehicle/racing/polyline.hpp"
+#include "vehicle/course/curve.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -25,12 +25,12 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
     if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(left[i]) ||
         !std::isfinite(right[i]))
       throw std::invalid_argument("centre_line: point " + std::to_string(i) + " must be finite");
-  const double length = detail::line_length(points, closed);
+  const double length = detail::length(points, closed);
   if (!(length > 0) || length / step > max_corridor_points)
     throw std::invalid_argument(
         "centre_line: " + std::to_string(length) + " m long; must be above 0 m and at most " +
         std::to_string(max_corridor_points * step) + " m in steps of " + std::to_string(step) + " m");
-  const detail::Resampling places = detail::equal_steps(points, closed, step);
+  const detail::Resampling places = detail::divided_by_step(points, closed, step);
   Corridor corridor;
   corridor.closed = closed;
   corridor.centre_line = places.points;
@@ -40,12 +40,12 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
     corridor.left.push_back((1 - t) * left[row] + t * left[next]);
     corridor.right.push_back((1 - t) * right[row] + t * right[next]);
   }
-  corridor.normal = detail::line_normals(corridor.centre_line, closed);
+  corridor.normal = detail::normals(corridor.centre_line, closed);
   return corridor;
 }
 
 double length(const Corridor& corridor) {
-  return detail::line_length(corridor.centre_line, corridor.closed);
+  return detail::length(corridor.centre_line, corridor.closed);
 }
 
 }  // namespace slalom::vehicle

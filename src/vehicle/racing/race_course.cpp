@@ -10,7 +10,6 @@
 #include "vehicle/racing/free_space.hpp"
 #include "vehicle/racing/loop_search.hpp"
 #include "vehicle/racing/map_corridor.hpp"
-#include "vehicle/racing/polyline.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -194,7 +193,7 @@ RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, con
   if (start && along(line, closed, *start) < 0) std::reverse(line.begin(), line.end());
   if (options.reverse) std::reverse(line.begin(), line.end());
   if (options.reverse && start) start->yaw = maps::wrap_angle(start->yaw + half_turn);
-  const auto measure = measure_for(car, detail::line_length(line, closed));
+  const auto measure = measure_for(car, detail::length(line, closed));
   course.corridor = detail::centred_corridor(space, line, closed, measure);
   complete(course, space, car, measure, start);
   return course;

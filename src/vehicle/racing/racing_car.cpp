@@ -2,21 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "slalom/core/gravity.hpp"
 #include "vehicle/course/speed_passes.hpp"
+#include "vehicle/require.hpp"
 
 namespace slalom::vehicle {
 namespace {
 
-void require(bool holds, const std::string& key, double value, const char* rule) {
-  if (!holds) throw std::invalid_argument(key + ": " + std::to_string(value) + " must be " + rule);
-}
-
-void require_positive(const std::string& key, double value) {
-  require(value > 0 && std::isfinite(value), key, value, "finite and above 0");
-}
+using detail::require;
+using detail::require_positive;
 
 /// Linear between rows, constant beyond them.
 GripAtSpeed interpolated(const std::vector<GripAtSpeed>& rows, double speed) {
@@ -30,19 +25,23 @@ GripAtSpeed interpolated(const std::vector<GripAtSpeed>& rows, double speed) {
   return {speed, mix(a.acceleration, b.acceleration), mix(a.braking, b.braking), mix(a.lateral, b.lateral)};
 }
 
+/// The highest value that holds, by bisection: `low` holds, `high` does not.
+template <class Holds>
+double highest(double low, double high, const Holds& holds) {
+  for (int k = 0; k < 50; ++k) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 /// The highest speed, at most `top`, whose lateral acceleration on a curve the tyres allow.
 double cornering_speed(const RacingCar& car, double curvature, double top) {
   const double bend = std::max(std::abs(curvature), 1e-9);
   if (car.grip.empty()) return std::min(top, std::sqrt(car.limits.lateral_acceleration / bend));
   // The tyres may allow less the faster the car is, so the highest speed that holds is bracketed.
   const auto holds = [&](double v) { return v * v * bend <= grip_at(car, v).lateral; };
-  if (holds(top)) return top;
-  double low = 0, high = top;
-  for (int k = 0; k < 50; ++k) {
-    const double middle = 0.5 * (low + high);
-    (holds(middle) ? low : high) = middle;
-  }
-  return low;
+  return holds(top) ? top : highest(0, top, holds);
 }
 
 RacingCar passenger_car() {
@@ -67,10 +66,7 @@ void validate(const RacingCar& car) {
   require(car.max_steering > 0 && car.max_steering < 1.5, "max_steering", car.max_steering,
           "above 0 and below 1.5 rad");
   require_positive("max_steering_rate", car.max_steering_rate);
-  require_positive("top_speed", car.limits.top_speed);
-  require_positive("lateral_acceleration", car.limits.lateral_acceleration);
-  require_positive("acceleration", car.limits.acceleration);
-  require_positive("braking", car.limits.braking);
+  require_positive(car.limits);
   require(car.power > 0, "power", car.power, "above 0");
   for (std::size_t i = 0; i < car.grip.size(); ++i) {
     const std::string row = "ggv[" + std::to_string(i) + "].";
@@ -153,7 +149,20 @@ std::vector<double> racing_speeds(std::span<const double> curvature, std::span<c
     const double strongest = car.grip.empty() ? car.limits.braking : interpolated(car.grip, v).braking;
     return strongest * detail::share_left(v, k, lateral(v));
   };
-  detail::lower_to_reachable_throughout(speed, curvature, step, closed, forwards, braking);
+  // The strongest acceleration of both ends of a piece and of its middle: on a line on which turning takes
+  // all grip almost everywhere, that of the start alone is too much for a fifth of the pieces.
+  const auto reach = [&](const auto& strongest) {
+    return [&](std::size_t from, std::size_t to, double way) {
+      const double before = speed[from], first = curvature[from], last = curvature[to];
+      const auto holds = [&](double after) {
+        const double a = (after * after - before * before) / (2 * way);
+        return a <= strongest(before, first) && a <= strongest(after, last) &&
+               a <= strongest(0.5 * (before + after), 0.5 * (first + last));
+      };
+      if (speed[to] > before && !holds(speed[to])) speed[to] = highest(before, speed[to], holds);
+    };
+  };
+  detail::for_each_piece(speed, step, closed, reach(forwards), reach(braking));
   return speed;
 }
 

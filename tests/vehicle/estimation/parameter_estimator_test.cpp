@@ -1,6 +1,6 @@
 // Friction, steering gain and delay found while a simulated car drives: from wrong given values, without
 // turning, on all instruction sets, with and without noise.
-#include "slalom/vehicle/estimation/parameter_estimator.hpp"
+#include "vehicle/estimation/parameter_estimator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "slalom/vehicle/model/single_track.hpp"
 #include "support/allocations.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double period = 0.025, time_step = 0.005;  // s
@@ -23,7 +23,6 @@ PathTrackingOptions car_options() {
   options.steer_time_constant = 0.05;
   options.dead_time = 0.025;
   options.max_acceleration = options.max_deceleration = 9;
-  options.hold_first_input = false;
   return options;
 }
 
@@ -146,4 +145,4 @@ TEST(ParameterEstimator, DoesNotAllocateAndGivesTheSameBitsAgainAfterAReset) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::detail

@@ -1,18 +1,18 @@
 // The observer of yaw rate, slip and speed against the truth of the simulator.
-#include "slalom/vehicle/estimation/state_observer.hpp"
+#include "vehicle/estimation/state_observer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
+#include <memory>
 
 #include "slalom/core/random.hpp"
 #include "slalom/sim/imu.hpp"
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double period = 0.025, time_step = 0.005;  // s
@@ -42,23 +42,15 @@ PoseCovariance covariance_of(double along, double across, double yaw, double yaw
            {0, 0, yaw_deviation * yaw_deviation}}};
 }
 
-/// The single-track model and its friction.
-struct Model {
-  std::unique_ptr<VehicleModel> owner;
-  double friction;
-
-  const DynamicVehicleModel& operator*() const { return dynamic_cast<const DynamicVehicleModel&>(*owner); }
-};
-
-Model model_with(double friction) {
+std::unique_ptr<DynamicVehicleModel> model_with(double friction) {
   VehicleOptions options;
   options.model = vehicle_model("single_track");
-  options.hold_first_input = false;
   options.steer_time_constant = 0.01;
   options.dead_time = 0.02;
   options.max_acceleration = options.max_deceleration = 9;
   options.own_of<SingleTrackOptions>().friction = friction;
-  return {make_vehicle_model(options), friction};
+  return std::unique_ptr<DynamicVehicleModel>(
+      dynamic_cast<DynamicVehicleModel*>(make_vehicle_model(options).release()));
 }
 
 Errors errors_of(const Drive& drive) {
@@ -93,7 +85,7 @@ Errors errors_of(const Drive& drive) {
     input.pose.yaw += drive.yaw_noise * noise.normal();
     input.speed += drive.speed_noise * noise.normal();
     if (drive.imu) input.imu = imu.read();
-    observer.update(*model, input, model.friction);
+    observer.update(*model, input, drive.assumed_friction);
     if (time > 1) {
       ++count;
       sum.yaw_rate += std::pow(observer.now().yaw_rate - state.yaw_rate, 2);
@@ -113,15 +105,10 @@ Errors errors_of(const Drive& drive) {
           std::sqrt(sum.across / count)};
 }
 
-void show(const char* what, const Errors& e) {
-  std::printf("%s: yaw rate %.4f rad/s, slip %.4f rad, speed %.4f m/s\n", what, e.yaw_rate, e.slip, e.speed);
-}
-
 constexpr Drive localised{.position_noise = 0.02, .yaw_noise = 0.006, .speed_noise = 0.03};
 
 TEST(StateObserver, FollowsExactMeasurements) {
   const Errors e = errors_of({});
-  show("exact", e);
   EXPECT_LT(e.yaw_rate, 0.08);
   EXPECT_LT(e.slip, 0.012);
   EXPECT_LT(e.speed, 0.05);
@@ -129,7 +116,6 @@ TEST(StateObserver, FollowsExactMeasurements) {
 
 TEST(StateObserver, HasSmallErrorsWithALocalisedPose) {
   const Errors e = errors_of(localised);
-  show("localised", e);
   // Differences of the noisy heading would have 0.006 sqrt(2) / 0.025 s = 0.34 rad/s.
   EXPECT_LT(e.yaw_rate, 0.17);
   EXPECT_LT(e.slip, 0.03);
@@ -141,7 +127,6 @@ TEST(StateObserver, AnImuGivesTheYawRate) {
   const Errors without = errors_of(drive);
   drive.imu = true;
   const Errors with = errors_of(drive);
-  show("with an IMU", with);
   EXPECT_LT(with.yaw_rate, 0.7 * without.yaw_rate);
   EXPECT_LT(with.slip, 0.02);
 }
@@ -152,8 +137,6 @@ TEST(StateObserver, WithTheWrongFrictionAnImuHelpsMost) {
   const Errors without = errors_of(drive);
   drive.imu = true;
   const Errors with = errors_of(drive);
-  show("wrong friction", without);
-  show("wrong friction with an IMU", with);
   EXPECT_LT(with.slip, 0.8 * without.slip);
 }
 
@@ -163,7 +146,6 @@ TEST(StateObserver, KnowsInWhichDirectionAPoseIsCertain) {
   const Errors e = errors_of(drive);
   drive.mean_of_both = true;
   const Errors mean = errors_of(drive);
-  std::printf("[ across   ] %.4f m, with the mean of both variances %.4f m\n", e.across, mean.across);
   EXPECT_LT(e.across, 0.02);
   EXPECT_LT(e.across, 0.5 * mean.across);
   EXPECT_LT(e.slip, mean.slip);
@@ -179,7 +161,7 @@ TEST(StateObserver, ToleratesAnInvalidCovariance) {
   for (const PoseCovariance& covariance : hostile) {
     StateObserver observer({}, period, 0, 0.02);
     for (int i = 0; i < 40; ++i) {
-      observer.update(*model, {{0.1 * i, 0, 0}, 4, covariance}, model.friction);
+      observer.update(*model, {{0.1 * i, 0, 0}, 4, covariance}, 1);
       observer.send({0, 4});
       const VehicleStart& now = observer.now();
       ASSERT_TRUE(
@@ -192,18 +174,18 @@ TEST(StateObserver, BeginsAnewAfterAJumpAndAtAStandstill) {
   const auto model = model_with(1);
   StateObserver observer({}, period, 0, 0.02);
   for (int i = 0; i < 40; ++i) {
-    observer.update(*model, {{0.1 * i, 0, 0}, 4}, model.friction);
+    observer.update(*model, {{0.1 * i, 0, 0}, 4}, 1);
     observer.send({0, 4});
   }
   EXPECT_NEAR(observer.now().pose.x, 3.9, 0.01);
   EXPECT_NEAR(observer.now().yaw_rate, 0, 0.01);
-  observer.update(*model, {{20, 5, 1}, 4}, model.friction);
+  observer.update(*model, {{20, 5, 1}, 4}, 1);
   EXPECT_EQ(observer.now().pose.x, 20);
   observer.send({0, 0});
-  observer.update(*model, {{20, 5, 1}, 0}, model.friction);
+  observer.update(*model, {{20, 5, 1}, 0}, 1);
   EXPECT_EQ(observer.now().speed, 0);
   EXPECT_EQ(observer.now().slip, 0);
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::detail

@@ -16,7 +16,6 @@ namespace {
 Planner planner_of(const std::string& model, Objective objective) {
   VehicleOptions car;
   car.model = vehicle_model(model);
-  car.hold_first_input = false;
   PlannerOptions options;
   if (model == "single_track") {
     car.own_of<SingleTrackOptions>().objective = objective;

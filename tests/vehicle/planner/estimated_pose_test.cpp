@@ -1,45 +1,25 @@
 // A planner whose pose is an estimate with a covariance, and what it predicts of other sequences.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
+#include "vehicle/planner/lane_scan.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
 namespace slalom::vehicle {
 namespace {
 
-constexpr double speed = 3, period = 0.025;         // m/s, s
-constexpr double wall = 0.5, spacing = 4.7 / 1080;  // m to the left of the car's axis; rad
-constexpr double position_error = -0.25;            // m, to the right
-const std::vector<float> straight_on(2 * 6, 0);     // six steps without steering and acceleration
-
-Planner make_planner() {
-  VehicleOptions car;
-  car.model = vehicle_model("single_track");
-  car.hold_first_input = false;
-  PlannerOptions options;
-  options.control_period = period;
-  return {options, make_vehicle_model(car), testing::lane(speed),
-          make_solver(testing::few_samples("svg_mppi"), 2)};
-}
-
-/// The ranges that a laser on the axis of a car along x measures to a wall to its left.
-std::vector<float> beside_a_wall() {
-  std::vector<float> ranges(1081);
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const double sine = std::sin(-2.35 + static_cast<double>(i) * spacing);
-    ranges[i] = static_cast<float>(sine > 0.02 ? wall / sine : 29);
-  }
-  return ranges;
-}
+constexpr double speed = 3, period = 0.025;      // m/s, s
+constexpr double position_error = -0.25;         // m, to the right
+const std::vector<float> straight_on(2 * 6, 0);  // six steps without steering and acceleration
+// m: a wall to the left of the car.
+const testing::LaneScan beside_wall({{{-25, 0.5}, {25, 0.5}}}, 1081);
 
 /// The collision cost of driving straight on beside the wall, after a second in which the pose was right and
 /// one update in which it is wrong by `error` (m, to the left).
 double cost_beside_the_wall(double error) {
-  Planner planner = make_planner();
-  const std::vector<float> ranges = beside_a_wall();
-  PlannerInput input{{ranges, -2.35, spacing, 0.05, 30}, {{5, 0, 0}, speed}};
+  Planner planner = testing::sliding_planner();
+  PlannerInput input{beside_wall.view(), {{5, 0, 0}, speed}};
   const auto update = [&](double deviation) {
     for (std::size_t i = 0; i < 3; ++i) input.odometry.covariance[i][i] = deviation * deviation;
     planner.update(input);
@@ -61,11 +41,10 @@ TEST(EstimatedPose, DoesNotMoveTheWallsThatTheCarSees) {
 }
 
 TEST(PlannerPrediction, CostsNothingBeforeAPlanAndAfterAReset) {
-  Planner planner = make_planner();
-  const std::vector<float> ranges = beside_a_wall();
+  Planner planner = testing::sliding_planner();
   std::vector<PredictedState> states(straight_on.size() / 2 + 1);
   EXPECT_EQ(planner.predict(straight_on, states).state, 0);
-  planner.update({{ranges, -2.35, spacing, 0.05, 30}, {{5, 0.2, 0}, speed}});
+  planner.update({beside_wall.view(), {{5, 0.2, 0}, speed}});
   EXPECT_GT(planner.predict(straight_on, states).state, 0);
   planner.reset(1);
   EXPECT_EQ(planner.predict(straight_on, states).state, 0);

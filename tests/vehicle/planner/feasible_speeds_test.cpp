@@ -40,6 +40,51 @@ double at(const FeasibleSpeeds& speeds, double arc) {
   return value(i) + share * (value(i + 1) - value(i));
 }
 
+/// A closed course of two straights of 30 m and two half circles of 3 m radius, driven at 12 m/s.
+std::vector<maps::ReferencePoint> long_oval() {
+  std::vector<maps::ReferencePoint> path;
+  constexpr double pi = M_PI, bend = 3;
+  for (int i = 0; i < 150; ++i) path.push_back({0.2 * i, 0, 0, 12});
+  for (int i = 0; i < 47; ++i) {
+    const double a = -pi / 2 + pi * i / 47;
+    path.push_back({30 + bend * std::cos(a), bend + bend * std::sin(a), 0, 12});
+  }
+  for (int i = 0; i < 150; ++i) path.push_back({30 - 0.2 * i, 2 * bend, pi, 12});
+  for (int i = 0; i < 47; ++i) {
+    const double a = pi / 2 + pi * i / 47;
+    path.push_back({bend * std::cos(a), bend + bend * std::sin(a), 0, 12});
+  }
+  return path;
+}
+
+TEST(FeasibleSpeeds, KeepToGripBrakesAndMotor) {
+  const auto path = long_oval();
+  FeasibleSpeeds speeds(path);
+  EXPECT_EQ(speeds.speeds()[0], 12);
+  speeds.update({.grip = 8, .acceleration = 9, .braking = 6, .delay = 0, .switch_speed = 7});
+  const auto v = speeds.speeds();
+  EXPECT_NEAR(v[170], std::sqrt(8.0 * 3), 0.15) << "in the middle of the curve";
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const std::size_t next = (i + 1) % v.size();
+    const double way = std::hypot(path[next].x - path[i].x, path[next].y - path[i].y);
+    const double change = (v[next] * v[next] - v[i] * v[i]) / (2 * way);
+    EXPECT_GT(change, -6.001) << "point " << i;
+    EXPECT_LT(change, 8.001) << "point " << i;
+    if (v[i] > 7) {
+      EXPECT_LT(change, 9 * 7 / v[i] + 1e-6) << "point " << i;
+    }
+  }
+  const std::vector<double> fast(v.begin(), v.end());
+  speeds.update({.grip = 8, .acceleration = 9, .braking = 9, .braking_share = 0.6, .delay = 0});
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const std::size_t next = (i + 1) % v.size();
+    const double way = std::hypot(path[next].x - path[i].x, path[next].y - path[i].y);
+    EXPECT_GT((v[next] * v[next] - v[i] * v[i]) / (2 * way), -0.6 * 8.001) << "point " << i;
+  }
+  speeds.update({.grip = 4, .acceleration = 9, .braking = 6, .delay = 0.05, .switch_speed = 7});
+  for (std::size_t i = 0; i < v.size(); ++i) EXPECT_LE(speeds.speeds()[i], fast[i]);
+}
+
 TEST(FeasibleSpeeds, WithALeadACarThatLooksThemUpAtTheBeginOfAStepHasThemAtItsEnd) {
   constexpr double step = 0.05;  // s
   const DrivingLimits limits{.grip = grip, .acceleration = grip, .braking = grip, .switch_speed = 100};

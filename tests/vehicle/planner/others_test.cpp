@@ -4,15 +4,16 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/solvers/mppi_options.hpp"
-#include "slalom/solvers/svg_mppi_options.hpp"
 #include "slalom/vehicle/model/registry.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "support/lane.hpp"
 #include "support/predicted.hpp"
+#include "vehicle/planner/lane_scan.hpp"
 #include "vehicle/planner/obstacles.hpp"
 
 namespace slalom::vehicle {
@@ -21,40 +22,21 @@ namespace {
 constexpr double speed = 3;                            // m/s, of the path
 constexpr double car_length = 0.58, car_width = 0.31;  // m
 
-Planner make_planner(const PlannerOptions& options = {}, VehicleOptions vehicle = {}) {
-  SvgMppiOptions method;
-  method.horizon = 20;
-  method.samples = 512;
-  method.variance = 0.03;
-  method.guides.variance = method.guides.gradient_variance = 0.01;
-  method.guides.step = 0.005;
-  method.variance_min = 0.001;
-  method.variance_max = 0.1;
-  method.input_min = -0.4;
-  method.input_max = 0.4;
+Planner make_planner(const PlannerOptions& options = {}) {
+  VehicleOptions vehicle;
   vehicle.cost.outside_cost = vehicle.cost.outside_terminal_cost = 0;
-  return {options, make_vehicle_model(vehicle), testing::lane(speed), make_solver(method, 1)};
+  return {options, make_vehicle_model(vehicle), testing::lane(speed),
+          make_solver(testing::few_steering_samples(), 1)};
 }
 
-/// The ranges that a laser 0.275 m ahead of the rear axle measures in a lane of this half width and of a car
-/// in its middle, whose rear end is `car` m ahead of the axle.
-struct Lane {
-  double half_width = 1, car = 1e9;  // m
-  std::vector<float> ranges = std::vector<float>(541);
-
-  maps::LaserScanView scan() {
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const double angle = angle_min + static_cast<double>(i) * step;
-      const double c = std::cos(angle), s = std::sin(angle);
-      double range = std::abs(s) > 1e-6 ? half_width / std::abs(s) : 29;
-      if (c > 1e-6 && std::abs((car - 0.275) / c * s) < 0.5 * car_width)
-        range = std::min(range, (car - 0.275) / c);
-      ranges[i] = static_cast<float>(std::min(range, 29.0));
-    }
-    return {ranges, angle_min, step, 0.05, 30};
-  }
-  static constexpr double angle_min = -2.35, step = 4.7 / 540;
-};
+/// The scan in a lane of this half width (m) with a car in its middle, whose rear end is `car` (m) ahead of
+/// the axle.
+testing::LaneScan scan_of_lane(double half_width, double car = 100) {
+  std::vector<testing::Wall> walls = testing::beside_lane(half_width);
+  walls.push_back({{car, -0.5 * car_width}, {car, 0.5 * car_width}});
+  return testing::LaneScan(walls, 541);
+}
+using Others = std::span<const maps::PredictedObstacle>;
 
 /// A car on the lane whose rear end is at `rear` (m), at this speed (m/s), with one hypothesis.
 struct Other : testing::Predicted {
@@ -63,10 +45,10 @@ struct Other : testing::Predicted {
 };
 
 /// The output after some updates at the same place.
-const PlannerOutput& settle(Planner& planner, Lane& lane, std::span<const maps::PredictedObstacle> others) {
-  for (int i = 0; i < 10; ++i)
-    planner.update({.scan = lane.scan(), .odometry = {{5, 0, 0}, speed}, .others = others});
-  return planner.update({.scan = lane.scan(), .odometry = {{5, 0, 0}, speed}, .others = others});
+const PlannerOutput& settle(Planner& planner, const testing::LaneScan& scan, Others others) {
+  const PlannerInput input{.scan = scan.view(), .odometry = {{5, 0, 0}, speed}, .others = others};
+  for (int i = 0; i < 10; ++i) planner.update(input);
+  return planner.update(input);
 }
 
 /// How near (m) a plan comes to the middle line of another car that drives along x, while it is beside it.
@@ -83,9 +65,9 @@ double distance_beside(const PlannerOutput& out, const Other& other) {
 }
 
 TEST(PlannerAmongOthers, FollowsACarThatIsAsFast) {
-  Lane narrow{.half_width = 0.45, .car = 1.3};
+  const auto narrow = scan_of_lane(0.45, 1.3);
   Planner reacts = make_planner(), predicts = make_planner();
-  const Other other(5 + narrow.car, speed);
+  const Other other(5 + 1.3, speed);
   const PlannerOutput& blocked = settle(reacts, narrow, {});
   EXPECT_EQ(blocked.status, PlannerStatus::blocked);
   EXPECT_LT(blocked.command.speed, speed);
@@ -95,9 +77,9 @@ TEST(PlannerAmongOthers, FollowsACarThatIsAsFast) {
 }
 
 TEST(PlannerAmongOthers, PassesACarThatIsSlower) {
-  Lane wide{.half_width = 1.5, .car = 1.5};
+  const auto wide = scan_of_lane(1.5, 1.5);
   Planner planner = make_planner();
-  const Other other(5 + wide.car, 1);
+  const Other other(5 + 1.5, 1);
   const PlannerOutput& out = settle(planner, wide, {&other.obstacle, 1});
   EXPECT_EQ(out.status, PlannerStatus::ok);
   EXPECT_GT(distance_beside(out, other), car_width);
@@ -124,10 +106,10 @@ double lead_after_following(double time_behind, std::uint64_t seed) {
   double sum = 0;  // m
   for (int i = 0; i < updates; ++i) {
     const double x = 5 + followed * options.control_period * i;
-    Lane wide{.half_width = 1.5, .car = 0.461 + gap};
-    const Other other(x + wide.car, followed);
+    const auto wide = scan_of_lane(1.5, 0.461 + gap);
+    const Other other(x + 0.461 + gap, followed);
     const PlannerOutput& out = planner.update(
-        {.scan = wide.scan(), .odometry = {{x, 0.25, 0}, followed}, .others = {&other.obstacle, 1}});
+        {.scan = wide.view(), .odometry = {{x, 0.25, 0}, followed}, .others = {&other.obstacle, 1}});
     if (i >= updates - counted) sum += out.predicted.back().pose.x - x;
   }
   return sum / counted;
@@ -144,7 +126,7 @@ TEST(PlannerAmongOthers, GoesAheadToPassACarBehindWhichItLosesTime) {
 }
 
 TEST(PlannerAmongOthers, AvoidsWhatIsNotInTheWayYet) {
-  Lane wide{.half_width = 1.5};
+  const auto wide = scan_of_lane(1.5);
   Planner planner = make_planner();
   const Other comes(5 + 5, -2);  // meets the car after 0.9 s
   const PlannerOutput& out = settle(planner, wide, {&comes.obstacle, 1});
@@ -152,7 +134,7 @@ TEST(PlannerAmongOthers, AvoidsWhatIsNotInTheWayYet) {
 }
 
 TEST(PlannerAmongOthers, AFasterCarBehindDoesNotMakeItBrake) {
-  Lane narrow{.half_width = 0.45};
+  const auto narrow = scan_of_lane(0.45);
   Planner planner = make_planner();
   const Other behind(5 - 1.75, speed + 2);  // 1.05 m behind the own rear end
   const PlannerOutput& out = settle(planner, narrow, {&behind.obstacle, 1});
@@ -165,9 +147,9 @@ TEST(PlannerAmongOthers, KeepsMoreDistanceToThemThanToWalls) {
   VehicleOptions car;
   car.body.margin = car.body.soft_margin = 0.01;
   detail::Obstacles obstacles(PlannerOptions{}, make_vehicle_model(car)->traits(), 20, 10);
-  Lane wide{.half_width = 1.5};
+  const auto wide = scan_of_lane(1.5);
   const Other other(5, 1);
-  obstacles.update({.scan = wide.scan(), .odometry = {{4.5, 0, 0}, speed}, .others = {&other.obstacle, 1}},
+  obstacles.update({.scan = wide.view(), .odometry = {{4.5, 0, 0}, speed}, .others = {&other.obstacle, 1}},
                    true);
   const auto beside = [&](double gap) {
     return obstacles.others({0, 0}).cost(5.1, car_width + deviation + gap, 0.0, 1.0, 0);
@@ -179,12 +161,12 @@ TEST(PlannerAmongOthers, KeepsMoreDistanceToThemThanToWalls) {
 }
 
 TEST(PlannerAmongOthers, WithoutPredictionTheyAreWhatTheScanSees) {
-  Lane wide{.half_width = 1.5, .car = 1.5};
+  const auto wide = scan_of_lane(1.5, 1.5);
   PlannerOptions options;
   options.predict_others = false;
   Planner one = make_planner(options), other = make_planner();
-  const Other ahead(5 + wide.car, 1);
-  Other unusable(5 + wide.car, 1);
+  const Other ahead(5 + 1.5, 1);
+  Other unusable(5 + 1.5, 1);
   unusable.poses[3].pose.x = std::numeric_limits<double>::quiet_NaN();
   Planner third = make_planner();
   const double expected = settle(other, wide, {}).command.steer;
@@ -193,7 +175,7 @@ TEST(PlannerAmongOthers, WithoutPredictionTheyAreWhatTheScanSees) {
 }
 
 TEST(PlannerAmongOthers, CarsFarAwayChangeNoBit) {
-  Lane wide{.half_width = 1.5};
+  const auto wide = scan_of_lane(1.5);
   Planner alone = make_planner(), among = make_planner();
   const Other far(60, 3);
   const PlannerOutput &one = settle(alone, wide, {}), &other = settle(among, wide, {&far.obstacle, 1});

@@ -30,6 +30,13 @@ inline SolverOptions few_samples(const char* method) {
   return options;
 }
 
+/// A planner of a car whose tyres slip, on a lane at 3 m/s.
+inline vehicle::Planner sliding_planner(const vehicle::PlannerOptions& options = {},
+                                        vehicle::VehicleOptions car = {}) {
+  car.model = vehicle::vehicle_model("single_track");
+  return {options, vehicle::make_vehicle_model(car), lane(3), make_solver(few_samples("svg_mppi"), 2)};
+}
+
 /// The numbers of calls.
 struct PlannerTally {
   long planners = 0, refused = 0, updates = 0, corrections = 0;

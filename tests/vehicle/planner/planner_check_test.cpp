@@ -26,21 +26,6 @@ maps::LaserScanView scan_of(const std::vector<float>& ranges) {
   return {ranges, -2.35, 4.7 / 270, 0.05, 30};
 }
 
-TEST(PlannerCheck, ASpeedThatNoCarHasIsNotTaken) {
-  Planner planner = make_planner(8);
-  const auto wall = wall_around(1.5F);
-  for (const double speed : {4132.0, -4132.0, 1e300}) {
-    const PlannerOutput& out = planner.update({scan_of(wall), {{5, 0, 0}, speed}});
-    EXPECT_EQ(out.status, PlannerStatus::bad_odometry) << speed;
-    EXPECT_EQ(out.command.speed, 0) << speed;
-  }
-  for (const double far : {1.1e7, -1e300}) {
-    EXPECT_EQ(planner.update({scan_of(wall), {{far, 0, 0}, 1}}).status, PlannerStatus::bad_odometry) << far;
-    EXPECT_EQ(planner.update({scan_of(wall), {{0, far, 0}, 1}}).status, PlannerStatus::bad_odometry) << far;
-    EXPECT_EQ(planner.update({scan_of(wall), {{0, 0, far}, 1}}).status, PlannerStatus::bad_odometry) << far;
-  }
-}
-
 TEST(PlannerCheck, BrakingStaysBelowTheLargestSpeed) {
   Planner planner = make_planner(8);
   const auto wall = wall_around(1.5F);
@@ -48,16 +33,6 @@ TEST(PlannerCheck, BrakingStaysBelowTheLargestSpeed) {
   EXPECT_EQ(out.status, PlannerStatus::blocked);
   EXPECT_LE(out.command.speed, 8);
   EXPECT_EQ(out.corrections, 1);
-}
-
-Planner make_sliding_planner() {
-  VehicleOptions car;
-  car.model = vehicle_model("single_track");
-  car.hold_first_input = false;
-  return {{},
-          make_vehicle_model(car),
-          testing::lane(3),
-          make_solver(testing::few_samples("svg_mppi"), input_count(car))};
 }
 
 /// The output after some updates of a car that drives straight on, with this yaw rate of its gyro (rad/s).
@@ -75,7 +50,7 @@ PlannerOutput after_updates(Planner& planner, int updates, std::optional<double>
 
 TEST(PlannerCheck, ImuReadingsThatNoCarHasAreIgnored) {
   for (const double yaw_rate : {101.0, -1e6, 1e300}) {
-    Planner without = make_sliding_planner(), with = make_sliding_planner();
+    Planner without = testing::sliding_planner(), with = testing::sliding_planner();
     const PlannerOutput expected = after_updates(without, 5, {}), out = after_updates(with, 5, yaw_rate);
     EXPECT_EQ(out.yaw_rate_estimate, expected.yaw_rate_estimate) << yaw_rate;
     EXPECT_EQ(out.command.steer, expected.command.steer) << yaw_rate;
@@ -83,7 +58,7 @@ TEST(PlannerCheck, ImuReadingsThatNoCarHasAreIgnored) {
 }
 
 TEST(PlannerCheck, AWrongGyroIsForgottenOnceItIsRight) {
-  Planner planner = make_sliding_planner();
+  Planner planner = testing::sliding_planner();
   after_updates(planner, 200, 90);
   EXPECT_NEAR(after_updates(planner, 200, 0).yaw_rate_estimate, 0, 0.6);
 }
@@ -103,7 +78,7 @@ TEST(PlannerCheck, ScansWhoseBeamsAreTurnsApartEndAmongOthers) {
 }
 
 TEST(PlannerCheck, APlanThatBrakesCommandsLessThanTheEstimatedSpeed) {
-  Planner planner = make_sliding_planner();
+  Planner planner = testing::sliding_planner();
   const auto wall = wall_around(1.2F);
   PlannerOutput out;
   for (int i = 0; i < 5; ++i) out = planner.update({.scan = scan_of(wall), .odometry = {{5, 0, 0}, 3}});

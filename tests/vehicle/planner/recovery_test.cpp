@@ -1,4 +1,4 @@
-// The times at which the planner reverses, its memory of obstacles, and the speeds that it may plan with.
+// The times at which the planner reverses, and its memory of obstacles.
 #include "vehicle/planner/recovery.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "vehicle/planner/feasible_speeds.hpp"
 #include "vehicle/planner/obstacle_memory.hpp"
 
 namespace slalom::vehicle::detail {
@@ -20,18 +19,24 @@ TEST(Recovery, LeavesACarThatGetsOnAlone) {
     EXPECT_FALSE(recovery.update(std::fmod(0.05 * k, length), length, 2, 2, period)) << "step " << k;
 }
 
+/// Lets a car stand at a place (m) until it reverses. Returns for how long, s.
+double waiting_time(Recovery& recovery, double arc, double free_speed = 2) {
+  int waited = 0;
+  while (!recovery.update(arc, length, 0, free_speed, period)) ++waited;
+  return waited * period;
+}
+
+/// Lets a car reverse from a place (m) at 1 m/s. Returns how far, m.
+double reversed_way(Recovery& recovery, double arc, double free_speed = 2) {
+  double way = 0;
+  while (recovery.update(arc - way, length, -1, free_speed, period)) way += period;
+  return way;
+}
+
 TEST(Recovery, ReversesACarThatStandsAndDrivesOnAfterTheWayItChose) {
   Recovery recovery;
-  int waited = 0;
-  while (!recovery.update(7, length, 0, 2, period)) ++waited;
-  EXPECT_NEAR(waited * period, 0.7, 0.05);
-  double arc = 7;
-  int reversed = 0;
-  while (recovery.update(arc, length, -1, 2, period)) {
-    arc -= period;
-    ++reversed;
-  }
-  EXPECT_NEAR(reversed * period, 0.8, 0.05) << "at 1 m/s";
+  EXPECT_NEAR(waiting_time(recovery, 7), 0.7, 0.05);
+  EXPECT_NEAR(reversed_way(recovery, 7), 0.8, 0.05);
   EXPECT_FALSE(recovery.reversing());
   EXPECT_FALSE(recovery.confined());
 }
@@ -42,33 +47,23 @@ TEST(Recovery, ACarThatWaitsForOneThatDrivesIsNotStuck) {
     EXPECT_FALSE(recovery.update(7, length, 0, 2, period, true));
     EXPECT_FALSE(recovery.leaving());
   }
-  int waited = 0;
-  while (!recovery.update(7, length, 0, 2, period)) ++waited;
-  EXPECT_NEAR(waited * period, 0.7, 0.05) << "it is once the other has left";
+  EXPECT_NEAR(waiting_time(recovery, 7), 0.7, 0.05) << "it is once the other has left";
 }
 
 TEST(Recovery, ReversesFurtherEachTimeUntilTheCarGetsOn) {
   Recovery recovery;
-  const auto way_of_a_try = [&] {
-    while (!recovery.update(7, length, 0, 2, period)) {
-    }
-    double way = 0;
-    while (recovery.update(7 - way, length, -1, 2, period)) way += period;
-    return way;
-  };
-  const double first = way_of_a_try(), second = way_of_a_try();
-  EXPECT_NEAR(second / first, 1.6, 0.1);
+  waiting_time(recovery, 7);
+  const double first = reversed_way(recovery, 7);
+  waiting_time(recovery, 7);
+  EXPECT_NEAR(reversed_way(recovery, 7) / first, 1.6, 0.1);
   for (int k = 0; k < 200; ++k) recovery.update(7 + 0.05 * k, length, 2, 2, period);
-  while (!recovery.update(17, length, 0, 2, period)) {
-  }
-  double way = 0;
-  while (recovery.update(17 - way, length, -1, 2, period)) way += period;
-  EXPECT_NEAR(way, first, 0.05);
+  waiting_time(recovery, 17);
+  EXPECT_NEAR(reversed_way(recovery, 17), first, 0.05);
 }
 
 TEST(Recovery, ACarThatCannotReverseIsConfinedUntilItIsPastThePlace) {
   Recovery recovery;
-  while (!recovery.update(7, length, 0, 2, period)) EXPECT_FALSE(recovery.confined());
+  waiting_time(recovery, 7);
   EXPECT_FALSE(recovery.confined()) << "it reverses first";
   int blocked = 0;
   while (recovery.update(7, length, 0, 2, period)) ++blocked;
@@ -85,10 +80,8 @@ TEST(Recovery, LeavesThePathUntilTheCarIsPastThePlaceWhereItStood) {
   EXPECT_FALSE(recovery.leaving());
   for (int k = 0; k < 22; ++k) EXPECT_FALSE(recovery.update(7, length, 0, 2, period));
   EXPECT_TRUE(recovery.leaving()) << "before it reverses";
-  while (!recovery.update(7, length, 0, 2, period)) {
-  }
-  for (double arc = 7; recovery.update(arc, length, -1, 2, period); arc -= period) {
-  }
+  waiting_time(recovery, 7);
+  reversed_way(recovery, 7);
   EXPECT_TRUE(recovery.tries_again());
   double arc = 6.2;
   for (; recovery.leaving(); arc += 0.05) EXPECT_FALSE(recovery.update(arc, length, 2, 2, period));
@@ -98,11 +91,9 @@ TEST(Recovery, LeavesThePathUntilTheCarIsPastThePlaceWhereItStood) {
 
 TEST(Recovery, TriesAgainUntilTheCarIsPastThePlaceHoweverSlowlyItDrives) {
   Recovery recovery;
-  while (!recovery.update(7, length, 0, 5, period)) EXPECT_FALSE(recovery.tries_again());
+  waiting_time(recovery, 7, 5);
   EXPECT_FALSE(recovery.tries_again()) << "it reverses first";
-  double arc = 7;
-  for (; recovery.update(arc, length, -1, 5, period); arc -= period) {
-  }
+  double arc = 7 - reversed_way(recovery, 7, 5);
   for (; recovery.tries_again(); arc += period) EXPECT_FALSE(recovery.update(arc, length, 1, 5, period));
   EXPECT_NEAR(arc, 11, 0.1);
   EXPECT_TRUE(recovery.leaving()) << "it crawls still";
@@ -157,51 +148,6 @@ TEST(ObstacleMemory, KnowsTheDirectionsThatAScanDoesNotCover) {
     }
     EXPECT_EQ(at, blind.size()) << first << " to " << last;
   }
-}
-
-/// A closed course of two straights of 30 m and two half circles of 3 m radius, driven at 12 m/s.
-std::vector<maps::ReferencePoint> oval() {
-  std::vector<maps::ReferencePoint> path;
-  const double pi = 3.14159265358979, radius = 3;
-  for (int i = 0; i < 150; ++i) path.push_back({0.2 * i, 0, 0, 12});
-  for (int i = 0; i < 47; ++i) {
-    const double a = -pi / 2 + pi * i / 47;
-    path.push_back({30 + radius * std::cos(a), radius + radius * std::sin(a), 0, 12});
-  }
-  for (int i = 0; i < 150; ++i) path.push_back({30 - 0.2 * i, 2 * radius, pi, 12});
-  for (int i = 0; i < 47; ++i) {
-    const double a = pi / 2 + pi * i / 47;
-    path.push_back({radius * std::cos(a), radius + radius * std::sin(a), 0, 12});
-  }
-  return path;
-}
-
-TEST(FeasibleSpeeds, KeepToGripBrakesAndMotor) {
-  const auto path = oval();
-  FeasibleSpeeds speeds(path);
-  EXPECT_EQ(speeds.speeds()[0], 12);
-  speeds.update({.grip = 8, .acceleration = 9, .braking = 6, .delay = 0, .switch_speed = 7});
-  const auto v = speeds.speeds();
-  EXPECT_NEAR(v[170], std::sqrt(8.0 * 3), 0.15) << "in the middle of the curve";
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const std::size_t next = (i + 1) % v.size();
-    const double way = std::hypot(path[next].x - path[i].x, path[next].y - path[i].y);
-    const double change = (v[next] * v[next] - v[i] * v[i]) / (2 * way);
-    EXPECT_GT(change, -6.001) << "point " << i;
-    EXPECT_LT(change, 8.001) << "point " << i;
-    if (v[i] > 7) {
-      EXPECT_LT(change, 9 * 7 / v[i] + 1e-6) << "point " << i;
-    }
-  }
-  const std::vector<double> fast(v.begin(), v.end());
-  speeds.update({.grip = 8, .acceleration = 9, .braking = 9, .braking_share = 0.6, .delay = 0});
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const std::size_t next = (i + 1) % v.size();
-    const double way = std::hypot(path[next].x - path[i].x, path[next].y - path[i].y);
-    EXPECT_GT((v[next] * v[next] - v[i] * v[i]) / (2 * way), -0.6 * 8.001) << "point " << i;
-  }
-  speeds.update({.grip = 4, .acceleration = 9, .braking = 6, .delay = 0.05, .switch_speed = 7});
-  for (std::size_t i = 0; i < v.size(); ++i) EXPECT_LE(speeds.speeds()[i], fast[i]);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "slalom/maps/clearance_map.hpp"
@@ -19,53 +21,58 @@ namespace {
 constexpr int horizon = 20;
 constexpr double time_step = 0.05;  // s
 
-VehicleOptions car() {
-  VehicleOptions options;
-  options.model = vehicle_model("single_track");
-  options.hold_first_input = false;
-  options.max_acceleration = options.max_deceleration = 9;
-  return options;
-}
-
-/// A car at 4 m/s on a straight course without obstacles.
+/// A car on a straight course, and the sequences that it may send.
 class SequenceSelection : public ::testing::Test {
  protected:
-  SequenceSelection()
-      : field_(testing::lane(5)),
-        model_(make_vehicle_model(car())),
-        choice_(horizon, 2, model_->traits()),
-        states_(horizon + 1) {
-    clearance_.add(std::vector<maps::Point>{});
+  explicit SequenceSelection(Objective objective = Objective::path_speed, double margin = 0.04)
+      : field_(testing::lane(5)) {
+    VehicleOptions car;
+    car.model = vehicle_model("single_track");
+    car.max_acceleration = car.max_deceleration = 9;
+    car.body.margin = margin;
+    car.own_of<SingleTrackOptions>().objective = objective;
+    model_ = make_vehicle_model(car);
+    choice_.emplace(horizon, 2, model_->traits());
     field_.update({10, 0});
-    model_->set_maps({field_.view(), clearance_.view(), {10, 0, 0}});
-    model_->set_start({{10, 0, 0}, 4}, 5);
+    drive(4);
   }
 
-  /// Steering (rad) in every step, and accelerations (m/s^2) that rise by 0.1 from step to step.
-  static std::vector<float> sequence(float steer) {
-    std::vector<float> inputs;
-    for (int k = 0; k < horizon; ++k) {
-      inputs.push_back(steer);
-      inputs.push_back(1 + 0.1f * static_cast<float>(k));
-    }
-    return inputs;
+  /// Lets the car drive at this speed (m/s) among the points seen so far.
+  void drive(double speed, const maps::MovingObstaclesView& others = {}) {
+    model_->set_maps({field_.view(), clearance_.view(), {10, 0, 0}, others});
+    model_->set_start({{10, 0, 0}, speed}, 5);
+    choice_->sees(clearance_.view(), others);
   }
-  SequenceChoice::Choice kept_or(const std::vector<float>& solution, double elapsed) {
-    const PredictedCost cost = model_->predict(solution, states_);
-    return choice_.kept(*model_, {solution, cost}, elapsed, states_);
+  /// Begins with a solution.
+  const SequenceChoice::Choice& begin(const std::vector<float>& solution) {
+    result_.inputs = solution;
+    choice_->begin(*model_, result_);
+    return choice_->best();
+  }
+  const SequenceChoice::Choice& kept_or(const std::vector<float>& solution, double elapsed) {
+    begin(solution);
+    choice_->consider_last(elapsed);
+    return choice_->best();
+  }
+  /// Steering (rad) in every step, and an acceleration (m/s^2) that rises by `rise` from step to step.
+  static std::vector<float> sequence(float steer, float acceleration = 1, float rise = 0.1f) {
+    std::vector<float> inputs;
+    for (int k = 0; k < horizon; ++k)
+      inputs.insert(inputs.end(), {steer, acceleration + rise * static_cast<float>(k)});
+    return inputs;
   }
 
   maps::ReferenceField field_;
-  maps::ClearanceMap clearance_;
+  maps::ClearanceMap clearance_{{.length_x = 14, .center_x = 5}};
   std::unique_ptr<VehicleModel> model_;
-  SequenceChoice choice_;
-  std::vector<PredictedState> states_;
+  SolveResult result_;
+  std::optional<SequenceChoice> choice_;
 };
 
 TEST_F(SequenceSelection, KeepsThePlanWhereTheSolutionIsWorse) {
   const auto sent = sequence(0), solution = sequence(0.4f);
   EXPECT_EQ(kept_or(solution, 0.04).inputs.data(), solution.data()) << "nothing was sent before";
-  choice_.sent(sent);
+  choice_->sent(sent);
   const auto chosen = kept_or(solution, 1.2 * time_step);
   ASSERT_EQ(chosen.inputs.size(), sent.size());
   for (int k = 0; k < horizon; ++k) {
@@ -76,28 +83,21 @@ TEST_F(SequenceSelection, KeepsThePlanWhereTheSolutionIsWorse) {
   }
   std::vector<PredictedState> states(horizon + 1);
   EXPECT_EQ(model_->predict(chosen.inputs, states).state, chosen.cost.state);
-  EXPECT_EQ(states.back().pose.x, states_.back().pose.x) << "the prediction is that of the choice";
-  choice_.reset();
+  EXPECT_EQ(states.back().pose.x, choice_->states().back().pose.x) << "the prediction is that of the choice";
+  choice_->reset();
   EXPECT_EQ(kept_or(solution, 0.04).inputs.data(), solution.data()) << "forgotten";
 }
 
 TEST_F(SequenceSelection, TakesTheSolutionWhereItIsBetter) {
   const auto sent = sequence(0.4f), solution = sequence(0);
-  choice_.sent(sent);
+  choice_->sent(sent);
   EXPECT_EQ(kept_or(solution, 0.04).inputs.data(), solution.data());
 }
 
 /// A car at 6 m/s in whose way there may be walls.
-class PlanNearAWall : public ::testing::Test {
+class PlanNearAWall : public SequenceSelection {
  protected:
-  explicit PlanNearAWall(Objective objective = Objective::lap_time) : field_(testing::lane(5)) {
-    VehicleOptions options = car();
-    options.body.margin = 0.05;
-    options.own_of<SingleTrackOptions>().objective = objective;
-    model_ = make_vehicle_model(options);
-    choice_ = std::make_unique<SequenceChoice>(horizon, 2, model_->traits());
-    field_.update({10, 0});
-  }
+  explicit PlanNearAWall(Objective objective = Objective::lap_time) : SequenceSelection(objective, 0.05) {}
 
   /// A wall from one point to another, m in the frame of the car.
   void see_wall(maps::Point from, maps::Point to, const maps::MovingObstaclesView& others = {}) {
@@ -105,30 +105,23 @@ class PlanNearAWall : public ::testing::Test {
     for (int i = 0; i <= 200; ++i)
       points.push_back({from.x + (to.x - from.x) * i / 200, from.y + (to.y - from.y) * i / 200});
     clearance_.add(points);
-    model_->set_maps({field_.view(), clearance_.view(), {10, 0, 0}, others});
-    model_->set_start({{10, 0, 0}, 6}, 5);
-    choice_->sees(clearance_.view(), others);
+    drive(6, others);
   }
-  static std::vector<float> held(float steer, float acceleration) {
-    std::vector<float> inputs;
-    for (int k = 0; k < horizon; ++k) inputs.insert(inputs.end(), {steer, acceleration});
-    return inputs;
+  static std::vector<float> held(float steer, float acceleration) { return sequence(steer, acceleration, 0); }
+  /// Whether the model and the choice say that the car collides if it drives straight on.
+  std::pair<bool, bool> collides() {
+    const auto straight_on = held(0, 0);
+    std::vector<PredictedState> states(horizon + 1);
+    return {model_->predict(straight_on, states).collided, begin(straight_on).cost.collided};
   }
   SequenceChoice::Choice chosen_for(const std::vector<float>& solution) {
-    states_.resize(horizon + 1);
-    const PredictedCost cost = choice_->predict(*model_, solution, states_);
-    EXPECT_TRUE(cost.collided);
+    EXPECT_TRUE(begin(solution).cost.collided);
     choice_->sent(solution);
-    const auto best = choice_->kept(*model_, {solution, cost}, 0, states_);
-    const auto cheapest = choice_->cheapest(*model_, {}, best, states_);
-    return cheapest.cost.collided ? choice_->stop(*model_, {}, cheapest, false, states_) : cheapest;
+    choice_->consider_last(0);
+    choice_->consider_samples();
+    if (choice_->best().cost.collided) choice_->stop(false);
+    return choice_->best();
   }
-
-  maps::ReferenceField field_;
-  maps::ClearanceMap clearance_{{.length_x = 14, .center_x = 5}};
-  std::unique_ptr<VehicleModel> model_;
-  std::unique_ptr<SequenceChoice> choice_;
-  std::vector<PredictedState> states_;
 };
 
 struct PathSpeeds : PlanNearAWall {
@@ -138,12 +131,8 @@ struct PathSpeeds : PlanNearAWall {
 // The body's discs have a radius of 0.18 m; the wall is 0.02 to 0.04 m from them, and the margin 0.05 m.
 TEST_F(PlanNearAWall, PaysForTheMarginOfTheBody) {
   see_wall({2, 0.2}, {6, 0.2});
-  std::vector<PredictedState> states(horizon + 1);
-  const auto straight_on = held(0, 0);
-  EXPECT_TRUE(model_->predict(straight_on, states).collided);
-  const PredictedCost cost = choice_->predict(*model_, straight_on, states);
-  EXPECT_FALSE(cost.collided);
-  EXPECT_GE(cost.collision, 100) << "the cost of a collision remains";
+  EXPECT_EQ(collides(), std::pair(true, false));
+  EXPECT_GE(choice_->best().cost.collision, 100) << "the cost of a collision remains";
 }
 
 /// Another car as it stands on the way, 3 m ahead and `offset` m to the left.
@@ -157,37 +146,30 @@ struct Standing : testing::Predicted {
 };
 
 TEST_F(PlanNearAWall, PaysForTheMarginOfTheBodyAmongOthersToo) {
-  const auto collides_among = [&](double offset) {
+  for (const auto& [offset, collided] : {std::pair(-0.5, false), {-0.1, true}}) {
     const Standing other(offset);
     see_wall({2, 0.2}, {6, 0.2}, other.obstacles.view());
-    std::vector<PredictedState> states(horizon + 1);
-    EXPECT_TRUE(model_->predict(held(0, 0), states).collided);
-    return choice_->predict(*model_, held(0, 0), states).collided;
-  };
-  EXPECT_FALSE(collides_among(-0.5));
-  EXPECT_TRUE(collides_among(-0.1)) << "what moves is not in the clearances";
+    EXPECT_EQ(collides(), std::pair(true, collided)) << "what moves is not in the clearances";
+  }
 }
 
 TEST_F(PlanNearAWall, CollidesWithTheBodyItself) {
   see_wall({4, -2}, {4, 2});
-  std::vector<PredictedState> states(horizon + 1);
-  EXPECT_TRUE(choice_->predict(*model_, held(0, 0), states).collided);
+  EXPECT_EQ(collides(), std::pair(true, true));
 }
 
 TEST_F(PathSpeeds, ACarThatFollowsThemKeepsTheMargin) {
   see_wall({2, 0.2}, {6, 0.2});
-  std::vector<PredictedState> states(horizon + 1);
-  EXPECT_TRUE(choice_->predict(*model_, held(0, 0), states).collided);
+  EXPECT_EQ(collides(), std::pair(true, true));
 }
 
 TEST_F(PlanNearAWall, BrakesBeforeAWallAcrossTheWay) {
   see_wall({2.8, -3}, {2.8, 3});
   const auto solution = held(0.2f, 0);
-  const auto chosen = chosen_for(solution);
-  EXPECT_LT(chosen.inputs[1], -5);
-  std::vector<PredictedState> states(horizon + 1);
-  choice_->predict(*model_, solution, states);
-  EXPECT_LT(states_.back().speed, 0.5 * states.back().speed);
+  begin(solution);
+  const double speed = choice_->states().back().speed;
+  EXPECT_LT(chosen_for(solution).inputs[1], -5);
+  EXPECT_LT(choice_->states().back().speed, 0.5 * speed);
 }
 
 // The car is about to touch the wall beside it. Brakes would turn it into the wall, and would take next to

@@ -37,8 +37,6 @@ class Lane {
     model_->set_start(start_, 5);
     return *model_;
   }
-  const VehicleStart& start() const { return start_; }
-
   /// The prediction of these inputs, [step][input].
   PredictedCost predict(std::span<const float> inputs) {
     states_.resize(horizon + 1);
@@ -46,12 +44,20 @@ class Lane {
   }
   const PredictedState& end() const { return states_.back(); }
 
+  /// The prediction of the cheapest way around, for a car that begins at this speed (m/s).
+  PredictedCost cheapest_way(double speed) {
+    standing_at(speed);
+    WaysAround around(testing::lane(5), true, horizon, 2, model_->traits(), 0.42);
+    const std::vector<double> speeds(600, 5.0);
+    around.draw(start_, 100, speeds, 1.0);
+    return predict(around.cheapest(model_->evaluator()));
+  }
+
   static VehicleOptions car() {
     VehicleOptions options;
     options.model = vehicle_model("single_track");
     options.body.model = BodyModel::discs;
     options.cost.speed_weight = 3;
-    options.hold_first_input = false;
     options.max_acceleration = options.max_deceleration = 9;
     return options;
   }
@@ -64,10 +70,6 @@ class Lane {
   std::vector<PredictedState> states_;
 };
 
-WaysAround ways(VehicleModel& model) {
-  return WaysAround(testing::lane(5), true, horizon, 2, model.traits(), 0.42);
-}
-
 std::vector<float> inputs_of(float steering, float acceleration) {
   std::vector<float> made;
   for (int k = 0; k < horizon; ++k) made.insert(made.end(), {steering, acceleration});
@@ -77,12 +79,8 @@ std::vector<float> inputs_of(float steering, float acceleration) {
 TEST(WaysAround, PassAnObstacleOnThePathWhereThereIsRoom) {
   for (const double side : {-1.0, 1.0}) {
     Lane lane(2.0, side > 0 ? -3 : -0.2, side > 0 ? 0.2 : 3);
-    VehicleModel& model = lane.standing_at(0);
-    WaysAround around = ways(model);
-    const std::vector<double> speeds(600, 5.0);
-    around.draw(lane.start(), 100, speeds, 1.0);
-    const PredictedCost standing = lane.predict(inputs_of(0, -9));
-    const PredictedCost way = lane.predict(around.cheapest(model.evaluator()));
+    lane.standing_at(0);
+    const PredictedCost standing = lane.predict(inputs_of(0, -9)), way = lane.cheapest_way(0);
     EXPECT_FALSE(way.collided);
     EXPECT_LT(way.state + way.collision, standing.state + standing.collision);
     EXPECT_GT(lane.end().pose.x, 12.5) << "past the obstacle";
@@ -91,22 +89,12 @@ TEST(WaysAround, PassAnObstacleOnThePathWhereThereIsRoom) {
 }
 
 TEST(WaysAround, AllCollideWhereThereIsNoRoom) {
-  Lane lane(2.2, -4, 4);
-  VehicleModel& model = lane.standing_at(3);
-  WaysAround around = ways(model);
-  const std::vector<double> speeds(600, 5.0);
-  around.draw(lane.start(), 100, speeds, 1.0);
-  EXPECT_TRUE(lane.predict(around.cheapest(model.evaluator())).collided) << "each of them drives";
+  EXPECT_TRUE(Lane(2.2, -4, 4).cheapest_way(3).collided) << "each of them drives";
 }
 
 TEST(WaysAround, FollowThePathAtItsSpeedWhereItIsFree) {
   Lane lane(5.0, 2, 3);
-  VehicleModel& model = lane.standing_at(2);
-  WaysAround around = ways(model);
-  const std::vector<double> speeds(600, 5.0);
-  around.draw(lane.start(), 100, speeds, 1.0);
-  EXPECT_LT(std::abs(lane.predict(around.cheapest(model.evaluator())).distance), 0.3)
-      << "the map has cells of 0.1 m";
+  EXPECT_LT(std::abs(lane.cheapest_way(2).distance), 0.3) << "the map has cells of 0.1 m";
   EXPECT_NEAR(lane.end().speed, 5, 0.3);
   EXPECT_NEAR(lane.end().pose.y, 0, 0.05);
 }

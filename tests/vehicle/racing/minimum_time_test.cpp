@@ -9,6 +9,7 @@
 
 #include "slalom/vehicle/course/raceline.hpp"
 #include "support/thrown_words.hpp"
+#include "vehicle/course/curve.hpp"
 #include "vehicle/racing/rooms.hpp"
 
 namespace slalom::vehicle {
@@ -36,18 +37,14 @@ double offset(const Corridor& corridor, const Raceline& line, std::size_t i) {
 
 /// The time along a line of offsets with the fastest speeds.
 double time_of(const Corridor& corridor, const std::vector<double>& offsets, const RacingCar& car) {
-  std::vector<maps::Point> p;
-  for (std::size_t i = 0; i < offsets.size(); ++i)
-    p.push_back({corridor.centre_line[i].x + offsets[i] * corridor.normal[i].x,
-                 corridor.centre_line[i].y + offsets[i] * corridor.normal[i].y});
-  const std::size_t n = p.size();
-  std::vector<double> step(n), curvature(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const maps::Point &a = p[(i + n - 1) % n], &b = p[i], &c = p[(i + 1) % n];
-    step[i] = std::hypot(c.x - b.x, c.y - b.y);
-    curvature[i] = 2 * ((b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x)) /
-                   (std::hypot(b.x - a.x, b.y - a.y) * step[i] * std::hypot(c.x - a.x, c.y - a.y));
-  }
+  using namespace detail;  // the operators of points
+  const std::size_t n = offsets.size();
+  Curve line;
+  for (std::size_t i = 0; i < n; ++i)
+    line.push_back(corridor.centre_line[i] + offsets[i] * corridor.normal[i]);
+  std::vector<double> step;
+  for (std::size_t i = 0; i < n; ++i) step.push_back(distance(line[i], line[(i + 1) % n]));
+  const auto curvature = detail::curvature(line, 1);
   const auto speed = racing_speeds(curvature, step, true, car);
   double sum = 0;
   for (std::size_t i = 0; i < n; ++i) sum += 2 * step[i] / (speed[i] + speed[(i + 1) % n]);

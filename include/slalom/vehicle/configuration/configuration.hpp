@@ -43,8 +43,8 @@ void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
 ///     svg_mppi:
 ///       samples: 4000
 ///       variance: 0.1            # a list of one value per input, [0.1], says the same
-///     vehicle:
-///       max_speed: 6             # another name of planner.max_speed
+///     planner:
+///       max_speed: 6
 ///
 /// `base` is a file beside this one, or a configuration that is found by its name in `roots`. Throws IoError
 /// with file, line, key, value and rule for a key that is unknown or duplicate, a value of the wrong type or

@@ -33,8 +33,8 @@ struct Waypoint {
 /// stand. `course.yaml`, if present, may give `name`, `description`, `command`, `start` {x, y, yaw},
 /// `timeout` (s), `closed`.
 ///
-/// The program of Honda et al. (ICRA 2024) has its files in two folders: a map in `map/NAME`, the CSV files in
-/// `reference_path/NAME`. There, `map/NAME` is the folder of the course.
+/// The program of Honda et al. (ICRA 2024) has its files in two folders: a map in `map/NAME`, the CSV files
+/// in `reference_path/NAME`. There, `map/NAME` is the folder of the course.
 struct Course {
   std::string name;         ///< the name
   std::string description;  ///< one sentence
@@ -62,9 +62,8 @@ Course load_course(const std::filesystem::path& folder, maps::MapRule rule = map
 void complete_course(Course& course, std::optional<bool> closed = {});
 
 /// Makes the coordinates relative to `origin`, the point of a 100 km grid of the map frame that is nearest to
-/// the map's corner. So a course near the origin of the map frame does not change. In UTM coordinates, which
-/// reach 1e7 m, double resolves only 1e-9 m, and a simulated lap would differ from a lap of the same course
-/// elsewhere. The new coordinates are rounded to 1e-8 m, which restores those of files with up to 8 decimals.
+/// the map's corner, and rounds them to 1e-8 m. So a simulated lap in UTM coordinates, which double resolves
+/// to 1e-9 m, is the same as near the origin of the map frame, where a course does not change.
 void move_to_local_origin(Course& course);
 
 /// Lowers every waypoint's speed to at most `max_speed` (m/s, > 0, else std::invalid_argument).

@@ -62,12 +62,10 @@ struct GeneratedTrack {
 
 /// Makes a track; the same options give the same track.
 ///
-/// The centre line is a closed polygon with rounded corners, smoothed along its length. A candidate is
-/// accepted if its radius is nowhere below max(width / 2 + wall, width / 2 - wall_margin + 0.9 m), if parts
-/// that are not neighbours are at least width + 2 wall apart, and if it has the curvature that its character
-/// demands. Walls never meet: for parts less than half a turn apart the bound on the curvature guarantees it
-/// (Schur's comparison theorem), for others every pair of points is checked. Walls follow at half the width.
-/// Throws std::invalid_argument for bad options, or where no track of the length and width is found.
+/// The centre line is a closed polygon with rounded corners, smoothed along its length. Its radius is nowhere
+/// below max(width / 2 + wall, width / 2 - wall_margin + 0.9 m), parts that are not neighbours are at least
+/// width + 2 wall apart, and it has the curvature that its character demands. Walls never meet. Throws
+/// std::invalid_argument for bad options, or where no track of the length and width is found.
 GeneratedTrack generate_track(const TrackGeneratorOptions& options);
 
 /// The texts that save_track writes in addition to the geometry.

@@ -17,19 +17,16 @@
 ///     }
 ///
 /// Particles move with the odometry and its noise, and are resampled in proportion to the likelihood of the
-/// scan at their poses: Thrun, Burgard & Fox, "Probabilistic Robotics" (2005), Table 8.2. Their number adapts
-/// to the spread of the distribution: D. Fox, "Adapting the Sample Size in Particle Filters Through
-/// KLD-Sampling", IJRR 22(12), 2003, eq. 7. A wrong estimate is detected as in augmented MCL (Table 8.3), by
-/// a short-term average of the fit below the long-term one. Hypotheses from all of the free space then
-/// compete with the estimate until one of them is clearly the best.
+/// scan at their poses (Thrun, Burgard & Fox, "Probabilistic Robotics" (2005), Table 8.2). Their number
+/// adapts to their spread (D. Fox, "Adapting the Sample Size in Particle Filters Through KLD-Sampling", IJRR
+/// 22(12), 2003, eq. 7). A wrong estimate is detected as in augmented MCL (Table 8.3), by a short-term
+/// average of the fit below the long-term one.
 ///
-/// Departures: the hypotheses do not join the particles, where the first one that fits well would displace
-/// the right one. They are tracked separately, and the particles move to one of them after it has fitted
-/// better for some time. Resampling uses a shifted radical inverse sequence, so that any number of draws is
-/// nearly stratified. The averaged fit is that of the estimate by the likelihood field, the mean over beams,
-/// so that neither the number of beams nor a parked car that is not on the map triggers a search. A start
-/// everywhere begins with a search, since the particles that fit the first scan best may all be in a wrong
-/// place; until it is over, the estimate is uncertain. A rear axle in a wall counts as improbable.
+/// Departures: hypotheses from all of the free space do not join the particles, where the first one that fits
+/// well would displace the right one. They are tracked separately, and the particles move to one that has
+/// fitted clearly better for some time. Resampling is nearly stratified. The averaged fit is that of the
+/// estimate by the likelihood field, the mean over beams. A start everywhere begins with a search; until it
+/// is over, the estimate is uncertain. A rear axle in a wall counts as improbable.
 namespace slalom::vehicle {
 
 /// The reliability of the estimate.
@@ -45,21 +42,8 @@ enum class LocaliserStatus {
 };
 /// The name of a status, as results have it.
 constexpr const char* name(LocaliserStatus status) noexcept {
-  switch (status) {
-    case LocaliserStatus::ok:
-      return "ok";
-    case LocaliserStatus::uncertain:
-      return "uncertain";
-    case LocaliserStatus::bad_scan:
-      return "bad_scan";
-    case LocaliserStatus::bad_odometry:
-      return "bad_odometry";
-    case LocaliserStatus::odometry_jump:
-      return "odometry_jump";
-    case LocaliserStatus::stale:
-      return "stale";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"ok", "uncertain", "bad_scan", "bad_odometry", "odometry_jump", "stale"};
+  return names[static_cast<int>(status)];
 }
 
 /// The input of an update.

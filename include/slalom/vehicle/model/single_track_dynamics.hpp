@@ -34,10 +34,8 @@ double slip_of(const SingleTrackState<double>& s) noexcept;
 /// at the old slip angle, times the share of grip that drive or brakes leave.
 ///
 /// Their two modes are as fast as 113 / v and 52 / v 1/s, so a step is implicit: a theta method with
-/// theta = (z + 3) / (z + 6), z the step over the modes' mean time constant. For a single mode that is the
-/// Pade approximation (1, 2) of its decay: third order, and L-stable. The equations are multiplied by |v|, so
-/// nothing is divided by the speed; at a standstill they yield the kinematic bicycle.
-/// docs/vehicle-model.md has the derivation and the measured errors.
+/// theta = (z + 3) / (z + 6), z the step over the modes' mean time constant. The equations are multiplied by
+/// |v|; at a standstill they yield the kinematic bicycle. docs/vehicle-model.md has the derivation.
 class SingleTrackDynamics {
  public:
   /// Takes the geometry and limits of the car and the options of its tyres.

@@ -25,25 +25,19 @@ struct TyreIdentification {
 
 /// Finds friction and cornering stiffness of a car whose tyres slip, and its steering, from a drive.
 ///
-/// SingleTrackDynamics with the geometry, mass and inertia of `car` and `own` predicts yaw rate and sideways
-/// velocity along the whole drive, from the commands and the measured speed. Neither is measured, but their
-/// initial values affect a prediction for no longer than a tenth of a second. A least-squares fit compares
-/// the predicted change of yaw and sideways displacement of the rear axle, in windows of 0.2 s, with those of
-/// the poses. Both are divided by their own root mean square residual; windows further off than five of these
-/// (collisions, jumps of the localisation) are left out. The search starts from friction and stiffness of
-/// `own`.
+/// SingleTrackDynamics with the geometry, mass and inertia of `car` and `own` predicts the whole drive from
+/// the commands and the measured speed. A least-squares fit compares the predicted change of yaw and sideways
+/// displacement of the rear axle, in windows of 0.2 s, with those of the poses, each over its own root mean
+/// square residual. Windows further off than five of these are left out. The search starts from friction and
+/// stiffness of `own`.
 ///
-/// The deviations contain only the noise. Errors of the model add up to about 5 % (measured on the
-/// simulator's saturating tyres, without noise).
+/// The deviations contain only the noise; errors of the model add up to about 5 %. Far from the limit of the
+/// tyres, the drive determines only the products of friction and stiffness, and the deviation of the friction
+/// is large: drive curves close to the limit of grip.
 ///
-/// While tyres are far from their limit, the drive determines only the products of friction and
-/// stiffness: the deviation of the friction is then large. Drive curves close to the limit of grip.
-///
-/// A gap of more than 0.2 s between samples, a time that does not increase, a speed below
-/// `options.min_speed`, or a value that is not finite begins a new segment, whose first 0.5 s are not used.
+/// Segments are those of identify(), and a speed below `options.min_speed` also begins one;
 /// `options.wheelbase` is not used. Throws std::invalid_argument if fewer than 50 windows are usable, the
-/// commands span less than 0.1 rad, `options.min_speed` is not above 0, or no prediction is finite, for
-/// instance because the mass of the car is 0; the message says what is missing.
+/// commands span less than 0.1 rad, `options.min_speed` is not above 0, or no prediction is finite.
 TyreIdentification identify_tyres(std::span<const DrivenSample> samples, const PathTrackingOptions& car,
                                   const SingleTrackOptions& own, const IdentificationOptions& options = {});
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,8 +14,6 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/solvers/solver.hpp"
-#include "slalom/vehicle/estimation/parameter_estimator.hpp"
-#include "slalom/vehicle/estimation/state_observer.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 #include "slalom/vehicle/planner/planner_options.hpp"
 
@@ -30,6 +29,9 @@ namespace slalom::vehicle {
 namespace detail {
 class PlannerBase;
 }
+
+/// The covariance of a pose: x, y (m, map frame) and yaw (rad). All 0 if it is not known.
+using PoseCovariance = std::array<std::array<double, 3>, 3>;
 
 /// Pose of the rear axle and speed, from odometry or localisation.
 struct Odometry {
@@ -55,23 +57,9 @@ enum class PlannerStatus {
 };
 /// Returns the name of a status, as it is written in results.
 constexpr const char* name(PlannerStatus status) noexcept {
-  switch (status) {
-    case PlannerStatus::ok:
-      return "ok";
-    case PlannerStatus::blocked:
-      return "blocked";
-    case PlannerStatus::fallback_plan:
-      return "fallback_plan";
-    case PlannerStatus::bad_scan:
-      return "bad_scan";
-    case PlannerStatus::bad_odometry:
-      return "bad_odometry";
-    case PlannerStatus::off_course:
-      return "off_course";
-    case PlannerStatus::solver_degenerate:
-      return "solver_degenerate";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"ok",           "blocked",    "fallback_plan",    "bad_scan",
+                                   "bad_odometry", "off_course", "solver_degenerate"};
+  return names[static_cast<int>(status)];
 }
 
 /// The input of an update.
@@ -84,6 +72,19 @@ struct PlannerInput {
   /// Other cars and their predictions from the time of the scan on, map frame; used with `predict_others`.
   /// Readings of these cars are not obstacles, and count as invalid in the report of the scan.
   std::span<const maps::PredictedObstacle> others{};
+};
+
+/// Estimates of the car and the ground.
+struct ParameterEstimate {
+  double friction = 0;                 ///< mean
+  double friction_deviation = 0;       ///< standard deviation
+  double cautious_friction = 0;        ///< friction on which plans rely: a quantile, at most the given value
+  double steering_gain = 1;            ///< angle of the wheels / commanded angle, mean
+  double steering_gain_deviation = 0;  ///< standard deviation
+  double delay = 0;                    ///< s, from sending a steering command to its first effect, mean
+  double delay_deviation = 0;          ///< s, standard deviation
+  double confidence = 0;  ///< 0 .. 1, share of the prior variance of the logarithm of the friction that the
+                          ///< drive has removed: 0 without turning
 };
 
 /// The outcome of an update. Spans stay valid until the next one. For any input the command is finite and

@@ -1,10 +1,34 @@
 #pragma once
 
 #include "slalom/core/options.hpp"
-#include "slalom/vehicle/estimation/estimation_options.hpp"
 #include "slalom/vehicle/published/planner_options.hpp"
 
 namespace slalom::vehicle {
+
+/// Options of the estimates of state, car and ground that are made while driving, for models whose tyres
+/// slip. `visit_options` below describes the fields.
+struct EstimationOptions {
+  bool identify = true;
+  double friction_quantile = 0.2;
+  double lateral_noise = 0.02;
+  double position_noise = 0.005;
+  double heading_noise = 0.003;
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, EstimationOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.identify, {"identify", "",
+                     "learn friction, steering gain and delay while driving on tyres that slip; else the "
+                     "given values hold"});
+  visit(o.friction_quantile,
+        {"friction_quantile", "", "quantile of the friction's distribution on which plans rely", 0.01, 0.99});
+  visit(o.lateral_noise, {"lateral_noise", "m", "deviation of a predicted position, sideways", 1e-3, 1});
+  visit(o.position_noise,
+        {"position_noise", "m", "state observer: least standard deviation of a position", 1e-6, 1e3});
+  visit(o.heading_noise,
+        {"heading_noise", "rad", "state observer: least standard deviation of a heading", 1e-6, 1e3});
+}
 
 /// Options of the planner, besides those of the solver and of the vehicle model.
 /// `visit_options` below describes the fields.

@@ -18,9 +18,8 @@ namespace slalom::vehicle {
 /// The start of a course, and the direction in which it is driven.
 struct RaceCourseOptions {
   /// Start pose of the car, for closed courses. Without one, a course that is found in a map starts at the
-  /// origin of the map frame, where mapping programs start, if it passes there within 0.6 rad of +x; else it
-  /// is driven counter-clockwise. All other closed courses keep the direction of their line. Except at the
-  /// origin, a course without a start begins in the middle of its fastest part.
+  /// origin of the map frame if it passes there within 0.6 rad of +x; else it is driven counter-clockwise. A
+  /// course without a start begins in the middle of its fastest part.
   std::optional<maps::Pose> start;
   bool reverse = false;  ///< the other way round; not with a start
 };

@@ -4,23 +4,10 @@
 #include <vector>
 
 #include "slalom/maps/pose.hpp"
-#include "slalom/vehicle/estimation/estimation_options.hpp"
-#include "slalom/vehicle/model/single_track_dynamics.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
+#include "vehicle/estimation/hypothesis_bank.hpp"
 
-namespace slalom::vehicle {
-
-/// Estimates of the car and the ground.
-struct ParameterEstimate {
-  double friction = 0;                 ///< mean
-  double friction_deviation = 0;       ///< standard deviation
-  double cautious_friction = 0;        ///< friction on which a plan should rely, see ParameterEstimator
-  double steering_gain = 1;            ///< angle of the wheels / commanded angle, mean
-  double steering_gain_deviation = 0;  ///< standard deviation
-  double delay = 0;                    ///< s, from sending a steering command to its first effect, mean
-  double delay_deviation = 0;          ///< s, standard deviation
-  double confidence = 0;  ///< 0 .. 1, share of the prior variance of the logarithm of the friction that the
-                          ///< drive has removed: 0 without turning
-};
+namespace slalom::vehicle::detail {
 
 /// The motion of the car, one control period after the last.
 struct MeasuredMotion {
@@ -30,25 +17,19 @@ struct MeasuredMotion {
   double slip = 0;      ///< rad, of the observer
 };
 
-namespace detail {
-/// Mean and standard deviation of a distribution.
-struct Moments {
-  double mean = 0, deviation = 0;
-};
-}  // namespace detail
-
 /// Estimates friction, steering gain and steering delay of a car while it drives.
 ///
-/// Each combination of values on a grid is a hypothesis. In every control period, the dynamics predict the
-/// last `window` seconds for all hypotheses at once, in SIMD lanes. A prediction starts at the measured
+/// Each combination of values on a grid is a hypothesis: 16 frictions from 0.25 to 1.5, 5 gains from 0.85 to
+/// 1.15 and 9 delays from 0 to 0.2 s. In every control period, the dynamics predict the last 0.4 s (the
+/// window) for all hypotheses at once, in SIMD lanes. A prediction starts at the measured
 /// state, uses the measured speed, and delays and scales the sent commands by the hypothesis. The logarithm
 /// of a hypothesis' weight falls by
 ///
-///     (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / yaw_noise)^2)
+///     (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / 0.02 rad)^2)
 ///
 /// with the errors of the predicted pose at the end. The factor allows for the overlap of successive windows.
 /// Errors beyond five deviations count as five, so that a collision or a jump of the localisation decides
-/// nothing. The estimator forgets within `memory` seconds of turning. On a straight line it can learn nothing
+/// nothing. The estimator forgets within 2 s of turning. On a straight line it can learn nothing
 /// about the tyres and forgets nothing either. The prior consists of independent normal distributions around
 /// the given values; that of the friction is for its logarithm.
 ///
@@ -59,11 +40,6 @@ struct Moments {
 /// The time of an update does not depend on data. It neither allocates nor throws.
 class ParameterEstimator {
  public:
-  static constexpr int frictions = 16;   ///< geometric, 0.25 .. 1.5
-  static constexpr int gains = 5;        ///< 0.85 .. 1.15
-  static constexpr int delays = 9;       ///< 0 .. 0.2 s
-  static constexpr int max_window = 40;  ///< control periods
-
   /// `friction` and `delay` (s) are the given values; `period` (s) is the control period.
   ParameterEstimator(const SingleTrackDynamics& dynamics, const EstimationOptions& options, double friction,
                      double delay, double period);
@@ -80,42 +56,50 @@ class ParameterEstimator {
   /// The present estimate.
   const ParameterEstimate& estimate() const noexcept { return estimate_; }
 
-  /// The friction of a grid point, 0 .. frictions - 1.
-  static double friction_at(int i) noexcept;
-
  private:
+  static constexpr int frictions = HypothesisGrid::frictions, gains = HypothesisGrid::gains,
+                       delays = HypothesisGrid::delays;
   static constexpr int kept = 64;  ///< control periods of history
-  static constexpr int hypotheses = delays * gains * frictions;
 
   struct Moment {
     MeasuredMotion motion;
     std::array<double, delays> angle{};  ///< rad, of the wheels at gain 1, for each delay
   };
 
+  /// Mean and standard deviation of a distribution.
+  struct Moments {
+    double mean = 0, deviation = 0;
+    template <std::size_t n, class At>
+    static Moments of(const std::array<double, n>& share, double step, At&& at) noexcept;
+  };
+
   /// Moments of the prior alone.
   struct Prior {
-    detail::Moments logarithm, gain, delay;  ///< logarithm of the friction; gain; delay, s
+    Moments logarithm, gain, delay;  ///< logarithm of the friction; gain; delay, s
   };
 
   const Moment& ago(int periods) const noexcept;
   void turn_wheels(Moment& next) const noexcept;
+  Stretch last_stretch() const noexcept;
+  double turning_share() const noexcept;
   void weigh() noexcept;
   void summarise() noexcept;
   double log_quantile(const std::array<double, frictions>& shares) const noexcept;
   bool continues() const noexcept;
 
   SingleTrackDynamics dynamics_;
-  EstimationOptions options_;
+  HypothesisGrid grid_;
+  double friction_quantile_, lateral_noise_;
   double friction_, delay_, period_;
   int window_;  ///< control periods
   std::array<Moment, kept> history_;
   std::array<double, kept> sent_{};
   int newest_ = 0, moments_ = 0;
-  std::vector<double> log_prior_;  ///< logarithms of weights, [delay][gain][friction]
-  std::vector<double> evidence_;   ///< logarithms of likelihoods
-  std::vector<float> lateral_error_, yaw_error_;
+  std::vector<double> log_prior_;                 ///< logarithms of weights, [delay][gain][friction]
+  std::vector<double> evidence_;                  ///< logarithms of likelihoods
+  std::vector<float> lateral_error_, yaw_error_;  ///< m, rad
   Prior prior_;
   ParameterEstimate estimate_;
 };
 
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::detail

@@ -1,16 +1,14 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 
 #include "slalom/maps/imu_reading.hpp"
-#include "slalom/vehicle/estimation/estimation_options.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
-namespace slalom::vehicle {
-
-/// The covariance of a pose: x, y (m, map frame) and yaw (rad). All 0 if it is not known.
-using PoseCovariance = std::array<std::array<double, 3>, 3>;
+namespace slalom::vehicle::detail {
 
 /// The readings of the sensors at one moment.
 struct ObserverInput {
@@ -32,7 +30,7 @@ struct ObserverInput {
 class StateObserver {
  public:
   /// All times in s; latency and dead time together at most 32 periods.
-  StateObserver(const ObserverOptions& options, double period, double latency, double dead_time);
+  StateObserver(const EstimationOptions& options, double period, double latency, double dead_time);
 
   /// Forgets everything.
   void reset() noexcept;
@@ -57,26 +55,28 @@ class StateObserver {
 
  private:
   static constexpr int size = 7;  ///< x, y, yaw, speed, yaw rate, sideways velocity, bias of the gyro
-  using Vector = std::array<double, size>;
-  using Matrix = std::array<Vector, size>;
+  using Vector = Eigen::Matrix<double, size, 1>;
+  using Matrix = Eigen::Matrix<double, size, size>;
 
   void begin(const DynamicVehicleModel& model, const ObserverInput& input) noexcept;
   void predict(const DynamicVehicleModel& model, const std::optional<ImuReading>& imu) noexcept;
+  Matrix slopes(const DynamicVehicleModel& model, const Vector& before, double steer) const noexcept;
+  void use_accelerometers(const ImuReading& imu, const Vector& before, Matrix& slope, Vector& noise) noexcept;
   void correct(const Vector& row, double difference, double variance) noexcept;
   void correct_pose(const ObserverInput& input) noexcept;
   void move(const DynamicVehicleModel& model, VehicleStart& car, double begin, double end) const noexcept;
   Vector moved(const DynamicVehicleModel& model, const Vector& from, double& steer) const noexcept;
   const Command& acting(double time, double delay) const noexcept;
 
-  ObserverOptions options_;
-  double period_, latency_, delay_;  ///< s
+  double position_noise_, heading_noise_;  ///< m, rad
+  double period_, latency_, delay_;        ///< s
   double friction_ = 0;
   std::array<Command, 36> sent_;
   VehicleStart now_;
-  Vector state_{};
-  Matrix covariance_{};
+  Vector state_ = Vector::Zero();
+  Matrix covariance_ = Matrix::Zero();
   int sent_since_ = 0;  ///< commands since the last update
   bool known_ = false;
 };
 
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::detail
