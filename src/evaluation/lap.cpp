@@ -81,14 +81,6 @@ struct LapDrive::State {
   void record_clearance();
   void conclude();
 
-  /// Sums over control steps, for the means of the result.
-  struct Sums {
-    double state_cost = 0, collision_cost = 0, paper_model_cost = 0, driven_cost = 0;
-    double input_error = 0, speed = 0, path_distance = 0;
-    double variance = 0, effective_samples = 0;  ///< over `solves`
-    int solves = 0;
-  };
-
   LapResult result;
   LapSetup setup;
   const LapRules* rules;
@@ -97,7 +89,8 @@ struct LapDrive::State {
   SequenceCostMeter meter;
   std::optional<OvertakingMeter> overtaking;  ///< meter of encounters with opponents
   sim::CollisionLog log;
-  Sums sums;
+  LapFigures sums;  ///< over control steps or solves, where the result has means
+  int solves = 0;
   double length, timeout;  ///< m, s
 };
 
@@ -134,18 +127,18 @@ void LapDrive::State::measure(const PlannerUpdate& update, const ControlStepCall
     sums.driven_cost += meter.present().total();
   }
   sums.input_error += sum_of_steering(output);
-  sums.speed += seen.speed;
+  sums.mean_speed += seen.speed;
   const double path_distance = meter.path_distance();
-  sums.path_distance += path_distance;
+  sums.mean_path_distance += path_distance;
   result.max_path_distance = std::max(result.max_path_distance, path_distance);
   result.corrections += output.corrections;
   ++result.planner_status[static_cast<std::size_t>(output.status)];
   result.tick_ms.push_back(static_cast<float>(1e3 * output.tick_time));
   if (output.solve) {
     const SolveResult& solve = *output.solve;
-    ++sums.solves;
-    sums.effective_samples += solve.effective_sample_size;
-    sums.variance += mean_variance(solve, static_cast<std::size_t>(output.inputs_per_step));
+    ++solves;
+    sums.mean_effective_samples += solve.effective_sample_size;
+    sums.mean_variance += mean_variance(solve, static_cast<std::size_t>(output.inputs_per_step));
     result.solve_ms.push_back(static_cast<float>(1e3 * solve.times.total));
   }
   if (on_step)
@@ -191,20 +184,15 @@ void LapDrive::State::conclude() {
   result.time = world.time();
   if (result.finished && !ends_with_path(setup))
     result.time = setup.settings.rounds > 1 ? world.laps(0)->lap_start_time() : rules->lap_time(world);
-  if (result.steps == 0) return;
-  const double n = result.steps;
-  result.state_cost = sums.state_cost / n;
-  result.collision_cost = sums.collision_cost / n;
-  result.mean_sequence_cost = result.state_cost + result.collision_cost;
-  result.paper_model_cost = sums.paper_model_cost / n;
-  result.driven_cost = sums.driven_cost / n;
-  result.input_error = sums.input_error / n;
-  result.mean_speed = sums.speed / n;
-  result.mean_path_distance = sums.path_distance / n;
-  if (sums.solves > 0) {
-    result.mean_variance = sums.variance / sums.solves;
-    result.mean_effective_samples = sums.effective_samples / sums.solves;
-  }
+  const auto mean = [&](double LapFigures::*figure, int count) {
+    if (count > 0) result.*figure = sums.*figure / count;
+  };
+  for (const auto figure : {&LapFigures::state_cost, &LapFigures::collision_cost,
+                            &LapFigures::paper_model_cost, &LapFigures::driven_cost, &LapFigures::input_error,
+                            &LapFigures::mean_speed, &LapFigures::mean_path_distance})
+    mean(figure, result.steps);
+  mean(&LapFigures::mean_variance, solves);
+  mean(&LapFigures::mean_effective_samples, solves);
 }
 
 LapDrive::LapDrive(const LapSetup& setup, std::uint64_t seed)

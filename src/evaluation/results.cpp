@@ -75,7 +75,7 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
     r.collisions += row->collisions;
     r.impassable += row->impassable;
     successes += row->success;
-    if (row->finished) lap_times.push_back(row->lap_time);
+    if (row->finished) lap_times.push_back(row->time);
     r.solve_ms_max = std::max(r.solve_ms_max, row->max_calculation_time);
   }
   const auto ms = column(rows, [](const LapRow& row) { return row.mean_sequence_cost(); });

@@ -1,7 +1,6 @@
 #include "slalom/evaluation/worker_threads.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -9,26 +8,12 @@
 
 namespace slalom::evaluation {
 
-int run_in_threads(int threads, const std::function<void()>& work) {
-  std::vector<std::jthread> others;  // joined however this ends
-  others.reserve(static_cast<std::size_t>(std::max(0, threads - 1)));
-  try {
-    while (static_cast<int>(others.size()) + 1 < threads) others.emplace_back([&] { work(); });
-  } catch (const std::exception&) {
-    // No thread or no memory. The work is shared, so those that run do all of it.
-  }
-  work();
-  const int started = static_cast<int>(others.size()) + 1;
-  others.clear();
-  return started;
-}
-
 void for_each_in_threads(int threads, int count, const std::function<void(int)>& work,
                          const std::atomic<bool>* cancel) {
   std::atomic<int> next{0};
   std::mutex mutex;
   std::exception_ptr error;
-  run_in_threads(std::min(threads, count), [&] {
+  const auto drain = [&] {
     for (int i; !(cancel && cancel->load()) && (i = next++) < count;) {
       try {
         work(i);
@@ -38,7 +23,16 @@ void for_each_in_threads(int threads, int count, const std::function<void(int)>&
         next = count;
       }
     }
-  });
+  };
+  {
+    std::vector<std::jthread> others;  // joined however this ends
+    try {
+      for (int i = 1; i < std::min(threads, count); ++i) others.emplace_back(drain);
+    } catch (const std::exception&) {
+      // No thread or no memory. The work is shared, so those that run do all of it.
+    }
+    drain();
+  }
   if (error) std::rethrow_exception(error);
 }
 

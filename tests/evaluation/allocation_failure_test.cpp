@@ -4,8 +4,8 @@
 
 #include <atomic>
 
+#include "evaluation/courses.hpp"
 #include "slalom/evaluation/grid_race.hpp"
-#include "slalom/evaluation/lap.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
 #include "support/allocation_failures.hpp"
 #include "vehicle/planner/planner_calls.hpp"
@@ -32,11 +32,7 @@ TEST(AllocationFailure, EveryPlannerIsMadeOrThrowsAndThenPlans) {
 }
 
 TEST(AllocationFailure, ACourseIsLoadedOrThrows) {
-  EXPECT_GT(
-      testing::fail_every_allocation(
-          [&] { return load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {})->path.size(); },
-          50),
-      100);
+  EXPECT_GT(testing::fail_every_allocation([&] { return course("wren")->path.size(); }, 50), 100);
 }
 
 /// Starts a lap with few samples. The setup is filled field by field: g++ 12 destroys fields of a nested
@@ -53,7 +49,7 @@ double start_of_lap(const std::shared_ptr<const Environment>& environment,
 }
 
 TEST(AllocationFailure, ALapStartsOrThrows) {
-  const auto environment = load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {});
+  const auto environment = course("wren");
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "40", "svg_mppi");
   const LapSettings among_obstacles{.obstacles = 2};
@@ -72,13 +68,13 @@ TEST(AllocationFailure, ALapStartsOrThrows) {
 }
 
 TEST(AllocationFailure, ARaceAmongCarsStartsOrThrows) {
-  const auto environment = load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {});
+  const auto environment = course("wren");
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "40", "mppi");
   const std::vector<Driver> drivers(2, {configuration, "mppi"});
   EXPECT_GT(testing::fail_every_allocation(
                 [&] {
-                  const GridRace race{environment, drivers, {.tracking = TrackingMode::exact}, {.laps = 1}};
+                  const GridRace race{environment, drivers, {.tracking = TrackingMode::exact}, 1};
                   std::atomic<bool> cancel{false};
                   const GridRaceResult result = race.run(
                       3, 0, [&](const GridRaceStep& step) { cancel = step.time > 0.03; }, &cancel);
@@ -94,9 +90,9 @@ TEST(AllocationFailure, ADriveInARoomStartsOrThrows) {
   options.samples = 32;
   driver.solver = options;
   const RoomScenario& scenario = room_scenario("oncoming-walker");
-  EXPECT_GT(testing::fail_every_allocation(
-                [&] { return drive_room(scenario, driver, 3, {.timeout = 0.2}).trace.back().x; }, 50),
-            100);
+  EXPECT_GT(
+      testing::fail_every_allocation([&] { return drive_room(scenario, driver, 3, 0.2).trace.back().x; }, 50),
+      100);
 }
 
 }  // namespace

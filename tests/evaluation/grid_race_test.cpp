@@ -5,20 +5,15 @@
 
 #include <bit>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <thread>
 
+#include "evaluation/courses.hpp"
 #include "evaluation/racing/race_watch.hpp"
-#include "evaluation/racing/starting_grid.hpp"
 #include "sim/rooms.hpp"
 
 namespace slalom::evaluation {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr double half_turn = 3.141592653589793;
 
 CarResult car_that(CarEnd end, double time, double progress, int grid_place) {
   CarResult car;
@@ -72,17 +67,6 @@ TEST(ContactRate, IsOverTheKilometresOfTheCars) {
   EXPECT_TRUE(std::isnan(contact_rate({}).per_100_km));
 }
 
-/// A car `progress` (m) along a ring of 5.5 m at a speed.
-sim::CarState on_ring(double progress, double left, double speed) {
-  const double angle = progress / 5.5, radius = 5.5 - left;
-  sim::CarState state;
-  state.x = 10 + radius * std::cos(angle);
-  state.y = 10 + radius * std::sin(angle);
-  state.yaw = angle + 0.5 * half_turn;
-  state.speed = speed;
-  return state;
-}
-
 /// Where a car starts (m beyond the line, m left of it) and how fast it drives.
 struct Motion {
   double from = 0, left = 0, speed = 0;
@@ -133,23 +117,16 @@ TEST(RaceWatch, TheCarBehindIsAtFaultWhicheverItIs) {
   EXPECT_EQ(earlier.contacts()[0].at_fault, 0);
 }
 
-std::shared_ptr<const Environment> course(const char* name) {
-  return load_environment(fs::path(SLALOM_COURSES) / name, Protocol::true_physics, {SLALOM_COURSES});
-}
-
 Driver entry(double max_speed = 100) {
-  Driver made{
-      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / "default_kinematic.yaml", {SLALOM_CONFIGS}),
-      "mppi"};
-  vehicle::set_option(made.configuration, "mppi.samples", "64");
+  Driver made{configuration("default_kinematic", 64), "mppi"};
   made.configuration.planner.max_speed = max_speed;
   return made;
 }
 
-GridRace race_of(const std::vector<Driver>& entries, const GridRaceOptions& options = {.laps = 1},
+GridRace race_of(const std::vector<Driver>& entries, int laps = 1,
                  const LapSettings& settings = {.tracking = TrackingMode::exact}) {
   static const auto wren = course("wren");
-  return {wren, entries, settings, options};
+  return {wren, entries, settings, laps};
 }
 
 std::vector<Driver> equals(std::size_t cars) {
@@ -218,8 +195,7 @@ TEST(GridRace, RepeatsWithAnyThreads) {
         3, 1, [&](const GridRaceStep&) { cancel = ++steps == 100; }, &cancel);
   };
   const GridRace race = race_of(equals(3)),
-                 with_threads =
-                     race_of(equals(3), {.laps = 1}, {.threads = 2, .tracking = TrackingMode::exact});
+                 with_threads = race_of(equals(3), 1, {.threads = 2, .tracking = TrackingMode::exact});
   const GridRaceResult first = begin_of(race);
   GridRaceResult again;
   std::thread beside([&] { again = begin_of(race); });
@@ -274,10 +250,10 @@ TEST(GridRace, EndsWithWhatWasDrivenWhenItIsCancelled) {
 TEST(GridRace, RefusesWhatItCannotDrive) {
   EXPECT_THROW(race_of(equals(1)).validate(), std::invalid_argument);
   EXPECT_THROW(race_of(equals(5)).validate(), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 0}).validate(), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.obstacles = 1}).validate(), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.opponents = 1}).validate(), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.rounds = 2}).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), 0).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), 1, {.obstacles = 1}).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), 1, {.opponents = 1}).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), 1, {.rounds = 2}).validate(), std::invalid_argument);
   std::vector<Driver> periods = equals(2);
   periods[1].configuration.planner.control_period = 0.05;
   EXPECT_THROW(race_of(periods).validate(), std::invalid_argument);

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "slalom/vehicle/configuration/configuration.hpp"
+#include "evaluation/courses.hpp"
 
 namespace slalom::evaluation {
 namespace {
 
 LapSetup lap(const std::string& method, const LapSettings& settings = {.obstacles = 2}) {
-  static const auto environment = load_environment(SLALOM_COURSES "/stag", Protocol::true_physics, {});
+  static const auto environment = course("stag");
   vehicle::Configuration configuration;
   for (const char* each : {"svg_mppi", "mppi"}) {
     vehicle::set_option(configuration, "samples", "256", each);
@@ -99,10 +99,7 @@ TEST(LapDrive, ACopyGoesOnWithTheSameBits) {
     return all;
   };
   LapSetup setup = lap("svg_mppi", among_all);
-  auto environment =
-      std::make_shared<Environment>(*load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {}));
-  environment->timeout = 0.8;
-  setup.environment = environment;
+  setup.environment = timed_out_after(0.8);
   LapDrive drive(setup, 7);
   for (int i = 0; i < 16; ++i) drive.step();
   LapDrive copy = drive, assigned(lap("mppi"), 1);
@@ -113,7 +110,7 @@ TEST(LapDrive, ACopyGoesOnWithTheSameBits) {
     EXPECT_EQ(figures(*other), figures(drive));
     EXPECT_EQ(same.time, whole.time);
     EXPECT_EQ(same.steps, whole.steps);
-    EXPECT_EQ(same.mean_sequence_cost, whole.mean_sequence_cost);
+    EXPECT_EQ(same.mean_sequence_cost(), whole.mean_sequence_cost());
     EXPECT_EQ(same.localisation.error, whole.localisation.error);
     EXPECT_EQ(same.tracking.position_error, whole.tracking.position_error);
     EXPECT_EQ(same.overtaking.encounters.size(), whole.overtaking.encounters.size());

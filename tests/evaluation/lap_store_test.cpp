@@ -110,6 +110,26 @@ TEST_F(StoredLaps, SettingsOfAnyDepthAreRefused) {
   }
 }
 
+TEST_F(StoredLaps, ResumesOnlyFromAWholeTableOfItsOwn) {
+  store(true);
+  const std::string table = text("laps.csv");
+  const auto complaint = [&](const std::string& bytes) -> std::string {
+    write("laps.csv", bytes);
+    try {
+      LapStore(folder_, evaluation_, true);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(complaint(table), "");
+  EXPECT_NE(complaint("").find("laps.csv:1: the header"), std::string::npos);
+  EXPECT_NE(complaint(table.substr(0, table.rfind('\n', table.size() - 2) + 1)).find("1 laps are missing"),
+            std::string::npos);
+  evaluation_.seed0 = 5;
+  EXPECT_NE(complaint(table).find("laps.csv:2: seed: 0"), std::string::npos);
+}
+
 TEST_F(StoredLaps, AFolderHasOneStoreAtATime) {
   {
     LapStore first(folder_, evaluation_, false);

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "slalom/core/error.hpp"
@@ -32,8 +31,8 @@ LapRow row(int experiment, int lap) {
   r.state_cost = 0.1 + 0.2;
   r.collision_cost = 1e-300;
   r.impassable = 2;
-  r.lap_time = 1.0 / 3;
-  r.minimum_clearance = -0.0125;
+  r.time = 1.0 / 3;
+  r.min_clearance = -0.0125;
   r.contact_points = "1.250:-3.000 0.500:2.125";
   r.solve_p99 = 12.5;
   return r;
@@ -94,7 +93,7 @@ TEST_F(LapTable, ReadsBackToTheSameBits) {
   EXPECT_EQ(rows[0].seed, 10u);
   EXPECT_EQ(rows[1].state_cost, 0.1 + 0.2);
   EXPECT_EQ(rows[1].collision_cost, 1e-300);
-  EXPECT_EQ(rows[1].lap_time, 1.0 / 3);
+  EXPECT_EQ(rows[1].time, 1.0 / 3);
   EXPECT_EQ(rows[1].contact_points, "1.250:-3.000 0.500:2.125");
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(line(rows[i]), i == 0 ? first_ : second_);
 }
@@ -135,7 +134,7 @@ TEST_F(LapTable, RejectsNonFiniteNumbers) {
     EXPECT_NE(complaint(head_ + line(invalid)).find(":2: state_cost: '"), std::string::npos) << number;
   }
   invalid = row(0, 2);
-  invalid.minimum_clearance = std::numeric_limits<double>::infinity();
+  invalid.min_clearance = std::numeric_limits<double>::infinity();
   EXPECT_EQ(complaint(head_ + line(invalid)), "") << "where there is no wall";
 }
 
@@ -153,53 +152,6 @@ TEST_F(LapTable, RejectsTheSeedOfAnotherLap) {
 TEST_F(LapTable, NamesAMissingHeader) {
   EXPECT_NE(complaint("").find(".csv:1: the header is missing"), std::string::npos);
   EXPECT_EQ(complaint("", true), "") << "a journal that was killed at once";
-}
-
-class LapStoreResume : public testing::TemporaryFolder {
- protected:
-  LapStoreResume() {
-    evaluation_.experiments = {{"mppi", {}, "pt", 0, 2}};
-    evaluation_.settings = "{}";
-  }
-
-  /// Completes an evaluation, replaces laps.csv by `edit(laps.csv)`, and resumes.
-  template <class Edit>
-  std::string complaint_when_resumed(Edit&& edit) {
-    fs::remove_all(folder_);
-    std::string text = checked_header() + "\n";
-    {
-      LapStore store(folder_, evaluation_, false);
-      for (int lap = 0; lap < 2; ++lap) {
-        LapRow r = row(0, lap);
-        r.seed = lap_seed(0, lap, 0);
-        store.add(r);
-        text += checked_line(csv_line(r, evaluation_.experiments)) + "\n";
-      }
-      store.complete();
-    }
-    std::ofstream(folder_ / "laps.csv", std::ios::binary) << edit(text);
-    try {
-      LapStore(folder_, evaluation_, true);
-    } catch (const IoError& error) {
-      return error.what();
-    }
-    return {};
-  }
-
-  Evaluation evaluation_;
-};
-
-TEST_F(LapStoreResume, ResumesOnlyFromAWholeTableOfItsOwn) {
-  const auto without_last = [](const std::string& text) {
-    return text.substr(0, text.rfind('\n', text.size() - 2) + 1);
-  };
-  EXPECT_EQ(complaint_when_resumed([](const std::string& text) { return text; }), "");
-  EXPECT_NE(complaint_when_resumed([](const std::string&) { return ""; }).find("laps.csv:1: the header"),
-            std::string::npos);
-  EXPECT_NE(complaint_when_resumed(without_last).find("laps.csv: 1 laps are missing"), std::string::npos);
-  evaluation_.seed0 = 5;
-  EXPECT_NE(complaint_when_resumed([](const std::string& text) { return text; }).find("laps.csv:2: seed: 0"),
-            std::string::npos);
 }
 
 }  // namespace

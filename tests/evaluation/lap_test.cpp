@@ -4,32 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <filesystem>
 #include <thread>
+
+#include "evaluation/courses.hpp"
 
 namespace slalom::evaluation {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::shared_ptr<const Environment> wren(Protocol protocol = Protocol::true_physics) {
-  return load_environment(fs::path(SLALOM_COURSES) / "wren", protocol, {SLALOM_COURSES});
-}
-
-/// A course with laps that end after this time (s).
-std::shared_ptr<const Environment> timed_out_after(double time,
-                                                   std::shared_ptr<const Environment> course = wren()) {
-  auto environment = std::make_shared<Environment>(*course);
-  environment->timeout = time;
-  return environment;
-}
-
-vehicle::Configuration configuration(const std::string& name, int samples = 256) {
-  auto made = vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / (name + ".yaml"), {SLALOM_CONFIGS});
-  for (const char* method : {"mppi", "svg_mppi"})
-    vehicle::set_option(made, std::string(method) + ".samples", std::to_string(samples));
-  return made;
-}
 
 /// Everything of a lap that may not depend on the clock of the wall.
 std::vector<std::uint64_t> bits(const LapResult& lap) {
@@ -42,7 +22,7 @@ std::vector<std::uint64_t> bits(const LapResult& lap) {
 }
 
 TEST(Lap, FinishesALap) {
-  const LapSetup setup{wren(), {configuration("default")}};
+  const LapSetup setup{course("wren"), {configuration("default")}};
   const LapResult lap = run_lap(setup, 0);
   EXPECT_TRUE(lap.finished);
   EXPECT_FALSE(lap.timeout);
@@ -50,7 +30,7 @@ TEST(Lap, FinishesALap) {
   EXPECT_GT(lap.min_clearance, 0.05);
   EXPECT_LT(lap.time, 0.5 * setup.timeout());
   EXPECT_NEAR(lap.time, lap.steps * 0.025, 0.05);
-  EXPECT_EQ(lap.mean_sequence_cost, lap.state_cost + lap.collision_cost);
+  EXPECT_EQ(lap.mean_sequence_cost(), lap.state_cost + lap.collision_cost);
   EXPECT_GT(lap.state_cost, 0);
   EXPECT_EQ(lap.solve_ms.size(), static_cast<std::size_t>(lap.steps));
 }
@@ -75,7 +55,7 @@ std::shared_ptr<const Environment> at_utm_coordinates(vehicle::Course course, Pr
 TEST(Lap, DrivesTheSameLapAtUtmCoordinates) {
   for (const Protocol protocol : {Protocol::true_physics, Protocol::published}) {
     SCOPED_TRACE(name(protocol));
-    const auto here = load_environment(fs::path(SLALOM_COURSES) / "eel", protocol, {SLALOM_COURSES});
+    const auto here = course("eel", protocol);
     const auto there = at_utm_coordinates(here->course, protocol);
     EXPECT_EQ(here->course.origin.x, 0);
     EXPECT_EQ(there->course.origin.x, 500000);
@@ -89,7 +69,7 @@ TEST(Lap, DrivesTheSameLapAtUtmCoordinates) {
 }
 
 TEST(Lap, StartsWhereTheCarHasRoom) {
-  vehicle::Course course = wren()->course;
+  vehicle::Course course = evaluation::course("wren")->course;
   const vehicle::Waypoint& first = course.waypoints.front();
   course.start = {first.x, first.y, first.yaw};
   const double side = 0.12;  // m to the left of the first waypoint, less than half the car's width
@@ -111,15 +91,15 @@ TEST(Lap, StartsWhereTheCarHasRoom) {
 }
 
 TEST(Lap, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
-  const double usual = run_lap({wren(), {configuration("default_kinematic")}, {}}, 0).time;
+  const double usual = run_lap({course("wren"), {configuration("default_kinematic")}, {}}, 0).time;
   const auto begun = timed_out_after(3);
   for (const char* name : {"default", "default_speed"}) {
     for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
       SCOPED_TRACE(std::string(name) + ", " + method);
       const bool whole = method == std::string("svg_mppi");
-      const LapResult lap =
-          run_lap({whole ? wren() : begun, {configuration(name), method}, {.additional_costs = true}}, 0);
-      EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost));
+      const LapResult lap = run_lap(
+          {whole ? course("wren") : begun, {configuration(name), method}, {.additional_costs = true}}, 0);
+      EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost()));
       EXPECT_TRUE(std::isfinite(lap.paper_model_cost));
       EXPECT_GT(lap.mean_speed, 0.3);
       if (!whole) continue;
@@ -149,7 +129,7 @@ TEST(Lap, RepeatsBitForBitInAnyOrderWithAnyThreads) {
 }
 
 TEST(Lap, CostEqualsThePlannersInThePublishedConfiguration) {
-  const LapSetup setup{wren(Protocol::published), {configuration("published")}, {.obstacles = 2}};
+  const LapSetup setup{course("wren", Protocol::published), {configuration("published")}, {.obstacles = 2}};
   int ticks = 0;
   const LapResult lap = run_lap(setup, 0, [&](const ControlStep& tick) {
     ++ticks;
@@ -161,7 +141,7 @@ TEST(Lap, CostEqualsThePlannersInThePublishedConfiguration) {
 }
 
 TEST(Lap, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluation) {
-  const LapSetup setup{wren(Protocol::published), {configuration("default")}, {}};
+  const LapSetup setup{course("wren", Protocol::published), {configuration("default")}, {}};
   double gain = 0, speed_error = 0;
   const LapResult lap = run_lap(setup, 0, [&](const ControlStep& tick) {
     gain = tick.output.parameters.steering_gain;
@@ -173,17 +153,16 @@ TEST(Lap, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluation) {
 }
 
 TEST(Lap, AdditionalCostsAreComparable) {
-  const LapSetup setup{wren(), {configuration("published")}, {.additional_costs = true}};
+  const LapSetup setup{course("wren"), {configuration("published")}, {.additional_costs = true}};
   const LapResult lap = run_lap(setup, 0);
-  EXPECT_NEAR(lap.paper_model_cost, lap.mean_sequence_cost, 1e-9);
+  EXPECT_NEAR(lap.paper_model_cost, lap.mean_sequence_cost(), 1e-9);
   EXPECT_GT(lap.driven_cost, 0);
 }
 
 TEST(Lap, CanBeTimedOutAndCancelled) {
   auto slow = configuration("default_kinematic", 64);
   vehicle::set_option(slow, "planner.max_speed", "0.02");
-  auto environment = std::make_shared<Environment>(*wren());
-  environment->timeout = 1;
+  const auto environment = timed_out_after(1);
   const LapResult late = run_lap({environment, {slow, "mppi"}, {}}, 0);
   EXPECT_FALSE(late.finished);
   EXPECT_TRUE(late.timeout);
@@ -192,14 +171,15 @@ TEST(Lap, CanBeTimedOutAndCancelled) {
 
   std::atomic<bool> cancel{false};
   const LapResult cut = run_lap(
-      {wren(), {slow, "mppi"}}, 0, [&](const ControlStep& tick) { cancel = tick.step == 4; }, &cancel);
+      {course("wren"), {slow, "mppi"}}, 0, [&](const ControlStep& tick) { cancel = tick.step == 4; },
+      &cancel);
   EXPECT_TRUE(cut.cancelled);
   EXPECT_FALSE(cut.timeout);
   EXPECT_EQ(cut.steps, 5);
 }
 
 TEST(Lap, LatencyDelaysCommands) {
-  const auto environment = wren();
+  const auto environment = course("wren");
   const auto first_motion = [&](double latency) {
     double start = -1;
     run_lap({environment, {configuration("default_kinematic", 64), "mppi"}, {.latency = latency}}, 0,
@@ -256,8 +236,7 @@ TEST(Lap, ATrackerFindsTheOtherCars) {
 }
 
 TEST(Lap, ACarThatCannotLocaliseStops) {
-  auto environment = std::make_shared<Environment>(*wren());
-  environment->timeout = 2;
+  const auto environment = timed_out_after(2);
   HardwareConditions blind;
   blind.dropout = 1;
   const LapResult lap =
@@ -269,7 +248,7 @@ TEST(Lap, ACarThatCannotLocaliseStops) {
 }
 
 TEST(Lap, TheWorldCanBeMadeHarder) {
-  const auto whole = wren(), begun = timed_out_after(3);
+  const auto whole = course("wren"), begun = timed_out_after(3);
   const auto lap = [&](const char* key, const char* value, const auto& environment) {
     LapSettings settings;
     if (key) {
@@ -294,12 +273,13 @@ TEST(Lap, TheWorldCanBeMadeHarder) {
   EXPECT_FALSE(set_world_option(settings, "vehicle.friction", "1"));
   EXPECT_THROW(set_world_option(settings, "world.fricton", "1"), std::invalid_argument);
   EXPECT_THROW(set_world_option(settings, "world.friction", "-1"), std::invalid_argument);
-  const LapSetup published{wren(Protocol::published), {configuration("default"), "mppi"}, {.friction = 0.7}};
+  const LapSetup published{
+      course("wren", Protocol::published), {configuration("default"), "mppi"}, {.friction = 0.7}};
   EXPECT_THROW(published.validate(), std::invalid_argument);
 }
 
 TEST(Lap, RejectsInvalidSettings) {
-  const auto environment = wren();
+  const auto environment = course("wren");
   const auto error_of = [&](const std::string& method, const LapSettings& settings,
                             vehicle::Configuration made) {
     try {
@@ -325,7 +305,8 @@ TEST(Lap, RejectsInvalidSettings) {
   lost.localiser.beams = 0;
   says(error_of("mppi", {.hardware = lost}, usual), "beams");
   try {
-    LapSetup{wren(Protocol::published), {usual, "mppi"}, {.hardware = HardwareConditions{}}}.validate();
+    LapSetup{course("wren", Protocol::published), {usual, "mppi"}, {.hardware = HardwareConditions{}}}
+        .validate();
     ADD_FAILURE() << "the published evaluation knows no hardware";
   } catch (const std::invalid_argument& error) {
     says(error.what(), "hardware");

@@ -3,27 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 
-#include "slalom/evaluation/lap.hpp"
+#include "evaluation/courses.hpp"
 
 namespace slalom::evaluation {
 namespace {
 
-namespace fs = std::filesystem;
-
-vehicle::Configuration configuration(const char* name) {
-  auto made =
-      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / (std::string(name) + ".yaml"), {SLALOM_CONFIGS});
-  vehicle::set_option(made, "svg_mppi.samples", "256");
-  return made;
-}
-
-LapResult lap(const char* name, const LapSettings& settings, const char* course = "fox", double timeout = 0) {
-  auto environment = std::make_shared<Environment>(
-      *load_environment(fs::path(SLALOM_COURSES) / course, Protocol::true_physics, {SLALOM_COURSES}));
-  if (timeout > 0) environment->timeout = timeout;
+LapResult lap(const char* name, const LapSettings& settings, const char* place = "fox", double timeout = 0) {
+  const auto whole = course(place);
+  const auto environment = timeout > 0 ? timed_out_after(timeout, whole) : whole;
   return run_lap({environment, {configuration(name)}, settings}, 3);
 }
 
@@ -58,13 +47,11 @@ TEST(LocalisedLap, ItsSensorsAreThoseOfTheWorld) {
 }
 
 TEST(TrackedLap, AnEstimatedPoseIsAsGoodAsTheTrueOne) {
-  auto driver =
-      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / "default_kinematic.yaml", {SLALOM_CONFIGS});
+  auto driver = configuration("default_kinematic", 0);
   driver.planner.predict_others = false;  // so that both laps are the same
   LapSettings settings{.opponents = 4, .range_noise = 0.02, .dropout = 0.02, .tracking = TrackingMode::exact};
   settings.opponent_speed = 0.6;
-  const auto wren =
-      load_environment(fs::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
+  const auto wren = course("wren");
   // In this lap the car hits another one.
   const TrackingRecord exact = run_lap({wren, {driver}, settings}, 110).tracking;
   settings.tracking = TrackingMode::localised;

@@ -5,31 +5,15 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <filesystem>
+#include <numbers>
 
+#include "evaluation/courses.hpp"
 #include "evaluation/overtaking/overtaking_meter.hpp"
 #include "sim/rooms.hpp"
-#include "slalom/evaluation/lap.hpp"
 #include "slalom/evaluation/lap_table.hpp"
 
 namespace slalom::evaluation {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr double half_turn = 3.141592653589793;
-
-/// A car `progress` (m) along a ring of 5.5 m, `left` (m) of it, at a speed along it and one to its left.
-sim::CarState on_ring(double progress, double left, double speed, double sideways = 0) {
-  const double angle = progress / 5.5, radius = 5.5 - left;
-  sim::CarState state;
-  state.x = 10 + radius * std::cos(angle);
-  state.y = 10 + radius * std::sin(angle);
-  state.yaw = angle + 0.5 * half_turn;
-  state.speed = std::hypot(speed, sideways);
-  state.slip = std::atan2(sideways, speed);
-  return state;
-}
 
 /// How a car drives.
 struct Drive {
@@ -44,7 +28,7 @@ struct Drive {
 OvertakingRecord record_of(const Drive& own, const Drive& other, double time, bool timed_out = false) {
   sim::World world({}, testing::ring_track());
   const auto at = [](const Drive& drive, double t) {
-    const double woven = drive.weaving * std::sin(half_turn * t);
+    const double woven = drive.weaving * std::sin(std::numbers::pi * t);
     return on_ring(drive.from + drive.speed * t, drive.left + drive.sideways * t + woven, drive.speed,
                    drive.sideways);
   };
@@ -134,20 +118,9 @@ TEST(Overtaking, AlongsideTheCarThatMovesAcrossIsAtFault) {
   }
 }
 
-std::shared_ptr<const Environment> wren() {
-  return load_environment(fs::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
-}
-
-vehicle::Configuration configuration(const std::string& name) {
-  return vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / (name + ".yaml"), {SLALOM_CONFIGS});
-}
-
 LapSetup setup_with(const LapSettings& settings, const std::string& method = "mppi") {
-  auto driver = configuration("default_kinematic");
-  vehicle::set_option(driver, "mppi.samples", "64");
-  vehicle::set_option(driver, "svg_mppi.samples", "64");
-  static const auto environment = wren();
-  return {environment, {driver, method}, settings};
+  static const auto environment = course("wren");
+  return {environment, {configuration("default_kinematic", 64), method}, settings};
 }
 
 LapResult lap_with(const LapSettings& settings, std::uint64_t seed = 1) {
@@ -224,7 +197,7 @@ TEST(Overtaking, AnOpponentWithAPlannerDrivesAtItsShareOfTheSpeed) {
   const auto way = [](double share, bool fastest) {
     LapSettings settings{.opponents = 1, .opponent_speed = share, .planning_opponents = 1};
     settings.saturating_tyres = fastest;
-    if (fastest) settings.opponent_planner = std::make_shared<Driver>(Driver{configuration("race")});
+    if (fastest) settings.opponent_planner = std::make_shared<Driver>(Driver{configuration("race", 0)});
     return way_of_opponent(settings, 1.5);
   };
   const double all = way(1, false), all_fastest = way(1, true);
@@ -241,8 +214,7 @@ TEST(Overtaking, OpponentsCanHaveAPlannerThatDoesNotDependOnTheCar) {
   LapSettings settings{.opponents = 1, .opponent_speed = 1, .planning_opponents = 1};
   const auto way = [&](const char* method) { return way_of_opponent(settings, 2, method); };
   EXPECT_NE(way("mppi"), way("svg_mppi")) << "that of the car";
-  Driver slow{configuration("default_kinematic"), "mppi"};
-  vehicle::set_option(slow.configuration, "mppi.samples", "64");
+  Driver slow{configuration("default_kinematic", 64), "mppi"};
   slow.configuration.planner.max_speed = 0.5;
   settings.opponent_planner = std::make_shared<Driver>(slow);
   const double way_of_slow = way("mppi");
@@ -299,7 +271,7 @@ TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
                                          ",opponents_met,overtaken,not_overtaken,overtaking_time,"
                                          "opponent_contacts,contacts_caused,side_changes");
   LapRow row;
-  row.minimum_clearance = 0.1;
+  row.min_clearance = 0.1;
   row.overtaking = {5, 3, 1, 4.25, 2, 1, 7};
   const LapRow back = parse_line(csv_line(row, experiments), experiments);
   EXPECT_EQ(back.overtaking.met, 5);

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 
-#include "slalom/evaluation/environment.hpp"
+#include "evaluation/courses.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -23,8 +22,7 @@ class Passability : public ::testing::Test {
     return impassable_obstacles(*environment_->track, boxes);
   }
 
-  std::shared_ptr<const Environment> environment_ = load_environment(
-      std::filesystem::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
+  std::shared_ptr<const Environment> environment_ = course("wren");
 };
 
 TEST_F(Passability, ParkedCarsCanBePassed) {

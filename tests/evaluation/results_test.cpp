@@ -20,7 +20,7 @@ LapRow row(int experiment, int lap, double state, double collision_cost, int con
   r.finished = finished;
   r.timeout = !finished;
   r.success = finished && contacts == 0;
-  r.lap_time = finished ? 10 + lap : 50;
+  r.time = finished ? 10 + lap : 50;
   r.mean_calculation_time = 1 + lap;
   r.max_calculation_time = 5 + lap;
   return r;

@@ -46,13 +46,6 @@ TEST(LocalCostMap, MarksEveryPositionWhereTheBodyCoversAPoint) {
   }
 }
 
-TEST(LocalCostMap, InflationIsSymmetric) {
-  LocalCostMap map;
-  const Point point{3.013, 0.0};
-  map.add_points({&point, 1});
-  for (double y = 0.0125; y < 1; y += 0.025) EXPECT_EQ(map.at(3, y), map.at(3, -y)) << y;
-}
-
 TEST(LocalCostMap, PublishedInflationIsOneCellShortToOneSide) {
   LocalCostMap map(published_cost_map());
   const Point point{3.025, 0.025};  // the centre of a cell

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <thread>
 
 #include "sim/rooms.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
@@ -98,101 +97,77 @@ TEST(WorldProperty, ACopyMovesIdentically) {
   EXPECT_TRUE(same_bits(world, copy));
 }
 
-TEST(WorldProperty, AnotherThreadMovesIdentically) {
-  const auto track = testing::ring_track();
-  const auto run = [&] {
-    World world({}, track);
-    world.reset(9, two_cars, parked);
-    for (int k = 0; k < 400; ++k) world.step(wander(k));
-    return world;
+/// A car of each model.
+class EveryModel : public ::testing::TestWithParam<Model> {
+ protected:
+  EveryModel() { options_.dynamics.model = GetParam(); }
+  PlantOptions options_;
+};
+INSTANTIATE_TEST_SUITE_P(Models, EveryModel,
+                         ::testing::Values(Model::kinematic, Model::single_track, Model::saturating));
+
+TEST_P(EveryModel, MirroredInputsGiveMirroredMotion) {
+  Plant left({}, options_, 0.01), right({}, options_, 0.01);
+  left.reset({.yaw = 0.4});
+  right.reset({.yaw = -0.4});
+  for (int k = 0; k < 400; ++k) {
+    const double steer = 0.3 * std::sin(0.05 * k), speed = 3 + 2 * std::sin(0.02 * k);
+    left.step({steer, speed});
+    right.step({-steer, speed});
+    ASSERT_NEAR(left.state().x, right.state().x, 1e-9);
+    ASSERT_NEAR(left.state().y, -right.state().y, 1e-9);
+    ASSERT_NEAR(left.state().slip, -right.state().slip, 1e-9);
+  }
+  EXPECT_GT(left.state().speed, 1);
+}
+
+TEST_P(EveryModel, MotionDoesNotDependOnTheStartPose) {
+  Plant a({}, options_, 0.01), b({}, options_, 0.01);
+  const maps::Pose moved{3, -4, 1.1};
+  a.reset({});
+  b.reset({.x = moved.x, .y = moved.y, .yaw = moved.yaw});
+  for (int k = 0; k < 300; ++k) {
+    const Command command{0.25 * std::sin(0.03 * k), 4};
+    a.step(command);
+    b.step(command);
+  }
+  const maps::Point expected = maps::transform(moved, {a.state().x, a.state().y});
+  EXPECT_NEAR(b.state().x, expected.x, 1e-9);
+  EXPECT_NEAR(b.state().y, expected.y, 1e-9);
+}
+
+TEST_P(EveryModel, ACoastingCarGainsNoEnergy) {
+  options_.coast = Coast::roll;
+  Plant plant({}, options_, 0.01);
+  const CarParameters car;
+  plant.reset({.steer = 0.2, .speed = 6});
+  const auto energy = [&] {
+    const CarState& s = plant.state();
+    return 0.5 * car.mass * s.speed * s.speed + 0.5 * car.inertia * s.yaw_rate * s.yaw_rate;
   };
-  const World here = run();
-  std::optional<World> first, second;
-  std::thread a([&] { first = run(); }), b([&] { second = run(); });
-  a.join();
-  b.join();
-  EXPECT_TRUE(same_bits(here, *first));
-  EXPECT_TRUE(same_bits(here, *second));
-}
-
-TEST(WorldProperty, MirroredInputsGiveMirroredMotion) {
-  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
-    PlantOptions options;
-    options.dynamics.model = model;
-    Plant left({}, options, 0.01), right({}, options, 0.01);
-    left.reset({.yaw = 0.4});
-    right.reset({.yaw = -0.4});
-    for (int k = 0; k < 400; ++k) {
-      const double steer = 0.3 * std::sin(0.05 * k), speed = 3 + 2 * std::sin(0.02 * k);
-      left.step({steer, speed});
-      right.step({-steer, speed});
-      ASSERT_NEAR(left.state().x, right.state().x, 1e-9);
-      ASSERT_NEAR(left.state().y, -right.state().y, 1e-9);
-      ASSERT_NEAR(left.state().slip, -right.state().slip, 1e-9);
+  // The linear model has no drag in turns: its speed stays; the yaw rate has to build up first.
+  double last = 0.5 * car.mass * 36;
+  for (int k = 0; k < 300; ++k) {
+    plant.coast();
+    ASSERT_LE(plant.state().speed, 6 + 1e-9);
+    if (GetParam() == Model::saturating) {
+      ASSERT_LE(energy(), last + 1e-3);
+      last = energy();
     }
-    EXPECT_GT(left.state().speed, 1);
+  }
+  if (GetParam() == Model::saturating) {
+    EXPECT_LT(plant.state().speed, 5.9);
   }
 }
 
-TEST(WorldProperty, MotionDoesNotDependOnTheStartPose) {
-  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
-    PlantOptions options;
-    options.dynamics.model = model;
-    Plant a({}, options, 0.01), b({}, options, 0.01);
-    const maps::Pose moved{3, -4, 1.1};
-    a.reset({});
-    b.reset({.x = moved.x, .y = moved.y, .yaw = moved.yaw});
-    for (int k = 0; k < 300; ++k) {
-      const Command command{0.25 * std::sin(0.03 * k), 4};
-      a.step(command);
-      b.step(command);
-    }
-    const maps::Point expected = maps::transform(moved, {a.state().x, a.state().y});
-    EXPECT_NEAR(b.state().x, expected.x, 1e-9);
-    EXPECT_NEAR(b.state().y, expected.y, 1e-9);
-  }
-}
-
-TEST(WorldProperty, ACoastingCarGainsNoEnergy) {
-  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
-    PlantOptions options;
-    options.dynamics.model = model;
-    options.coast = Coast::roll;
-    Plant plant({}, options, 0.01);
-    const CarParameters car;
-    plant.reset({.steer = 0.2, .speed = 6});
-    const auto energy = [&] {
-      const CarState& s = plant.state();
-      return 0.5 * car.mass * s.speed * s.speed + 0.5 * car.inertia * s.yaw_rate * s.yaw_rate;
-    };
-    // The linear model has no drag in turns: its speed stays; the yaw rate has to build up first.
-    double last = 0.5 * car.mass * 36;
-    for (int k = 0; k < 300; ++k) {
-      plant.coast();
-      ASSERT_LE(plant.state().speed, 6 + 1e-9);
-      if (model == Model::saturating) {
-        ASSERT_LE(energy(), last + 1e-3);
-        last = energy();
-      }
-    }
-    if (model == Model::saturating) {
-      EXPECT_LT(plant.state().speed, 5.9);
-    }
-  }
-}
-
-TEST(WorldProperty, ReversingIsStable) {
-  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
-    PlantOptions options;
-    options.dynamics.model = model;
-    Plant plant({}, options, 0.01);
-    plant.reset({});
-    for (int k = 0; k < 500; ++k) plant.step({0.1, -2});
-    EXPECT_NEAR(plant.state().speed, -2, 0.1);
-    // A circle: yaw rate about v tan(steer) / L, turning right while backing with the wheels to the left.
-    EXPECT_NEAR(plant.state().yaw_rate, -2 * std::tan(0.1) / 0.3302, 0.15);
-    EXPECT_LT(std::abs(plant.state().slip), 0.15);
-  }
+TEST_P(EveryModel, ReversingIsStable) {
+  Plant plant({}, options_, 0.01);
+  plant.reset({});
+  for (int k = 0; k < 500; ++k) plant.step({0.1, -2});
+  EXPECT_NEAR(plant.state().speed, -2, 0.1);
+  // A circle: yaw rate about v tan(steer) / L, turning right while backing with the wheels to the left.
+  EXPECT_NEAR(plant.state().yaw_rate, -2 * std::tan(0.1) / 0.3302, 0.15);
+  EXPECT_LT(std::abs(plant.state().slip), 0.15);
 }
 
 TEST(WorldProperty, GripCanBeExceeded) {

@@ -106,7 +106,7 @@ class DriveJob {
         "lap %zu: %s, %.2f s, %d steps, %d collision%s, cost %.3f (state %.3f, collision %.3f), mean "
         "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
         laps_.size(), end_name(lap), lap.time, lap.steps, lap.collisions, lap.collisions == 1 ? "" : "s",
-        lap.mean_sequence_cost, lap.state_cost, lap.collision_cost, lap.mean_speed,
+        lap.mean_sequence_cost(), lap.state_cost, lap.collision_cost, lap.mean_speed,
         times.empty() ? 0.0 : evaluation::percentile(times, 0.5),
         times.empty() ? 0.0 : evaluation::percentile(times, 0.99));
     if (!lap.estimation.slip_error.empty()) say_estimates(lap.estimation);
@@ -131,7 +131,7 @@ class DriveJob {
     double cost = 0;
     for (const auto& lap : laps_) {
       contacts += lap.collisions;
-      cost += lap.mean_sequence_cost;
+      cost += lap.mean_sequence_cost();
     }
     const double chances = static_cast<double>(scenario_.lap.obstacles) * static_cast<double>(laps_.size());
     return {{"laps_finished", finished()},

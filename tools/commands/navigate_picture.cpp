@@ -33,8 +33,7 @@ std::vector<maps::Point> circle(const maps::Point& middle, double radius) {
 /// Draws robot and people of a drive, every moment_interval.
 void draw_moments(MapPicture& picture, const RoomDrive& drive, const RoomScenario& scenario,
                   const Colour& colour) {
-  const auto periods =
-      static_cast<std::size_t>(std::lround(moment_interval / evaluation::RoomConditions{}.period));
+  const auto periods = static_cast<std::size_t>(std::lround(moment_interval / evaluation::room_period));
   for (std::size_t k = 0; k < drive.people.size(); ++k)
     picture.line(drive.people[k], person_rim, 2, false, true);
   if (drive.people.empty()) return;

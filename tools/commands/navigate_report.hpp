@@ -12,7 +12,7 @@ namespace slalom::tools {
 struct RoomSeries {
   const evaluation::RoomScenario* scenario;   ///< not null
   std::string driver;                         ///< as the tables call it
-  std::vector<evaluation::RoomDrive> drives;  ///< under the default conditions, in the order of the seeds
+  std::vector<evaluation::RoomDrive> drives;  ///< in the order of the seeds
 };
 
 /// Whether a drive ended with an overlap, be it that somebody walked into the robot.

@@ -77,7 +77,7 @@ int replay_lap(const ReplayArguments& arguments) {
   });
   std::printf("%s, %s, lap %d, seed %llu: %s, %.2f s, %d collisions, cost %.3f\n", experiment.label().c_str(),
               experiment.scenario.c_str(), arguments.lap, static_cast<unsigned long long>(seed),
-              end_name(lap), lap.time, lap.collisions, lap.mean_sequence_cost);
+              end_name(lap), lap.time, lap.collisions, lap.mean_sequence_cost());
   if (recording) {
     recording->end_lap(lap, arguments.lap);
     recording->close();

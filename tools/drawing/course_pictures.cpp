@@ -77,7 +77,7 @@ void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup,
       "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collision%s \xC2\xB7 cost %.2f \xC2\xB7 %zu "
       "obstacles, seed %llu",
       end_name(lap), lap.time, lap.mean_speed, lap.collisions, lap.collisions == 1 ? "" : "s",
-      lap.mean_sequence_cost, lap.obstacles.size(), static_cast<unsigned long long>(lap.seed));
+      lap.mean_sequence_cost(), lap.obstacles.size(), static_cast<unsigned long long>(lap.seed));
   picture.legend(title, facts, slowest, fastest);
   picture.save(file);
 }

@@ -227,12 +227,10 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
   bool is_whole = false;
   {
     ProgressLine progress(stderr);
-    EvaluationQueue work(
-        evaluated.evaluation, store, [&](const EvaluationProgress& p) { progress.show(p); },
-        interrupt.raised());
+    const auto show = [&](const EvaluationProgress& p) { progress.show(p); };
     const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    drive_laps(evaluated.evaluation, work, arguments.jobs > 0 ? arguments.jobs : cores, interrupt.raised());
-    is_whole = work.finish();
+    const int jobs = arguments.jobs > 0 ? arguments.jobs : cores;
+    is_whole = drive_laps(evaluated.evaluation, store, jobs, show, interrupt.raised());
   }
   if (!is_whole) {
     std::fprintf(stderr, "interrupted after %zu laps; --resume continues\n", store.rows().size());

@@ -60,7 +60,7 @@ std::string evaluation_message(const StoredEvaluation& stored, const std::string
                     {"lap", row.lap},
                     {"seed", std::to_string(row.seed)},
                     {"finished", row.finished},
-                    {"time", row.lap_time},
+                    {"time", row.time},
                     {"contacts", row.collisions},
                     {"points", points(row.contact_points)}});
   return Json{{"type", "evaluation"},

@@ -104,7 +104,7 @@ class GridRaceJob {
     settings_["laps"] = arguments.laps;
     settings_["races"] = arguments.races;
     settings_["cars"] = Json::array();
-    race_ = {scenario_.environment, {}, scenario_.lap, {.laps = arguments.laps}};
+    race_ = {scenario_.environment, {}, scenario_.lap, arguments.laps};
     for (std::size_t i = 0; i < drivers_.size(); ++i) {
       const RaceDriver& driver = drivers_[i];
       race_.drivers.push_back({scenario_.configuration, driver.method});

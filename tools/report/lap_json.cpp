@@ -92,7 +92,7 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
             {"steps", lap.steps},
             {"state_cost", lap.state_cost},
             {"collision_cost", lap.collision_cost},
-            {"mean_sequence_cost", lap.mean_sequence_cost},
+            {"mean_sequence_cost", lap.mean_sequence_cost()},
             {"input_error", lap.input_error},
             {"mean_speed", lap.mean_speed},
             {"mean_path_distance", lap.mean_path_distance},

@@ -39,7 +39,7 @@ py::dict lap_dict(const evaluation::LapResult& lap) {
   return py::dict("seed"_a = lap.seed, "finished"_a = lap.finished, "timeout"_a = lap.timeout,
                   "contacts"_a = lap.collisions, "time"_a = lap.time, "steps"_a = lap.steps,
                   "state_cost"_a = lap.state_cost, "collision_cost"_a = lap.collision_cost,
-                  "mean_sequence_cost"_a = lap.mean_sequence_cost, "mean_speed"_a = lap.mean_speed,
+                  "mean_sequence_cost"_a = lap.mean_sequence_cost(), "mean_speed"_a = lap.mean_speed,
                   "min_clearance"_a = lap.min_clearance,
                   "solve_ms"_a = py::array_t<float>(solves, lap.solve_ms.data()));
 }

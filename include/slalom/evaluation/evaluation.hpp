@@ -1,14 +1,10 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,19 +44,6 @@ struct EvaluationProgress {
   const LapRow* last = nullptr;  ///< the lap that ended last, valid during the callback
 };
 
-/// A lap to be driven.
-struct LapTask {
-  int experiment = 0;  ///< index
-  int lap = 0;         ///< from 0
-};
-
-class EvaluationQueue;
-
-/// Drives laps on `jobs` threads until `queue` is empty or `cancel` is true. The results do not depend on
-/// which thread drives which lap. Returns how many threads worked: fewer if the system could not start all.
-int drive_laps(const Evaluation& evaluation, EvaluationQueue& queue, int jobs,
-               const std::atomic<bool>& cancel);
-
 /// The settings of an evaluation, as JSON text, with their checksum.
 std::string with_checksum(const std::string& settings);
 /// Throws std::invalid_argument unless stored settings are a JSON object with the checksum of the settings.
@@ -99,33 +82,12 @@ class LapStore {
   std::ofstream journal_;
 };
 
-/// The laps that a store does not have yet, in order. Several threads may call its functions.
-class EvaluationQueue {
- public:
-  /// `on_progress` is called after every lap; `cancel` is read before each lap is handed out. All arguments
-  /// must outlive the queue.
-  EvaluationQueue(const Evaluation& evaluation, LapStore& store,
-                  std::function<void(const EvaluationProgress&)> on_progress,
-                  const std::atomic<bool>& cancel);
-
-  std::optional<LapTask> next();        ///< the next lap; none when all have been handed out
-  void keep(const LapRow& row);         ///< a lap was driven
-  void fail(std::exception_ptr error);  ///< a lap could not be driven
-
-  /// To be called when no thread drives any more. Rethrows the first error; otherwise completes the store and
-  /// returns true if all laps are there.
-  bool finish();
-
- private:
-  LapStore& store_;
-  std::function<void(const EvaluationProgress&)> on_progress_;
-  const std::atomic<bool>& cancel_;
-  std::vector<LapTask> tasks_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::mutex mutex_;
-  std::size_t next_ = 0;
-  EvaluationProgress progress_;
-  std::exception_ptr error_;
-};
+/// Drives the laps that the store does not have yet, in up to `jobs` threads, and completes it. Calls
+/// `on_progress` after each lap, one call at a time. Returns whether all laps are there: false if `cancel`
+/// ended the evaluation. Throws what the first lap threw that could not be driven or stored. The results do
+/// not depend on which thread drives which lap.
+bool drive_laps(const Evaluation& evaluation, LapStore& store, int jobs,
+                const std::function<void(const EvaluationProgress&)>& on_progress,
+                const std::atomic<bool>& cancel);
 
 }  // namespace slalom::evaluation

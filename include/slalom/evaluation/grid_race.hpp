@@ -18,14 +18,6 @@ namespace slalom::evaluation {
 /// Most cars of a race.
 inline constexpr int most_race_cars = 4;
 
-/// The rules of a race that can be chosen.
-struct GridRaceOptions {
-  int laps = 5;                ///< laps of each car, 1 ... 1000
-  double place_spacing = 1;    ///< m along the course from one place of the grid to the next, 0.7 ... 10
-  double place_offset = 0.25;  ///< m from the course line, to the left and to the right in turn, 0 ... 2;
-                               ///< less where a wall is too near
-};
-
 /// How a race ended for a car.
 enum class CarEnd {
   finished,   ///< it drove all laps
@@ -105,21 +97,22 @@ using GridRaceCallback = std::function<void(const GridRaceStep&)>;
 /// Races of several cars on a closed course, each with a planner, a LiDAR that sees the others, and, with
 /// LapSettings::tracking, a tracker and predictor of its own. All random numbers follow from the seed.
 ///
-/// The cars stand on a grid behind the start of the course, to the left and to the right of its line in turn,
-/// and start together. A lap ends at the first place's arc length, for all cars. A car that has driven its
-/// laps, and one that hits a wall, leaves the track at once. After a contact both cars go on; the one that
-/// was driven into keeps its motion. The race ends when no car is left on the track, or after the longest
-/// timeout of a lap of its cars (LapSetup::timeout) times the laps. Standings: cars that finished, by time,
-/// then the others, by how far they came.
+/// The cars stand on a grid behind the start of the course, 1 m apart along its line and 0.25 m to the left
+/// and to the right of it in turn, less where a wall is near, and start together. A lap ends at the first
+/// place's arc length, for all cars. A car that has driven its laps, and one that hits a wall, leaves the
+/// track at once. After a contact both cars go on; the one that was driven into keeps its motion. The race
+/// ends when no car is left on the track, or after the longest timeout of a lap of its cars
+/// (LapSetup::timeout) times the laps. Standings: cars that finished, by time, then the others, by how far
+/// they came.
 struct GridRace {
   std::shared_ptr<const Environment> environment;  ///< course of the race
   std::vector<Driver> drivers;                     ///< drivers of the entries, two to `most_race_cars`
   LapSettings settings{};                          ///< without obstacles, opponents or further rounds
-  GridRaceOptions options{};                       ///< rules of the race
+  int laps = 5;                                    ///< laps of each car, [1, 1000]
 
   /// Throws std::invalid_argument as LapSetup::validate does for each driver, and on a course that is not
   /// closed, another protocol than Protocol::true_physics, control periods that differ, and settings and
-  /// options out of range.
+  /// laps out of range.
   void validate() const;
 
   /// Drives a race. Entry i starts from place (i + `rotation`) of the grid, modulo the number of cars. Ends
@@ -136,6 +129,10 @@ struct GridRace {
   double lap_length() const { return lap(0).length(); }                       ///< m
   double control_period() const noexcept { return lap(0).control_period(); }  ///< s
 };
+
+/// The indices of cars in the order of the standings: those that finished by time, then the others by their
+/// progress. The grid decides between equals.
+std::vector<int> standings_of(std::span<const CarResult> cars);
 
 /// Contacts over the distance that was driven.
 struct ContactRate {

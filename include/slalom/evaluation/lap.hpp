@@ -66,38 +66,44 @@ struct EstimationRecord {
   double informed_time = -1;          ///< s, when the confidence first reached 0.5; -1 if never
 };
 
-/// The figures of a lap. Means are over its control steps.
-struct LapResult {
-  std::uint64_t seed = 0;         ///< seed of the random numbers
-  bool finished = false;          ///< whether the car reached the finish in time
-  bool timeout = false;           ///< stopped after the timeout of the lap
-  bool cancelled = false;         ///< stopped by the caller
-  int collisions = 0;             ///< collisions as the protocol counts them
-  int collided_bodies = 0;        ///< number of different bodies hit, all walls as one
-  bool wall = false;              ///< whether the car hit a wall
-  double time = 0;                ///< s, of the lap; of an unfinished lap until it ended
-  int steps = 0;                  ///< control steps
-  double state_cost = 0;          ///< mean, of distance and yaw error
-  double collision_cost = 0;      ///< mean
-  double mean_sequence_cost = 0;  ///< MS = state_cost + collision_cost
-  /// MS predicted with the model of the paper's program; with `additional_costs`.
-  double paper_model_cost = 0;
-  double driven_cost = 0;         ///< MS of the states that the car reached; with `additional_costs`
-  double input_error = 0;         ///< mean of the sum of |steering| over the control sequence, rad
-  double mean_speed = 0;          ///< m/s
+/// The figures of a lap that a results table has, too. Means are over its control steps.
+struct LapFigures {
+  std::uint64_t seed = 0;     ///< seed of the random numbers
+  bool finished = false;      ///< whether the car reached the finish in time
+  bool timeout = false;       ///< stopped after the timeout of the lap
+  int collisions = 0;         ///< collisions as the protocol counts them
+  int collided_bodies = 0;    ///< number of different bodies hit, all walls as one
+  bool wall = false;          ///< whether the car hit a wall
+  int impassable = 0;         ///< number of obstacles in impassable_obstacles
+  double time = 0;            ///< s, of the lap; of an unfinished lap until it ended
+  int steps = 0;              ///< control steps
+  double state_cost = 0;      ///< mean, of distance and yaw error
+  double collision_cost = 0;  ///< mean
+  double paper_model_cost =
+      0;                   ///< MS predicted with the model of the paper's program; with `additional_costs`
+  double driven_cost = 0;  ///< MS of the states that the car reached; with `additional_costs`
+  double input_error = 0;  ///< mean of the sum of |steering| over the control sequence, rad
+  double mean_speed = 0;   ///< m/s
   double mean_path_distance = 0;  ///< m, of the rear axle
   double max_path_distance = 0;   ///< m
   /// Least clearance over the control steps, m: from the corners of the car to a wall (0 in a wall, with the
   /// error of Track::distance_to_wall) and from its outline to other bodies (negative in a collision).
   /// Infinite if there are neither walls nor bodies.
   double min_clearance = 0;
-  double mean_variance = 0;                 ///< rad^2, variance of the sampled steering, mean over solves
-  double mean_effective_samples = 0;        ///< mean of the solver's effective sample size over solves
+  double mean_variance = 0;           ///< rad^2, variance of the sampled steering, mean over solves
+  double mean_effective_samples = 0;  ///< mean of the solver's effective sample size over solves
+
+  /// MS = state_cost + collision_cost
+  double mean_sequence_cost() const { return state_cost + collision_cost; }
+};
+
+/// A lap that has ended.
+struct LapResult : LapFigures {
+  bool cancelled = false;                   ///< stopped by the caller
   std::array<int, 7> planner_status{};      ///< control steps by vehicle::PlannerStatus
   int corrections = 0;                      ///< values that the planner's final check changed
   std::vector<Collision> first_collisions;  ///< one for each body hit and one for walls, in order of time
   std::vector<maps::Pose> obstacles;        ///< the parked cars, centres of gravity
-  int impassable = 0;                       ///< number of obstacles in impassable_obstacles
   std::vector<float> solve_ms;              ///< wall-clock time of each solve
   std::vector<float> tick_ms;               ///< wall-clock time of each planner update
   LocalisationRecord localisation;          ///< figures of the localiser, with LapSettings::hardware

@@ -34,17 +34,6 @@ struct Experiment {
   bool has_planning_opponents() const;
 };
 
-/// The figures of TrackingRecord for a lap with `world.tracking`.
-struct TrackingFigures {
-  int in_view = 0;        ///< bodies in view, summed over control steps
-  int detected = 0;       ///< detected ones of these
-  int long_in_view = 0;   ///< bodies that have been in view for 0.2 s without a break
-  int long_detected = 0;  ///< detected ones of these
-  int false_objects = 0;  ///< objects that were reported as seen where no body is
-  double position_error = 0, speed_error = 0, yaw_error = 0;  ///< m, m/s, rad
-  double update_p99 = 0;                                      ///< ms, wall-clock; column `wall_tracking_p99`
-};
-
 /// The figures of OvertakingRecord for a lap with `world.opponents`.
 struct OvertakingFigures {
   int met = 0;            ///< encounters; column `opponents_met`
@@ -58,27 +47,11 @@ struct OvertakingFigures {
 
 /// A row of `laps.csv`: one lap of one experiment. Columns whose names contain `calculation_time`, or begin
 /// with `solve_` or `wall_`, hold wall-clock times (ms, but `wall_time` s); all others repeat exactly.
-struct LapRow {
-  int experiment = 0;      ///< index into the experiments of the evaluation
-  int lap = 0;             ///< from 0
-  std::uint64_t seed = 0;  ///< seed of the random numbers
-  bool success = false;    ///< finished without a collision
-  int collisions = 0;      ///< as the protocol counts them; column `collision`
-  bool timeout = false;    ///< stopped after the timeout of the lap
-  bool finished = false;   ///< whether the lap was finished in time
-  double state_cost = 0, collision_cost = 0, input_error = 0;  ///< means over the control steps
+struct LapRow : LapFigures {
+  int experiment = 0;    ///< index into the experiments of the evaluation
+  int lap = 0;           ///< from 0
+  bool success = false;  ///< finished without a collision
   double mean_calculation_time = 0, max_calculation_time = 0, min_calculation_time = 0;  ///< ms, of a solve
-  double lap_time = 0;           ///< s; of a lap that did not finish, until it ended
-  int steps = 0;                 ///< control steps
-  int collided_bodies = 0;       ///< different bodies hit, all walls as one; column `contacts`
-  bool wall = false;             ///< whether the car hit a wall
-  int impassable = 0;            ///< number of obstacles in impassable_obstacles
-  double minimum_clearance = 0;  ///< m, LapResult::min_clearance
-  double mean_speed = 0;         ///< m/s
-  double mean_path_distance = 0, max_path_distance = 0;  ///< m
-  double mean_variance = 0, mean_effective_samples = 0;  ///< means over the solves of the solver
-  double ms_paper_model = 0;   ///< LapResult::paper_model_cost; column `ms_published_model`
-  double ms_driven = 0;        ///< LapResult::driven_cost
   int blocked_steps = 0;       ///< control steps in which every plan collided
   int degenerate_steps = 0;    ///< control steps without usable weights
   std::string contact_points;  ///< "x:y" in m, the car's position at its first collision with each body
@@ -86,9 +59,6 @@ struct LapRow {
   double wall_time = 0;                 ///< s, to compute the lap
   TrackingFigures tracking;             ///< columns only in evaluations with `world.tracking`
   OvertakingFigures overtaking;         ///< columns only in evaluations with `world.opponents`
-
-  /// MS = state_cost + collision_cost
-  double mean_sequence_cost() const { return state_cost + collision_cost; }
 };
 
 /// The row of a lap that has ended.

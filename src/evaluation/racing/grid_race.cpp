@@ -3,28 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include "evaluation/driver/car_driver.hpp"
 #include "evaluation/racing/race_watch.hpp"
-#include "evaluation/racing/starting_grid.hpp"
+#include "slalom/core/options.hpp"
 
 namespace slalom::evaluation {
 namespace {
 
 constexpr double not_finished = std::numeric_limits<double>::quiet_NaN();
+constexpr double place_spacing = 1;    // m, along the course from one place of the grid to the next
+constexpr double place_offset = 0.25;  // m, from the course line
+constexpr double wall_room = 0.1;      // m, around a car on the grid
+constexpr double offset_step = 0.05, back_step = 0.25;  // m, from a place that has no room to the next
 constexpr double pushed_time = 1;  // s; a contact this long before a wall is reported with it
 
 void require_of_race(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument(message);
-}
-
-void check_in(const char* option, double value, double least, double most) {
-  require_of_race(value >= least && value <= most, std::string(option) + ": " + std::to_string(value) +
-                                                       " must be in [" + std::to_string(least) + ", " +
-                                                       std::to_string(most) + "]");
 }
 
 /// m, the arc length of the finish line.
@@ -46,7 +47,7 @@ class Referee {
 
   /// Describes the race before a control period.
   GridRaceStep step_of(const sim::World& world) const;
-  int entry_of(std::size_t car) const noexcept { return entry_of_[car]; }
+  int entry_of(int car) const noexcept { return entry_of_[static_cast<std::size_t>(car)]; }
   int driving() const noexcept { return driving_; }  ///< cars on the track
   /// Ends the race for the cars on the track.
   GridRaceResult result(sim::World& world, bool cancelled);
@@ -61,6 +62,10 @@ class Referee {
   };
   void moved(sim::World& world, std::size_t car);
   void end(sim::World& world, std::size_t car, CarEnd how, double time);
+  CarResult& of(int car) { return racers_[static_cast<std::size_t>(car)].result; }
+  void assign_contacts();
+  void assign_overtakes();
+  void rank();
 
   int laps_;
   double lap_length_;  ///< m
@@ -72,12 +77,13 @@ class Referee {
 };
 
 Referee::Referee(const GridRace& race, const sim::World& world, int rotation)
-    : laps_(race.options.laps),
+    : laps_(race.laps),
       lap_length_(race.lap_length()),
       entry_of_(world.cars()),
       racers_(world.cars()),
       watch_(world, line_of(race)),
       driving_(static_cast<int>(world.cars())) {
+  result_.cars.resize(racers_.size());
   for (int entry = 0; entry < driving_; ++entry) {
     const auto car = static_cast<std::size_t>(((entry + rotation) % driving_ + driving_) % driving_);
     entry_of_[car] = entry;
@@ -146,27 +152,27 @@ void Referee::end(sim::World& world, std::size_t car, CarEnd how, double time) {
   --driving_;
 }
 
-GridRaceResult Referee::result(sim::World& world, bool cancelled) {
-  result_.cancelled = cancelled;
-  result_.time = world.time();
-  for (std::size_t car = 0; car < racers_.size(); ++car)
-    if (world.on_track(car)) end(world, car, cancelled ? CarEnd::cancelled : CarEnd::timeout, world.time());
+/// Counts the contacts of each car, then numbers their cars by entries.
+void Referee::assign_contacts() {
   result_.contacts = watch_.contacts();
   for (CarContact& contact : result_.contacts) {
-    for (const int car : contact.cars) ++racers_[static_cast<std::size_t>(car)].result.contacts;
-    ++racers_[static_cast<std::size_t>(contact.at_fault)].result.caused;
-    for (int* car : {&contact.cars[0], &contact.cars[1], &contact.at_fault})
-      *car = entry_of_[static_cast<std::size_t>(*car)];
+    for (const int car : contact.cars) ++of(car).contacts;
+    ++of(contact.at_fault).caused;
+    for (int* car : {&contact.cars[0], &contact.cars[1], &contact.at_fault}) *car = entry_of(*car);
   }
+}
+
+/// Counts the overtakes of each car, then numbers their cars by entries.
+void Referee::assign_overtakes() {
   result_.overtakes = watch_.overtakes();
   for (Overtake& overtake : result_.overtakes) {
-    ++racers_[static_cast<std::size_t>(overtake.car)].result.overtakes;
-    ++racers_[static_cast<std::size_t>(overtake.overtaken)].result.overtaken;
-    for (int* car : {&overtake.car, &overtake.overtaken}) *car = entry_of_[static_cast<std::size_t>(*car)];
+    ++of(overtake.car).overtakes;
+    ++of(overtake.overtaken).overtaken;
+    overtake = {overtake.time, entry_of(overtake.car), entry_of(overtake.overtaken)};
   }
-  result_.cars.resize(racers_.size());
-  for (std::size_t car = 0; car < racers_.size(); ++car)
-    result_.cars[static_cast<std::size_t>(entry_of_[car])] = std::move(racers_[car].result);
+}
+
+void Referee::rank() {
   result_.standings = standings_of(result_.cars);
   const CarResult& winner = result_.cars[static_cast<std::size_t>(result_.standings[0])];
   for (std::size_t place = 0; place < result_.standings.size(); ++place) {
@@ -174,6 +180,18 @@ GridRaceResult Referee::result(sim::World& world, bool cancelled) {
     car.place = static_cast<int>(place);
     car.gap = car.end == CarEnd::finished ? car.time - winner.time : not_finished;
   }
+}
+
+GridRaceResult Referee::result(sim::World& world, bool cancelled) {
+  for (std::size_t car = 0; car < racers_.size(); ++car)
+    if (world.on_track(car)) end(world, car, cancelled ? CarEnd::cancelled : CarEnd::timeout, world.time());
+  assign_contacts();
+  assign_overtakes();
+  for (std::size_t car = 0; car < racers_.size(); ++car)
+    result_.cars[static_cast<std::size_t>(entry_of_[car])] = std::move(racers_[car].result);
+  rank();
+  result_.cancelled = cancelled;
+  result_.time = world.time();
   return std::move(result_);
 }
 
@@ -198,9 +216,7 @@ void GridRace::validate() const {
   require_of_race(
       drivers.size() >= 2 && drivers.size() <= static_cast<std::size_t>(most_race_cars),
       "cars: " + std::to_string(drivers.size()) + " must be in [2, " + std::to_string(most_race_cars) + "]");
-  check_in("laps", options.laps, 1, 1000);
-  check_in("place_spacing", options.place_spacing, 0.7, 10);
-  check_in("place_offset", options.place_offset, 0, 2);
+  slalom::detail::check("race", {"laps", "", "laps of each car", 1, 1000}, laps);
   for (std::size_t entry = 0; entry < drivers.size(); ++entry) lap(entry).validate();
   require_of_race(environment->protocol == Protocol::true_physics,
                   "evaluation: must be true in a race of several cars");
@@ -216,15 +232,52 @@ void GridRace::validate() const {
 }
 
 std::vector<maps::Pose> GridRace::grid() const {
-  return starting_grid(*environment, line_of(*this), static_cast<int>(drivers.size()),
-                       world_options(lap(0)).car, options);
+  const sim::CarParameters car = world_options(lap(0)).car;
+  const sim::LapPath& path = *environment->track->lap_path();
+  const double line = line_of(*this);
+  const auto pose_at = [&](double arc, double left) -> std::optional<maps::Pose> {
+    maps::Pose pose = path.at(arc);
+    pose.x -= left * std::sin(pose.yaw);
+    pose.y += left * std::cos(pose.yaw);
+    if (environment->track->collides_with_wall(
+            {.pose = pose, .length = car.length + 2 * wall_room, .width = car.width + 2 * wall_room}))
+      return std::nullopt;
+    return pose;
+  };
+  std::vector<maps::Pose> grid;
+  double arc = line;
+  while (grid.size() < drivers.size()) {
+    std::optional<maps::Pose> pose;
+    const double side = grid.size() % 2 == 0 ? 1 : -1;
+    for (double offset = place_offset; !pose && offset > 0; offset -= offset_step)
+      pose = pose_at(arc, side * offset);
+    if (!pose) pose = pose_at(arc, 0);
+    if (pose) grid.push_back(*pose);
+    arc -= pose ? place_spacing : back_step;
+    if (line - arc > 0.25 * path.length() && grid.size() < drivers.size())
+      throw std::runtime_error("course " + environment->course.name + ": no room for a grid of " +
+                               std::to_string(drivers.size()) + " cars");
+  }
+  return grid;
 }
 
 double GridRace::timeout() const {
   double longest = 0;
   for (std::size_t entry = 0; entry < drivers.size(); ++entry)
-    longest = std::max(longest, options.laps * lap(entry).timeout());
+    longest = std::max(longest, laps * lap(entry).timeout());
   return longest;
+}
+
+std::vector<int> standings_of(std::span<const CarResult> cars) {
+  std::vector<int> order(cars.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int i) {
+    const CarResult& car = cars[static_cast<std::size_t>(i)];
+    const bool finished = car.end == CarEnd::finished;
+    return std::tuple(finished ? 0 : 1, finished ? car.time : -car.progress, car.grid_place);
+  };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  return order;
 }
 
 GridRaceResult GridRace::run(std::uint64_t seed, int rotation, const GridRaceCallback& on_step,
@@ -235,7 +288,7 @@ GridRaceResult GridRace::run(std::uint64_t seed, int rotation, const GridRaceCal
   drive.world.reset(seed, grid());
   Referee referee(*this, drive.world, rotation);
   for (std::size_t car = 0; car < drivers.size(); ++car) {
-    const int entry = referee.entry_of(car);
+    const int entry = referee.entry_of(static_cast<int>(car));
     drive.drivers.emplace_back(car, PlanningDriver(lap(static_cast<std::size_t>(entry)), drive.world, car,
                                                    seed, " of car " + std::to_string(entry)));
   }

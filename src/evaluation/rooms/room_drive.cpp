@@ -1,14 +1,16 @@
 #include "slalom/evaluation/rooms/room_drive.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "evaluation/rooms/drive_counters.hpp"
 #include "evaluation/rooms/mover_watch.hpp"
+#include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/drive.hpp"
+#include "slalom/evaluation/statistics.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "slalom/navigation/scan_map.hpp"
 
@@ -23,37 +25,97 @@ using navigation::Velocity;
 constexpr double resolution = 0.05;  // m
 constexpr double max_range = 16;     // m
 constexpr int beams = 240;
-constexpr double standing = 1e-3;  // m/s and rad/s
+constexpr double range_noise = 0.01;                     // m, standard deviation
+constexpr double start_spread = 0.03, start_turn = 0.1;  // m along each axis, rad: largest changes
+constexpr double walker_spread = 0.1, walker_pause = 1;  // share of the speed, s: largest changes
+constexpr double standing = 1e-3;                        // m/s and rad/s
+constexpr double min_driving_speed = 0.03;               // m/s
 
 /// Varies the walkers of a scenario with the seed.
-std::vector<sim::Walker> varied(std::vector<sim::Walker> walkers, const RoomConditions& conditions,
-                                std::uint64_t seed) {
+std::vector<sim::Walker> varied(std::vector<sim::Walker> walkers, std::uint64_t seed) {
   RandomStream random({seed, 1});
   for (sim::Walker& each : walkers) {
-    each.speed *= 1 + random.uniform(-conditions.walker_spread, conditions.walker_spread);
-    each.pause += random.uniform(0, conditions.walker_pause);
+    each.speed *= 1 + random.uniform(-walker_spread, walker_spread);
+    each.pause += random.uniform(0, walker_pause);
   }
   return walkers;
 }
+
+Pose varied(const Pose& start, RandomStream& random) {
+  const auto spread = [&](double most) { return random.uniform(-most, most); };
+  return {start.x + spread(start_spread), start.y + spread(start_spread), start.yaw + spread(start_turn)};
+}
+
+/// Counts how often plans change the side on which they pass something, until the robot is past it.
+class SideCounter {
+ public:
+  SideCounter(const maps::Pose& start, const maps::Pose& goal)
+      : ahead_x_(goal.x - start.x), ahead_y_(goal.y - start.y) {}
+
+  void add(const maps::Pose& robot, const maps::Point& counted, std::span<const maps::Pose> plan) {
+    const double dx = counted.x - robot.x, dy = counted.y - robot.y;
+    if (plan.empty() || dx * ahead_x_ + dy * ahead_y_ <= 0) return;
+    const maps::Pose& end = plan.back();
+    const double left =
+        (dx * (end.y - robot.y) - dy * (end.x - robot.x)) / std::max(std::hypot(dx, dy), 1e-9);
+    if (std::abs(left) < side_margin) return;
+    const int side = left > 0 ? 1 : -1;
+    changes_ += last_ != 0 && side != last_;
+    last_ = side;
+  }
+  int changes() const { return changes_; }
+
+ private:
+  static constexpr double side_margin = 0.1;  ///< m from the line; below it neither side is counted
+  double ahead_x_, ahead_y_;
+  int last_ = 0, changes_ = 0;
+};
+
+/// Counts changes between driving forward and back.
+class ReversalCounter {
+ public:
+  void add(double forward) {
+    const int now = forward > min_driving_speed ? 1 : forward < -min_driving_speed ? -1 : 0;
+    changes_ += now == -direction_;
+    if (now != 0) direction_ = now;
+  }
+  int changes() const { return changes_; }
+
+ private:
+  int direction_ = 1, changes_ = 0;
+};
+
+/// Wall-clock times of updates.
+class Stopwatch {
+ public:
+  template <class Work>
+  auto measure(Work&& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto result = work();
+    times_.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    return result;
+  }
+  /// s; 0 without times. evaluation::percentile has the rule.
+  double percentile(double share) const { return times_.empty() ? 0 : evaluation::percentile(times_, share); }
+
+ private:
+  std::vector<double> times_;
+};
 
 /// A robot in a room, among people. Each control period has `parts` steps.
 class RoomWorld {
  public:
   static constexpr int parts = 5;
 
-  RoomWorld(const RoomScenario& scenario, const RoomConditions& conditions, std::uint64_t seed,
-            const Pose& start)
-      : pose(start),
-        room_(scenario.room),
-        crowd_(room_, varied(scenario.walkers, conditions, seed)),
-        time_step_(conditions.period / parts) {
+  RoomWorld(const RoomScenario& scenario, std::uint64_t seed, const Pose& start)
+      : pose(start), room_(scenario.room), crowd_(room_, varied(scenario.walkers, seed)) {
     room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
   }
 
   /// Moves robot and people. The robot has the velocity of the only command.
   void step(std::span<const Velocity> commands) {
     velocity = commands[0];
-    const double dt = time_step_, yaw = pose.yaw + 0.5 * dt * velocity.turn;
+    const double dt = room_period / parts, yaw = pose.yaw + 0.5 * dt * velocity.turn;
     const double c = std::cos(yaw), s = std::sin(yaw);
     const maps::Point in_room{c * velocity.forward - s * velocity.left,
                               s * velocity.forward + c * velocity.left};
@@ -81,7 +143,6 @@ class RoomWorld {
  private:
   sim::Room room_;
   sim::Crowd crowd_;
-  double time_step_;  ///< s
 };
 
 SolverOptions with_seed(SolverOptions solver, std::uint64_t seed) {
@@ -102,10 +163,9 @@ navigation::NavigatorOptions with_base(navigation::NavigatorOptions options,
 /// The robot's scanner, its map of what the scans have shown, and its navigator.
 class RoomNavigator {
  public:
-  RoomNavigator(const RoomScenario& scenario, const RoomDriver& driver, const RoomConditions& conditions,
-                std::uint64_t seed, const RandomStream& random)
-      : conditions_(conditions),
-        random_(random),
+  RoomNavigator(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
+                const RandomStream& random)
+      : random_(random),
         ranges_(beams),
         predicts_(driver.predict_movers),
         goal_(scenario.goal),
@@ -128,14 +188,14 @@ class RoomNavigator {
   navigation::NavigationResult decide(const RoomWorld& world) {
     sim::scan(world.room(), world.pose, max_range, ranges_);
     for (double& range : ranges_)
-      if (range < max_range) range = std::max(range + conditions_.range_noise * random_.normal(), 0.0);
+      if (range < max_range) range = std::max(range + range_noise * random_.normal(), 0.0);
     const navigation::RangeScan scan{world.pose, ranges_, max_range};
     std::span<const maps::PredictedObstacle> others;
     if (predicts_) others = watch_.update(scan, world.time);
     map_.add(predicts_ ? watch_.without_movers() : scan);
     costmap_.update(map_.grid());
     const auto result = stopwatch.measure(
-        [&] { return navigator_.update(world.pose, world.velocity, costmap_, conditions_.period, others); });
+        [&] { return navigator_.update(world.pose, world.velocity, costmap_, room_period, others); });
     command_ = result.command;
     return result;
   }
@@ -150,7 +210,6 @@ class RoomNavigator {
     return navigation::Footprint::rectangle(half_length, half_length, RoomScenario::robot_width);
   }
 
-  RoomConditions conditions_;
   RandomStream random_;
   std::vector<double> ranges_;
   bool predicts_;
@@ -166,59 +225,98 @@ bool stands(const Velocity& v, double below = standing) {
   return std::abs(v.forward) < below && std::abs(v.left) < below && std::abs(v.turn) < below;
 }
 
+/// A drive under way, with its figures.
+class RoomRun {
+ public:
+  RoomRun(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed)
+      : scenario_(scenario),
+        random_({seed, 0}),
+        loop_{RoomWorld(scenario, seed, varied(scenario.start, random_)), {}, RoomWorld::parts},
+        sides_(scenario.start, scenario.goal) {
+    loop_.drivers.emplace_back(scenario, driver, seed, random_);
+    drive_.people.resize(loop_.world.room().people.size());
+    if (!robot().set_path(loop_.world.pose))
+      throw std::invalid_argument(std::string("scenario: ") + scenario.name + ": has no path");
+  }
+
+  /// Drives one control period; false if the drive has ended.
+  bool step(double time) {
+    drive_.time = loop_.world.time = time;
+    record_places();
+    Observer observer{[&](std::size_t, const navigation::NavigationResult& result) { decided(result); },
+                      [](const RoomWorld&) { return true; }};
+    loop_.step(observer);
+    record_way();
+    return !ended();
+  }
+
+  RoomDrive result() {
+    drive_.success = drive_.outcome == (scenario_.has_way ? RoomOutcome::reached : RoomOutcome::blocked);
+    drive_.side_changes = sides_.changes();
+    drive_.reversals = reversals_.changes();
+    drive_.update_p50 = robot().stopwatch.percentile(0.5);
+    drive_.update_max = robot().stopwatch.percentile(1);
+    return drive_;
+  }
+
+ private:
+  RoomNavigator& robot() { return loop_.drivers[0]; }
+
+  void record_places() {
+    drive_.trace.push_back(loop_.world.pose);
+    for (std::size_t k = 0; k < drive_.people.size(); ++k)
+      drive_.people[k].push_back(loop_.world.room().people[k].middle);
+  }
+
+  /// Counts sides, and the time until the robot says that there is no way.
+  void decided(const navigation::NavigationResult& result) {
+    const RoomWorld& world = loop_.world;
+    if (!scenario_.has_way && shown_closed_ < 0 && robot().path_from(world.pose).empty())
+      shown_closed_ = drive_.time;
+    sides_.add(world.pose, world.counted(), result.plan);
+    status_ = result.status;
+    if (status_ == NavigationStatus::blocked && drive_.answer_time < 0 && shown_closed_ >= 0)
+      drive_.answer_time = drive_.time - shown_closed_;
+  }
+
+  void record_way() {
+    const Velocity& velocity = loop_.world.velocity;
+    drive_.length += room_period * std::hypot(velocity.forward, velocity.left);
+    reversals_.add(velocity.forward);
+  }
+
+  bool ended() {
+    const RoomWorld& world = loop_.world;
+    if (world.collided) {
+      const bool stood = stands(world.velocity, min_driving_speed);
+      drive_.outcome = stood ? RoomOutcome::struck : RoomOutcome::collision;
+    } else if (stands(world.velocity)) {
+      if (status_ == NavigationStatus::goal_reached) drive_.outcome = RoomOutcome::reached;
+      if (status_ == NavigationStatus::blocked && !scenario_.has_way) drive_.outcome = RoomOutcome::blocked;
+    }
+    return drive_.outcome != RoomOutcome::timeout;
+  }
+
+  const RoomScenario& scenario_;
+  RandomStream random_;
+  Drive<RoomWorld, RoomNavigator> loop_;
+  SideCounter sides_;
+  ReversalCounter reversals_;
+  NavigationStatus status_{};  ///< status of the last decision
+  double shown_closed_ = -1;   ///< s, when the map of scans first showed no way; -1 before
+  RoomDrive drive_;
+};
+
 }  // namespace
 
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
-                     const RoomConditions& conditions) {
-  validate_options(conditions, "conditions");
-  RandomStream random({seed, 0});
-  const auto spread = [&](double most) { return random.uniform(-most, most); };
-  const Pose start{scenario.start.x + spread(conditions.start_spread),
-                   scenario.start.y + spread(conditions.start_spread),
-                   scenario.start.yaw + spread(conditions.start_turn)};
-  Drive<RoomWorld, RoomNavigator> loop{RoomWorld(scenario, conditions, seed, start), {}, RoomWorld::parts};
-  loop.drivers.emplace_back(scenario, driver, conditions, seed, random);
-  const RoomWorld& world = loop.world;
-  RoomNavigator& navigator = loop.drivers[0];
-  if (!navigator.set_path(start))
-    throw std::invalid_argument(std::string("scenario: ") + scenario.name + ": has no path");
-
-  RoomDrive drive;
-  drive.people.resize(world.room().people.size());
-  SideCounter sides(scenario.start, scenario.goal);
-  ReversalCounter reversals;
-  NavigationStatus status{};
-  double shown_closed = -1;  // s
-  Observer observer{[&](std::size_t, const navigation::NavigationResult& result) {
-                      if (!scenario.has_way && shown_closed < 0 && navigator.path_from(world.pose).empty())
-                        shown_closed = drive.time;
-                      sides.add(world.pose, world.counted(), result.plan);
-                      status = result.status;
-                      if (status == NavigationStatus::blocked && drive.answer_time < 0 && shown_closed >= 0)
-                        drive.answer_time = drive.time - shown_closed;
-                    },
-                    [](const RoomWorld&) { return true; }};
-  const int periods = static_cast<int>(std::ceil(conditions.timeout / conditions.period));
-  for (int i = 0; i < periods && !world.collided && drive.outcome == RoomOutcome::timeout; ++i) {
-    drive.time = loop.world.time = i * conditions.period;
-    drive.trace.push_back(world.pose);
-    for (std::size_t k = 0; k < drive.people.size(); ++k)
-      drive.people[k].push_back(world.room().people[k].middle);
-    loop.step(observer);
-    drive.length += conditions.period * std::hypot(world.velocity.forward, world.velocity.left);
-    reversals.add(world.velocity.forward);
-    if (!stands(world.velocity)) continue;
-    if (status == NavigationStatus::goal_reached) drive.outcome = RoomOutcome::reached;
-    if (status == NavigationStatus::blocked && !scenario.has_way) drive.outcome = RoomOutcome::blocked;
+                     double timeout) {
+  slalom::detail::check("drive", {"timeout", "s", "time after which a drive ends", 0.001, 86400}, timeout);
+  RoomRun run(scenario, driver, seed);
+  const int periods = static_cast<int>(std::ceil(timeout / room_period));
+  for (int i = 0; i < periods && run.step(i * room_period); ++i) {
   }
-  if (world.collided)
-    drive.outcome = stands(world.velocity, min_driving_speed) ? RoomOutcome::struck : RoomOutcome::collision;
-  drive.success = drive.outcome == (scenario.has_way ? RoomOutcome::reached : RoomOutcome::blocked);
-  drive.side_changes = sides.changes();
-  drive.reversals = reversals.changes();
-  drive.update_p50 = navigator.stopwatch.percentile(0.5);
-  drive.update_max = navigator.stopwatch.percentile(1);
-  return drive;
+  return run.result();
 }
 
 }  // namespace slalom::evaluation

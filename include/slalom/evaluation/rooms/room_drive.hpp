@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "slalom/core/options.hpp"
 #include "slalom/evaluation/rooms/room_scenario.hpp"
 #include "slalom/navigation/navigator.hpp"
 
@@ -32,29 +31,8 @@ struct RoomDriver {
       true;  ///< follow and predict moving objects; otherwise they are obstacles of the scans
 };
 
-/// The conditions of a drive.
-/// `visit_options` below describes the fields.
-struct RoomConditions {
-  double timeout = 60;
-  double period = 0.05;
-  double range_noise = 0.01;
-  double start_spread = 0.03;
-  double start_turn = 0.1;
-  double walker_spread = 0.1;
-  double walker_pause = 1;
-};
-
-template <class Options, class Visit>
-requires is_options_of<Options, RoomConditions>
-void visit_options(Options& o, Visit&& visit) {
-  visit(o.timeout, {"timeout", "s", "time after which a drive ends", 0.001, 86400});
-  visit(o.period, {"period", "s", "time between two commands, and between two scans", 0.001, 1});
-  visit(o.range_noise, {"range_noise", "m", "standard deviation of the scanner's ranges", 0, 1});
-  visit(o.start_spread, {"start_spread", "m", "largest change of the start along each axis", 0, 10});
-  visit(o.start_turn, {"start_turn", "rad", "largest change of the start's yaw", 0, 4});
-  visit(o.walker_spread, {"walker_spread", "", "largest change of the walkers' speeds, as a share", 0, 0.9});
-  visit(o.walker_pause, {"walker_pause", "s", "longest addition to the walkers' pauses", 0, 3600});
-}
+/// s, between two commands, and between two scans.
+inline constexpr double room_period = 0.05;
 
 /// A drive.
 struct RoomDrive {
@@ -73,11 +51,13 @@ struct RoomDrive {
   std::vector<std::vector<maps::Point>> people;  ///< the same for each person: where they were, m
 };
 
-/// Drives a scenario with a path planned on the map, which shows neither obstacles nor people; moving objects
-/// are known from the scans alone. The same seed gives the same drive, but for the times of the updates.
-/// Throws std::invalid_argument where a condition is out of range or the solver has no option `seed`, and as
-/// Navigator does.
+/// Drives a scenario for up to `timeout` (s), with a path planned on the map, which shows neither obstacles
+/// nor people; moving objects are known from the scans alone, whose ranges have a standard deviation of 0.01
+/// m. The seed varies the start by up to 0.03 m and 0.1 rad, the walkers' speeds by up to a tenth, and their
+/// pauses by up to 1 s. The same seed gives the same drive, but for the times of the updates. Throws
+/// std::invalid_argument where the timeout is not within [0.001, 86400] or the solver has no option `seed`,
+/// and as Navigator does.
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
-                     const RoomConditions& conditions = {});
+                     double timeout = 60);
 
 }  // namespace slalom::evaluation

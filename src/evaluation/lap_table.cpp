@@ -9,7 +9,6 @@
 #include <sstream>
 #include <type_traits>
 
-#include "evaluation/table/lap_figures.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/statistics.hpp"
@@ -31,20 +30,20 @@ void visit_columns(Row& r, const std::vector<Experiment>& experiments, Visit&& v
   visit("mean_calculation_time", r.mean_calculation_time);
   visit("max_calculation_time", r.max_calculation_time);
   visit("min_calculation_time", r.min_calculation_time);
-  visit("lap_time", r.lap_time);
+  visit("lap_time", r.time);
   visit("finished", r.finished);
   visit("steps", r.steps);
   visit("contacts", r.collided_bodies);
   visit("wall", r.wall);
   visit("impassable", r.impassable);
-  visit("minimum_clearance", r.minimum_clearance);
+  visit("minimum_clearance", r.min_clearance);
   visit("mean_speed", r.mean_speed);
   visit("mean_path_distance", r.mean_path_distance);
   visit("max_path_distance", r.max_path_distance);
   visit("mean_variance", r.mean_variance);
   visit("mean_effective_samples", r.mean_effective_samples);
-  visit("ms_published_model", r.ms_paper_model);
-  visit("ms_driven", r.ms_driven);
+  visit("ms_published_model", r.paper_model_cost);
+  visit("ms_driven", r.driven_cost);
   visit("blocked_steps", r.blocked_steps);
   visit("degenerate_steps", r.degenerate_steps);
   visit("contact_points", r.contact_points);
@@ -130,6 +129,21 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
   }
 }
 
+OvertakingFigures figures_of(const OvertakingRecord& record) {
+  OvertakingFigures figures{.met = static_cast<int>(record.encounters.size()),
+                            .contacts = record.contacts,
+                            .caused = record.caused};
+  for (const Encounter& each : record.encounters) {
+    figures.side_changes += each.side_changes;
+    figures.not_overtaken += each.end == EncounterEnd::not_overtaken;
+    if (each.end != EncounterEnd::overtaken) continue;
+    ++figures.overtaken;
+    figures.duration += each.duration;
+  }
+  figures.duration /= std::max(figures.overtaken, 1);
+  return figures;
+}
+
 constexpr std::size_t identity_columns = 4;  // method, scenario, set, lap
 
 }  // namespace
@@ -160,16 +174,10 @@ bool Experiment::has_planning_opponents() const {
 
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time) {
   LapRow r;
+  static_cast<LapFigures&>(r) = result;
   r.experiment = experiment;
   r.lap = lap;
-  r.seed = result.seed;
-  r.finished = result.finished;
   r.success = result.finished && result.collisions == 0;
-  r.collisions = result.collisions;
-  r.timeout = result.timeout;
-  r.state_cost = result.state_cost;
-  r.collision_cost = result.collision_cost;
-  r.input_error = result.input_error;
   auto times = result.solve_ms;
   std::sort(times.begin(), times.end());
   if (!times.empty()) {
@@ -180,19 +188,6 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
     r.solve_p50 = percentile(times, 0.5);
     r.solve_p99 = percentile(times, 0.99);
   }
-  r.lap_time = result.time;
-  r.steps = result.steps;
-  r.collided_bodies = result.collided_bodies;
-  r.wall = result.wall;
-  r.impassable = result.impassable;
-  r.minimum_clearance = result.min_clearance;
-  r.mean_speed = result.mean_speed;
-  r.mean_path_distance = result.mean_path_distance;
-  r.max_path_distance = result.max_path_distance;
-  r.mean_variance = result.mean_variance;
-  r.mean_effective_samples = result.mean_effective_samples;
-  r.ms_paper_model = result.paper_model_cost;
-  r.ms_driven = result.driven_cost;
   r.blocked_steps = result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::blocked)];
   r.degenerate_steps =
       result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::solver_degenerate)];
@@ -203,7 +198,8 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
     r.contact_points += point;
   }
   r.wall_time = wall_time;
-  r.tracking = figures_of(result.tracking);
+  r.tracking = result.tracking;
+  if (!result.tracking.update_ms.empty()) r.tracking.update_p99 = percentile(result.tracking.update_ms, 0.99);
   r.overtaking = figures_of(result.overtaking);
   return r;
 }
