@@ -24,6 +24,23 @@ function(slalom_add_layer name)
   set_property(GLOBAL APPEND PROPERTY SLALOM_LAYERS slalom_${name})
 endfunction()
 
+# Finds the instruction set of this machine, for slalom_compile_for_this_machine.
+if(SLALOM_BUILD_TESTS AND NOT CMAKE_CROSSCOMPILING AND NOT DEFINED SLALOM_TEST_TARGET
+    AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  try_run(ran compiled ${PROJECT_BINARY_DIR}/CMakeFiles ${PROJECT_SOURCE_DIR}/tests/support/instruction_set.cpp
+    CMAKE_FLAGS -DINCLUDE_DIRECTORIES=${PROJECT_SOURCE_DIR}/include -DCMAKE_CXX_STANDARD=20
+    RUN_OUTPUT_VARIABLE printed)
+  if(compiled AND ran EQUAL 0)
+    string(STRIP "${printed}" printed)
+    set(SLALOM_TEST_TARGET ${printed} CACHE INTERNAL "Instruction set of this machine")
+  endif()
+endif()
+function(slalom_compile_for_this_machine target)
+  if(SLALOM_TEST_TARGET)
+    target_compile_definitions(${target} PRIVATE SLALOM_ONLY_TARGET=${SLALOM_TEST_TARGET})
+  endif()
+endfunction()
+
 # Flags of the targets of this project; none is exported. Tests set SLALOM_UNHARDENED: they are not installed. Functions take wide packs by reference, so the warning about
 # their calling convention (-Wpsabi) does not apply.
 function(slalom_compile_options target)
@@ -34,6 +51,7 @@ function(slalom_compile_options target)
   if(SLALOM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${SLALOM_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${SLALOM_SANITIZE})
+    slalom_compile_for_this_machine(${target})
     # With sanitizers, g++ takes initialised members for uninitialised ones, for instance those of <regex>, and warns of
     # the memory fences of Boost.Asio, which the thread sanitizer does not see.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

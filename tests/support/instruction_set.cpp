@@ -1,4 +1,4 @@
-// Prints the instruction set of this machine, for which tests/CMakeLists.txt compiles most tests.
+// Prints the instruction set of this machine, for which cmake/targets.cmake compiles most tests.
 #include "../../src/core/dispatch.cpp"
 
 #include <cstdio>
