@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/option_access.hpp"
+
 namespace slalom::maps {
 namespace {
 
@@ -29,7 +31,8 @@ void check_grid(const OccupancyGrid& grid) {
                                 " cells must be width x height, " + std::to_string(grid.width) + " x " +
                                 std::to_string(grid.height) + ", at least one");
   if (!(grid.resolution > 0) || !std::isfinite(grid.resolution))
-    throw std::invalid_argument("map: the resolution must be finite and above 0");
+    throw std::invalid_argument("map: resolution " + to_text(OptionValue(grid.resolution)) +
+                                " must be finite and above 0");
   if (!std::isfinite(grid.origin.x) || !std::isfinite(grid.origin.y) || !std::isfinite(grid.origin.yaw))
     throw std::invalid_argument("map: the origin must be finite");
 }

@@ -97,7 +97,7 @@ def check_cpp(root, *compiler):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / (page.stem + ".cpp")
             file.write_text(source)
-            made = subprocess.run([*compiler, "-std=c++20", "-fsyntax-only", f"-I{root}/include", str(file)],
+            made = subprocess.run([*compiler, "-std=c++20", "-O1", "-fsyntax-only", f"-I{root}/include", str(file)],
                                   capture_output=True, text=True)
         print(f"{page.relative_to(root)}: {len(found)} blocks of C++")
         if made.returncode:

@@ -8,7 +8,7 @@
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_pictures.hpp"
 #include "tools/recording/recording.hpp"
-#include "tools/report/lap_json.hpp"
+#include "tools/scenario/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"

@@ -13,7 +13,7 @@
 #include "tools/drawing/race_picture.hpp"
 #include "tools/racing/grid_race_job.hpp"
 #include "tools/racing/race_result.hpp"
-#include "tools/report/lap_json.hpp"
+#include "tools/scenario/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"

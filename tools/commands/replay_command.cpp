@@ -14,7 +14,7 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/recording/recording.hpp"
-#include "tools/report/lap_json.hpp"
+#include "tools/scenario/lap_json.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "view/embedded.hpp"
 #include "view/recording/encodings.hpp"

@@ -7,7 +7,7 @@
 #include "slalom/sim/shapes.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/drawing/map_picture.hpp"
-#include "tools/report/lap_json.hpp"
+#include "tools/scenario/lap_json.hpp"
 
 namespace slalom::tools {
 namespace {

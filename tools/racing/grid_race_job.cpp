@@ -10,7 +10,7 @@
 #include "slalom/solvers/registry.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/racing/grid_race_result.hpp"
-#include "tools/report/lap_json.hpp"
+#include "tools/scenario/lap_json.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
 #include "tools/terminal/progress.hpp"

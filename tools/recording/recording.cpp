@@ -8,7 +8,7 @@
 #include "slalom/core/version.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/live_view/view_setup.hpp"
-#include "tools/report/lap_json.hpp"
+#include "tools/scenario/lap_json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/recording/recorder.hpp"

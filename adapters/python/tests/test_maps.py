@@ -71,7 +71,7 @@ def test_a_ros_map_is_loaded(tmp_path):
     (lambda: slalom.Field([[1.0]], 1).value([1, 2], [1, 2, 3]), "x, y: must have the same shape"),
     (lambda: slalom.OccupancyGrid([[0, 101]], 1), r"101 must be in \[-1, 100\]"),
     (lambda: slalom.OccupancyGrid([0, 100], 1), "has 1 dimensions, must have 2"),
-    (lambda: slalom.signed_distance(slalom.OccupancyGrid([[0]], -1)), "grid.resolution: -1"),
+    (lambda: slalom.signed_distance(slalom.OccupancyGrid([[0]], -1)), "map: resolution -1 must be finite and above 0"),
 ])
 def test_what_is_no_map_is_rejected(make, text):
     with pytest.raises(ValueError, match=text):

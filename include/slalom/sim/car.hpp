@@ -36,7 +36,7 @@ struct CarParameters {
 template <class Options, class Visit>
 requires is_options_of<Options, CarParameters>
 void visit_options(Options& o, Visit&& visit) {
-  constexpr double least = 1e-9, most = 1e9;  // of what must be above 0
+  constexpr double least = 1e-9, most = 1e9;  // limits of the values that must be above 0
   visit(o.friction, {"friction", "", "coefficient between tyre and road", least, most, "mu"});
   visit(o.cornering_front,
         {"cornering_front", "1/rad", "cornering stiffness over load, front axle", least, most, "C_Sf"});

@@ -1,4 +1,4 @@
-#include "tools/report/lap_json.hpp"
+#include "tools/scenario/lap_json.hpp"
 
 #include <algorithm>
 #include <cmath>
