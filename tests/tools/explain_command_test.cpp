@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tools/program_test.hpp"
 
@@ -48,8 +49,21 @@ TEST_F(ExplainCommand, SetsOptionsOfMethodsAndProblem) {
   EXPECT_FALSE(inputs("--set problem.disc_radius=0")["collided"].get<bool>());
 }
 
+TEST_F(ExplainCommand, DrawsFiguresOfThePaper) {
+  std::set<std::string> pictures;
+  for (const std::string figure : {"1", "3", "4"}) {
+    const auto run = program("explain --figure " + figure + " --plot f" + figure + ".svg");
+    ASSERT_EQ(run.status, 0) << run.output;
+    pictures.insert(testing::content(folder_ / ("f" + figure + ".svg")));
+  }
+  EXPECT_EQ(pictures.size(), 3u);
+  EXPECT_FALSE(pictures.contains(""));
+}
+
 TEST_F(ExplainCommand, NamesMistakes) {
   expect_refused("explain --method newton", {"must be one of all, mppi"});
+  expect_refused("explain --figure 2 --plot f.svg", {"must be 1, 3 or 4"});
+  expect_refused("explain --figure 3", {"needs --plot"});
   expect_refused("explain --set temprature=2", {"did you mean temperature?"});
   expect_refused("explain --set samples=0", {"must be in"});
   expect_refused("explain --set problem.radius=1", {"problem."});

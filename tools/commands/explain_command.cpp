@@ -15,7 +15,7 @@ namespace {
 
 struct ExplainArguments {
   std::vector<std::string> methods{"svg_mppi"}, set;
-  std::string plot, json;
+  std::string plot, json, figure;
   std::uint64_t seed = 0;
   int solves = 10;
 };
@@ -99,6 +99,10 @@ void explain(const ExplainArguments& arguments) {
   std::vector<ExplainedMethod> methods = chosen(arguments.methods);
   problems::PassingPoint point;
   for (const std::string& word : arguments.set) apply(word, methods, point);
+  if (!arguments.figure.empty()) {
+    save(draw_paper_figure(std::stoi(arguments.figure), point, arguments.seed), arguments.plot);
+    return;
+  }
   std::vector<Explanation> explanations;
   Json json{{"seed", arguments.seed}, {"solves", arguments.solves}, {"methods", Json::array()}};
   for (const ExplainedMethod& method : methods) {
@@ -140,7 +144,17 @@ void declare_explain(Subcommand& command) {
   command.option("--plot", arguments->plot,
                  "Write a picture of the methods side by side to this PNG, SVG or PDF");
   command.json(arguments->json, "everything");
-  command.action([arguments] {
+  command.option(
+      "--figure", arguments->figure,
+      "Write this figure of the SVG-MPPI paper, computed for the same problem, to --plot: 1, 3 or 4");
+  command.action([arguments, &command] {
+    if (!arguments->figure.empty()) {
+      if (arguments->figure != "1" && arguments->figure != "3" && arguments->figure != "4")
+        throw CommandLineError("--figure", arguments->figure, "must be 1, 3 or 4");
+      if (arguments->plot.empty()) throw CommandLineError("--figure", "needs --plot");
+      for (const char* other : {"--method", "--solves", "--json"})
+        if (command.given(other)) throw CommandLineError(other, "has no effect with --figure");
+    }
     explain(*arguments);
     return 0;
   });

@@ -114,6 +114,10 @@ void Pen::clip(double x, double y, double width, double height) {
   cairo_clip(cairo_);
 }
 
+void Pen::shift(double x, double y) {
+  cairo_translate(cairo_, x, y);
+}
+
 void Pen::unclip() {
   cairo_restore(cairo_);
 }

@@ -53,6 +53,8 @@ class Pen {
   /// Copies the picture of another surface, with its upper left corner at the origin.
   void show(_cairo_surface* surface);
   void fill_surface(Colour colour);
+  /// Moves the origin of all that is drawn later.
+  void shift(double x, double y);
   /// Draws within a rectangle alone, until `unclip`.
   void clip(double x, double y, double width, double height);
   void unclip();

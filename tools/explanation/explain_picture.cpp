@@ -14,8 +14,9 @@ constexpr Colour frame{0.78, 0.81, 0.86, 1}, disc_fill{0.36, 0.39, 0.45, 1},
     ours{0.12, 0.42, 0.78, 1}, ours_light{0.12, 0.42, 0.78, 0.16}, optimum{0.90, 0.58, 0.10, 1},
     optimum_light{0.96, 0.72, 0.26, 0.30}, guide{0.55, 0.16, 0.66, 1}, good_verdict{0.05, 0.48, 0.30, 1},
     bad_verdict{0.75, 0.16, 0.14, 1};
-constexpr double margin = 22, header = 92, caption = 46, space_width = 330, space_height = 250, gap = 8,
-                 density_width = 104, axis_left = 34, axis_below = 34, between = 30, reach = 1.5;
+constexpr double margin = 22, wide_header = 92, narrow_header = 112, caption = 46, space_width = 330,
+                 space_height = 250, gap = 8, density_width = 104, axis_left = 34, axis_below = 34,
+                 between = 30, reach = 1.5;
 constexpr double cell_width = axis_left + space_width + gap + density_width,
                  cell_height = caption + space_height + axis_below;
 constexpr int drawn_samples = 100;
@@ -82,15 +83,19 @@ void draw_distribution(Pen& pen, const Cell& cell) {
   for (const Way& edge : {low, high}) pen.path(cell.points(edge), {ours.red, ours.green, ours.blue, 0.55}, 1);
 }
 
-/// Every guide's way after each step, pale where it began and strong where it ended.
+/// Every guide's way after each step of the last solve, pale where it began. The guides that did not become
+/// the plan's, most of which restart in every solve, are faint.
 void draw_guides(Pen& pen, const Cell& cell) {
-  for (const auto& steps : cell.e.guides) {
-    const std::size_t count = steps.size();
-    for (std::size_t l = 0; l < count; ++l) {
-      const double age = static_cast<double>(l + 1) / static_cast<double>(count);
-      const bool last = l + 1 == count;
-      pen.path(cell.points(steps[l]),
-               {guide.red, guide.green, guide.blue, last ? 1 : 0.10 + 0.35 * age * age}, last ? 2 : 1);
+  for (std::size_t g = 0; g < cell.e.guides.size(); ++g) {
+    const auto& steps = cell.e.guides[g];
+    const bool best = static_cast<int>(g) == cell.e.best_guide;
+    const double strength = best ? 1 : 0.3;
+    const std::size_t count = steps.size() / static_cast<std::size_t>(cell.e.solves);
+    for (std::size_t l = 1; l <= count; ++l) {
+      const double age = static_cast<double>(l) / static_cast<double>(count);
+      pen.path(cell.points(steps[steps.size() - count + l - 1]),
+               {guide.red, guide.green, guide.blue, strength * (l == count ? 1 : 0.15 + 0.4 * age * age)},
+               l == count && best ? 2 : 1);
     }
   }
 }
@@ -190,44 +195,49 @@ void draw_caption(Pen& pen, const Cell& cell) {
            faint_ink, 1);
 }
 
-/// Returns where the next entry begins.
-double key_text(Pen& pen, double x, double y, const std::string& words) {
-  pen.text(x, y + 4, 12, words, ink);
-  return x + 6.15 * static_cast<double>(words.size()) + 22;
-}
-
-/// The key of lines and colours, in two rows.
-void draw_key(Pen& pen, double left) {
+/// The key of lines and colours, in rows of at most this width.
+void draw_key(Pen& pen, double left, double width) {
   double x = left, y = 56;
-  pen.line(x, y, x + 22, y, ink, 3);
-  x = key_text(pen, x + 28, y, "plan");
-  for (int i = 0; i < 44; ++i) pen.line(x + i, y, x + i + 1.2, y, cost_colour(i / 44.0, 1), 5);
-  x = key_text(pen, x + 50, y, "samples, cheap to dear; bold: heavy");
-  pen.line(x, y, x + 22, y, bad_key, 2);
-  key_text(pen, x + 28, y, "samples that hit");
-  x = left;
-  y = 76;
-  pen.line(x, y, x + 22, y, guide, 2);
-  x = key_text(pen, x + 28, y, "guide, pale where it came from");
-  pen.box(x, y - 6, 22, 12, ours_light, ours, 1.2);
-  x = key_text(pen, x + 28, y, "resulting distribution, 2 deviations");
-  pen.box(x, y - 6, 22, 12, optimum_light, optimum, 1.2);
-  key_text(pen, x + 28, y, "optimal distribution q*");
+  const auto entry = [&](const std::string& words, double symbol_width, auto symbol) {
+    const double wide = symbol_width + 6 + pen.text_width(words, 12);
+    if (x > left && x + wide > left + width) {
+      x = left;
+      y += 20;
+    }
+    symbol();
+    pen.text(x + symbol_width + 6, y + 4, 12, words, ink);
+    x += wide + 20;
+  };
+  const auto box = [&](Colour fill, Colour rim) { pen.box(x, y - 6, 22, 12, fill, rim, 1.2); };
+  entry("plan", 22, [&] { pen.line(x, y, x + 22, y, ink, 3); });
+  entry("samples, cheap to dear; bold: heavy", 44, [&] {
+    for (int i = 0; i < 44; ++i) pen.line(x + i, y, x + i + 1.2, y, cost_colour(i / 44.0, 1), 5);
+  });
+  entry("samples that hit", 22, [&] { pen.line(x, y, x + 22, y, bad_key, 2); });
+  entry("guide, pale where it came from", 22, [&] { pen.line(x, y, x + 22, y, guide, 2); });
+  entry("resulting distribution, 2 deviations", 22, [&] { box(ours_light, ours); });
+  entry("optimal distribution q*", 22, [&] { box(optimum_light, optimum); });
 }
 
 }  // namespace
 
-Drawing draw_explanations(const std::vector<Explanation>& explanations) {
+void draw_title(Pen& pen, double left, double width, const std::string& title) {
+  pen.text(left, 30, std::min(19.0, 19 * width / pen.text_width(title, 19, true)), title, ink, 0, true);
+}
+
+Drawing draw_explanations(const std::vector<Explanation>& explanations, const std::string& title) {
   const int count = static_cast<int>(explanations.size());
   const int columns = count <= 1 ? 1 : count == 4 || count == 2 ? 2 : 3;
   const int rows = (count + columns - 1) / columns;
   Drawing drawing;
-  drawing.width = std::max(2 * margin + columns * cell_width + (columns - 1) * between, 660.0);
+  const double width = columns * cell_width + (columns - 1) * between;
+  const double header = columns == 1 ? narrow_header : wide_header;
+  drawing.width = 2 * margin + width;
   drawing.height = header + rows * cell_height + (rows - 1) * between * 0.5 + margin * 0.6;
-  drawing.draw = [explanations, columns](Pen& pen) {
+  drawing.draw = [explanations, title, columns, width, header](Pen& pen) {
     const Explanation& first = explanations.front();
-    pen.text(margin, 30, 19, "A point passes a disc: left and right are equally good", ink, 0, true);
-    draw_key(pen, margin);
+    draw_title(pen, margin, width, title);
+    draw_key(pen, margin, width);
     for (std::size_t i = 0; i < explanations.size(); ++i) {
       const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
       const Cell cell{explanations[i], margin + axis_left + column * (cell_width + between),
@@ -237,7 +247,7 @@ Drawing draw_explanations(const std::vector<Explanation>& explanations) {
       draw_caption(pen, cell);
     }
     if (columns > 1) {
-      pen.text(margin + columns * cell_width + (columns - 1) * between, 30, 12,
+      pen.text(margin + width, 30, 12,
                "solve " + std::to_string(first.solves) + " from the same state, temperature " +
                    formatted("%g", first.temperature),
                faint_ink, 1);

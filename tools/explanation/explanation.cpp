@@ -104,6 +104,9 @@ void tell_guides(const SolveResult& result, int steps, Explanation& e) {
     e.guides[static_cast<std::size_t>(i % guides)].push_back(
         way_of(e.point, steps, [&](int k) { return sequence[k]; }));
   }
+  for (int g = 0; g < guides; ++g)
+    if (std::equal(result.nominal.begin(), result.nominal.end(), result.guides.values.begin() + g * steps))
+      e.best_guide = g;
 }
 
 void tell_outcome(const SolveResult& result, int steps, Explanation& e) {

@@ -28,8 +28,9 @@ struct Explanation {
 
   std::vector<ExplainedSample> samples;  ///< samples of the last solve
   std::vector<std::vector<Way>> guides;  ///< ways of each guide after every step in all solves
-  Way plan;                              ///< way of the sequence that would be sent
-  std::vector<double> inputs;            ///< m/s, that sequence
+  int best_guide = -1;         ///< index of the guide that is the nominal sequence; -1 without guides
+  Way plan;                    ///< way of the sequence that would be sent
+  std::vector<double> inputs;  ///< m/s, that sequence
   double plan_cost = 0;
   bool plan_collides = false;
   Way mean;                       ///< mean of the resulting distribution
