@@ -35,7 +35,7 @@ def stands(controller):
 
 
 common = dict(horizon=60, samples=1024, temperature=0.2, input_min=-5, input_max=5)
-mppi = succeeded(lambda seed: stands(slalom.Mppi(pendulum, **common, variance=4, seed=seed)))
-svg_mppi = succeeded(lambda seed: stands(slalom.SvgMppi(
+mppi = succeeded("mppi", lambda seed: stands(slalom.Mppi(pendulum, **common, variance=4, seed=seed)))
+svg_mppi = succeeded("svg_mppi", lambda seed: stands(slalom.SvgMppi(
     pendulum, **common, gradient_variance=1, variance_min=1, variance_max=4, seed=seed)))
 report("the pendulum is upright", mppi, svg_mppi, 20)

@@ -74,6 +74,6 @@ def holds(dynamics, seed):
     return np.hypot(*(places[-20:] - GOAL).T).max() < 0.3
 
 
-without, with_network = (succeeded(lambda seed: holds(f, seed)) for f in (without_water, learned))
+without, with_network = (succeeded(f.__name__, lambda seed: holds(f, seed)) for f in (without_water, learned))
 print(f"the boat holds its place: without a model of the water {without} of {SEEDS} seeds, with the network {with_network}")
 assert error < 0.2 * change and with_network >= 0.9 * SEEDS and with_network > without

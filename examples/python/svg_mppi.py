@@ -79,4 +79,5 @@ def passes(seed, K_g):
 if __name__ == "__main__":
     from seeds import report, succeeded
 
-    report("the plan passes the disc", succeeded(lambda s: passes(s, 0)), succeeded(lambda s: passes(s, 1)), 18)
+    mppi, svg_mppi = (succeeded(name, lambda s: passes(s, K_g)) for name, K_g in (("mppi", 0), ("svg_mppi", 1)))
+    report("the plan passes the disc", mppi, svg_mppi, 18)

@@ -136,7 +136,41 @@ std::string range_rule(const Declaration& d) {
   return "must be in [" + shown(d.min) + ", " + shown(d.max) + "]";
 }
 
+namespace {
+
+/// Names that other programs have for options.
+constexpr std::pair<std::string_view, std::string_view> names_of_others[] = {
+    {"K", "samples"},
+    {"num_samples", "samples"},
+    {"n_samples", "samples"},
+    {"batch_size", "samples"},
+    {"T", "horizon"},
+    {"num_timesteps", "horizon"},
+    {"time_steps", "horizon"},
+    {"lambda", "temperature"},
+    {"lambda_", "temperature"},
+    {"sigma", "variance"},
+    {"noise_sigma", "variance"},
+    {"Sigma", "variance"},
+    {"u_min", "input_min"},
+    {"u_max", "input_max"},
+    {"num_threads", "threads"},
+    {"random_seed", "seed"},
+    {"N", "samples"},
+};
+
+/// The part of a name after its last dot.
+std::string_view last_part(std::string_view name) {
+  return name.substr(name.rfind('.') + 1);
+}
+
+}  // namespace
+
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
+  for (const auto& [theirs, ours] : names_of_others)
+    if (theirs == last_part(name))
+      for (const std::string& candidate : names)
+        if (last_part(candidate) == ours) return candidate;
   std::string best;
   std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const std::string& candidate : names)

@@ -22,6 +22,8 @@ struct Point {
   float input_min[1] = {-1};
 #elif MISTAKE == 10
   double input_rate_max = 1;
+#elif MISTAKE == 19
+  double ts = 0.1;
 #endif
 #if MISTAKE == 4
   State<double> step(const State<double>& x, const slalom::Input<double, 1>& u) const {

@@ -129,7 +129,7 @@ TEST(BatchEvaluation, WholeBatchesGiveTheSameBitsAsSlices) {
   ProblemEvaluator problem(DoubleIntegrator{});
   problem.set_state({0.5, 0.2});
   const WholeBatches whole(problem);
-  for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "cem"}) {
+  for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
     SolverOptions options = solver_options(name);
     *options.find<int>("samples") = 1000;
     const auto one = make_solver(options, 1), other = make_solver(options, 1);

@@ -1,24 +1,46 @@
-"""The text of problems, controllers and plans, and how problems are pickled.
+"""The text of problems, controllers and plans, how problems are pickled, and what `inspect.signature` says.
 
 The classes are compiled. `install` adds the methods here, since text is easier to lay out in Python.
 """
 
 from __future__ import annotations
 
+import ast
+import functools
+import inspect
+import re
 from types import ModuleType
 from typing import Any, Callable, Dict, Iterable, Tuple
 
 _PARTS = ("dynamics", "cost", "terminal_cost", "states", "inputs", "dt", "input_min", "input_max", "input_rate_max",
           "sampler")
 
+_option_names: set[str] = set()  # of all methods
+
 Arguments = Tuple[Tuple[Any, ...], Dict[str, Any]]  # arguments by position and by name
 
 
+class Options(Dict[str, Any]):
+    """The options of a controller by name. They cannot be changed: a change would have no effect."""
+
+    def _refuse(self, *_: Any, **__: Any) -> Any:
+        raise TypeError("the options of a controller cannot be changed; make another one with "
+                        "type(controller)(controller.problem, **{**controller.options, 'temperature': 0.1})")
+
+    __setitem__ = __delitem__ = __ior__ = update = pop = popitem = setdefault = clear = _refuse  # type: ignore[assignment]
+
+    def __reduce__(self) -> Any:
+        return dict, (dict(self),)
+
+
 def install(solvers: ModuleType) -> None:
-    """Adds `__repr__` and `__reduce__` to the classes of the compiled module."""
-    for cls in filter(lambda each: isinstance(each, type), vars(solvers).values()):
+    """Adds `__repr__` and `__reduce__` to the classes of the compiled module, and signatures to their methods."""
+    _option_names.update(option["name"] for method in solvers.methods() for option in solvers.options(method))
+    for cls in [each for each in vars(solvers).values() if isinstance(each, type)]:
+        _add_signatures(solvers, cls)
         if issubclass(cls, solvers.Controller):
             setattr(cls, "__repr__", _controller_text)
+            setattr(cls, "__setattr__", _refuse_attribute)
         elif cls is solvers.Problem:
             _constructed(cls, lambda problem: ((), {name: getattr(problem, name) for name in _PARTS}))
         elif cls is solvers.RiskEvaluator:
@@ -26,6 +48,67 @@ def install(solvers: ModuleType) -> None:
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
             _constructed(cls, lambda problem: ((), _changed(problem)))
     setattr(solvers.Plan, "__repr__", _plan_text)
+
+
+def _refuse_attribute(controller: Any, name: str, value: Any) -> None:
+    """Sets an attribute of a user's class. Raises AttributeError for an option, which cannot be changed."""
+    known = name in _option_names
+    if known or type(controller).__module__.startswith("slalom"):
+        raise AttributeError(f"{type(controller).__name__}.{name} cannot be set; make another controller with "
+                             f"type(controller)(controller.problem, **{{**controller.options, '{name}': {value!r}}})"
+                             if known else f"{type(controller).__name__} has no attribute '{name}' that can be set")
+    object.__setattr__(controller, name, value)
+
+
+def _add_signatures(solvers: ModuleType, cls: type) -> None:
+    """Wraps the compiled methods of a class in functions whose signatures Python can tell."""
+    for name, method in list(vars(cls).items()):
+        function = getattr(method, "__func__", method)
+        first = re.match(r"\w+\((.*)\) -> ", getattr(function, "__doc__", None) or "")
+        if first and (name == "__init__" or not name.startswith("_")) and not isinstance(method, staticmethod):
+            setattr(cls, name, _with_signature(function, _parameters(solvers, cls, first[1])))
+
+
+def _with_signature(function: Callable[..., Any], parameters: list[inspect.Parameter]) -> Callable[..., Any]:
+    @functools.wraps(function)
+    def method(*arguments: Any, **named: Any) -> Any:
+        return function(*arguments, **named)
+
+    setattr(method, "__signature__", inspect.Signature(parameters))
+    return method
+
+
+def _parameters(solvers: ModuleType, cls: type, text: str) -> list[inspect.Parameter]:
+    """The parameters in the first line of a compiled function's docstring; for `**kwargs`, the options of the class."""
+    found: list[inspect.Parameter] = []
+    kind: Any = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    for part in re.split(r", (?=\w+: |\*)", text):
+        if part.startswith("*"):
+            kind = inspect.Parameter.KEYWORD_ONLY
+            if part.startswith("**"):
+                found += [inspect.Parameter(name, kind, default=value) for name, value in _keywords(solvers, cls)]
+            continue
+        name, _, rest = part.partition(":")
+        value = rest.partition(" = ")[2]
+        found.append(inspect.Parameter(name, kind, default=_value(value) if value else inspect.Parameter.empty))
+    return found
+
+
+def _value(text: str) -> Any:
+    """The value of a default in a docstring; the text if it is not a literal."""
+    try:
+        return float(text) if text == "inf" else ast.literal_eval(text)
+    except (SyntaxError, ValueError):
+        return text
+
+
+def _keywords(solvers: ModuleType, cls: type) -> list[tuple[str, Any]]:
+    if issubclass(cls, solvers.Controller):
+        words = (cls.__doc__ or "").split("`")
+        return [(o["name"], o["default"]) for o in solvers.options(words[1])] if len(words) > 1 else []
+    default = cls()
+    return [(name, getattr(default, name)) for name, member in vars(cls).items()
+            if isinstance(member, property) and member.fset and name != "discs"]
 
 
 def _constructed(cls: type, arguments: Callable[[Any], Arguments]) -> None:

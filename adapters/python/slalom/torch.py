@@ -48,9 +48,9 @@ def on_tensors(function: Callable[..., Any]) -> Callable[..., Any]:
     """
 
     @functools.wraps(function)
-    def on_arrays(*arrays: Any) -> Any:
+    def on_arrays(*arrays: Any, **step: int) -> Any:
         with torch.no_grad():
-            return _to_arrays(function(*(torch.from_numpy(_writable(array)) for array in arrays)))
+            return _to_arrays(function(*(torch.from_numpy(_writable(array)) for array in arrays), **step))
 
     return on_arrays
 

@@ -131,7 +131,9 @@ void bind_controllers(py::module_& module) {
   read("method", "the name of the method",
        [](const Controller& c) { return std::string(c.solver().name()); });
   read("horizon", "steps", [](const Controller& c) { return c.solver().horizon(); });
-  read("options", "the options in use, by name", [](const Controller& c) { return values_of(c.options()); });
+  read("options", "the options in use, by name", [](const Controller& c) -> py::dict {
+    return py::module_::import("slalom.display").attr("Options")(values_of(c.options()));
+  });
   for (const char* method : solver_names()) bind_method(module, base, method);
   module.def(
       "methods",

@@ -93,12 +93,13 @@ void bind_problems(py::module_& module) {
       .def_property_readonly("inputs", &AnyProblem::inputs, "inputs a step")
       .def(
           "step",
-          [](AnyProblem& self, const std::vector<double>& state, const std::vector<double>& input) {
+          [](AnyProblem& self, const std::vector<double>& state, const std::vector<double>& input, int k) {
             const auto next =
-                self.step(checked(state, self.states(), "state"), checked(input, self.inputs(), "input"));
+                self.step(checked(state, self.states(), "state"), checked(input, self.inputs(), "input"), k);
             return py::array_t<double>(static_cast<py::ssize_t>(next.size()), next.data());
           },
-          py::arg("state"), py::arg("input"), "The state after one step, in double.")
+          py::arg("state"), py::arg("input"), py::arg("k") = 0,
+          "The state after one step, in double. `k` is the index of the step, for dynamics that take it.")
       .def(
           "collides",
           [](AnyProblem& self, const std::vector<double>& state) {
@@ -111,6 +112,7 @@ void bind_problems(py::module_& module) {
       "dynamics(x[K, states], u[K, inputs]) -> x[K, states]\n"
       "cost(x, u) -> [K], or in terms {name: [K]}; or a pair (cost, collided[K])\n"
       "terminal_cost(x) -> the same, or None\n"
+      "dynamics and cost may take another argument, `k`: the index of the step, an int\n"
       "input_min, input_max: bounds in addition to those of the options, one number or one per input\n"
       "input_rate_max: largest rate of the inputs, per s, in rollouts and plans; requires dt\n"
       "sampler(random, samples, horizon, inputs) -> [samples, horizon, inputs]: noise instead of standard "

@@ -55,8 +55,8 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
     }
     if (first) std::rethrow_exception(first);
   }
-  std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
-    return variants_.front()->step(state, input);
+  std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override {
+    return variants_.front()->step(state, input, k);
   }
   /// The states of the problem itself, and the cost as of `evaluate`.
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override {

@@ -9,15 +9,60 @@ namespace slalom::python {
 
 namespace {
 
+/// Batches of at most this number of samples take longer to call a function than to compute.
+constexpr int small_batch = 256;
+
 template <class From, class Real>
-void add_values(const py::array& values, py::ssize_t count, Real* sums) {
-  const char* from = static_cast<const char*>(values.data());
-  const py::ssize_t stride = values.strides(0);
+void add_values(const char* from, py::ssize_t stride, py::ssize_t count, Real* sums) {
   for (py::ssize_t i = 0; i < count; ++i) {
     From value;
     std::memcpy(&value, from + i * stride, sizeof value);
     sums[i] += static_cast<Real>(value);
   }
+}
+
+/// Adds a column of an array [count, columns], or an array [count].
+template <class Real>
+void add_column(const py::array& array, py::ssize_t column, py::ssize_t count, Real* sums) {
+  const py::ssize_t offset = array.ndim() == 2 ? column * array.strides(1) : 0;
+  const char* const from = static_cast<const char*>(array.data()) + offset;
+  if (py::isinstance<py::array_t<float>>(array)) {
+    add_values<float>(from, array.strides(0), count, sums);
+  } else if (py::isinstance<py::array_t<double>>(array)) {
+    add_values<double>(from, array.strides(0), count, sums);
+  } else {
+    const auto converted = py::array_t<double, py::array::forcecast>::ensure(array);
+    if (!converted) throw py::error_already_set();
+    add_column(converted, column, count, sums);
+  }
+}
+
+/// Columns that lie together in memory, so that callables work on contiguous values: an array [rows, columns]
+/// of zeros.
+py::array_t<float> columns(py::ssize_t rows, py::ssize_t count) {
+  constexpr py::ssize_t width = sizeof(float);
+  py::array_t<float> values({rows, count}, {width, width * rows});
+  std::fill_n(values.mutable_data(), rows * count, 0.0f);
+  return values;
+}
+
+/// Whether a callable has a parameter `k` without a default. False if it does not tell its parameters.
+bool takes_k(const py::object& callable) {
+  try {
+    const py::module_ inspect = py::module_::import("inspect");
+    const py::object parameters = inspect.attr("signature")(callable).attr("parameters");
+    if (!parameters.contains("k")) return false;
+    const py::object k = parameters["k"];
+    return k.attr("default").is(inspect.attr("Parameter").attr("empty"));
+  } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
+    return false;
+  }
+}
+
+/// Calls a function of a step, with its index `k` if the function takes it.
+py::object call_step(const py::object& function, const py::array& x, const py::array& u, bool with_k, int k) {
+  return with_k ? function(x, u, py::arg("k") = k) : function(x, u);
 }
 
 }  // namespace
@@ -37,6 +82,8 @@ CallableProblem::CallableProblem(CallableParts parts)
   require_callable(parts_.cost, "cost", false);
   require_callable(parts_.terminal_cost, "terminal_cost", true);
   require_callable(parts_.sampler, "sampler", true);
+  dynamics_take_k_ = takes_k(parts_.dynamics);
+  cost_takes_k_ = takes_k(parts_.cost);
   const int states = parts_.states, inputs = parts_.inputs;
   require(states >= 1 && states <= 10000, "states: " + std::to_string(states) + " must be in [1, 10000]");
   require(inputs >= 1 && inputs <= 10000, "inputs: " + std::to_string(inputs) + " must be in [1, 10000]");
@@ -108,8 +155,12 @@ void CallableProblem::finish() {
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
 }
 
-py::array CallableProblem::next(const py::array& x, const py::array& u) const {
-  const py::object result = parts_.dynamics(x, u);
+py::object CallableProblem::stage_cost(const py::array& x, const py::array& u, int k) const {
+  return call_step(parts_.cost, x, u, cost_takes_k_, k);
+}
+
+py::array CallableProblem::next(const py::array& x, const py::array& u, int k) const {
+  const py::object result = call_step(parts_.dynamics, x, u, dynamics_take_k_, k);
   if (!py::isinstance<py::array>(result))
     throw py::type_error("Problem.dynamics: returned " + py::repr(py::type::of(result)).cast<std::string>() +
                          ", must be an array");
@@ -158,15 +209,7 @@ void CallableProblem::add_values_of(const char* what, const py::object& values, 
   if (array.ndim() != 1 || array.shape(0) != count)
     throw py::value_error(std::string("Problem.") + what + ": returned shape " + shape_text(array) +
                           ", must be (" + std::to_string(count) + ",)");
-  if (py::isinstance<py::array_t<float>>(array)) {
-    add_values<float>(array, count, costs);
-  } else if (py::isinstance<py::array_t<double>>(array)) {
-    add_values<double>(array, count, costs);
-  } else {
-    const auto converted = py::array_t<double, py::array::forcecast>::ensure(array);
-    if (!converted) throw py::error_already_set();
-    add_values<double>(converted, count, costs);
-  }
+  add_column(array, 0, count, costs);
 }
 
 /// Moves the inputs of all samples, `held` [input][sample], towards those of step `k`, no faster than
@@ -211,10 +254,7 @@ void CallableProblem::fill(SequenceBatch& noise, int first, int count, RandomKey
 
 void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count, float* costs,
                                std::uint8_t* collided) const {
-  // Columns lie together in memory, as the inputs do, so that the callables work on contiguous columns.
-  constexpr py::ssize_t width = sizeof(float);
-  py::array x(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{parts_.states}},
-              {width, width * count});
+  py::array x = columns(count, parts_.states);
   float* values = static_cast<float*>(x.mutable_data());
   for (const float value : state_) values = std::fill_n(values, count, value);
   std::fill_n(costs, count, 0.0f);
@@ -223,14 +263,38 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
   std::vector<float> held;
   for (const float value : previous_)
     held.insert(held.end(), holds ? static_cast<std::size_t>(count) : 0, value);
+  // The costs of a small batch are computed for all steps in one call.
+  const bool together = count <= small_batch && !cost_takes_k_;
+  const py::ssize_t rows = together ? py::ssize_t{count} * batch.steps() : 0;
+  py::array_t<float> all_x = columns(rows, parts_.states), all_u = columns(rows, parts_.inputs);
+  const auto keep = [&](const py::array& from, py::array_t<float>& all, int k) {
+    for (py::ssize_t i = 0; i < from.shape(1); ++i)
+      add_column(from, i, count, all.mutable_data() + i * rows + py::ssize_t{k} * count);
+  };
   for (int k = 0; k < batch.steps(); ++k) {
     if (holds) hold_step(batch, k, first, count, held);
     const float* const from = holds ? held.data() : batch.row(k, 0) + first;
+    constexpr py::ssize_t width = sizeof(float);
     py::array u(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{parts_.inputs}},
                 {width, width * (holds ? count : batch.stride())}, from, owner_);
     read_only(u);
-    add_cost("cost", parts_.cost(x, u), count, costs, collided);
-    x = next(x, u);
+    if (together) {
+      keep(x, all_x, k);
+      keep(u, all_u, k);
+    } else {
+      add_cost("cost", stage_cost(x, u, k), count, costs, collided);
+    }
+    x = next(x, u, k);
+  }
+  if (together) {
+    const auto size = static_cast<std::size_t>(rows);
+    std::vector<float> stage(size);
+    std::vector<std::uint8_t> hit(size);
+    add_cost("cost", stage_cost(all_x, read_only(all_u), 0), rows, stage.data(), hit.data());
+    for (std::size_t i = 0; i < size; ++i) {
+      costs[i % static_cast<std::size_t>(count)] += stage[i];
+      collided[i % static_cast<std::size_t>(count)] |= hit[i];
+    }
   }
   if (!parts_.terminal_cost.is_none())
     add_cost("terminal_cost", parts_.terminal_cost(x), count, costs, collided);
@@ -258,9 +322,10 @@ py::array_t<double> row(std::span<const double> values) {
 }
 }  // namespace
 
-std::vector<double> CallableProblem::step(std::span<const double> state, std::span<const double> input) {
+std::vector<double> CallableProblem::step(std::span<const double> state, std::span<const double> input,
+                                          int k) {
   const auto result =
-      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(next(row(state), row(input)));
+      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(next(row(state), row(input), k));
   return {result.data(), result.data() + parts_.states};
 }
 
@@ -269,10 +334,10 @@ Prediction CallableProblem::predict(std::span<const double> state, std::span<con
   Prediction result{now, 0, false, {}};
   std::uint8_t collided = 0;
   const auto nu = static_cast<std::size_t>(parts_.inputs);
-  for (; !inputs.empty(); inputs = inputs.subspan(nu)) {
+  for (int k = 0; !inputs.empty(); inputs = inputs.subspan(nu), ++k) {
     const auto input = inputs.first(nu);
-    add_cost("cost", parts_.cost(row(now), row(input)), 1, &result.cost, &collided, &result);
-    now = step(now, input);
+    add_cost("cost", stage_cost(row(now), row(input), k), 1, &result.cost, &collided, &result);
+    now = step(now, input, k);
     result.states.insert(result.states.end(), now.begin(), now.end());
   }
   if (!parts_.terminal_cost.is_none())

@@ -19,7 +19,8 @@ struct CallableParts {
 };
 
 /// A problem made of callables on batches of K samples: dynamics(x[K, nx], u[K, nu]) -> x[K, nx],
-/// cost(x, u) -> [K], terminal_cost(x) -> [K]. A cost may consist of terms, {name: [K]}, or be a pair
+/// cost(x, u) -> [K], terminal_cost(x) -> [K]. Dynamics and cost may take the index of the step as a
+/// parameter `k`. A cost may consist of terms, {name: [K]}, or be a pair
 /// (cost, collided). The inputs are views of the solver's memory, and the result of dynamics is not copied.
 class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
@@ -38,7 +39,7 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void set_previous_input(std::span<const double> u) override;
   bool whole_batches() const noexcept override { return true; }
   void set_state(std::span<const double> state) override;
-  std::vector<double> step(std::span<const double> state, std::span<const double> input) override;
+  std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
   void begin(py::handle owner) override;
   /// Rethrows the first exception of a callable during the solve.
@@ -58,12 +59,14 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void hold_step(const SequenceBatch& batch, int k, int first, int count, std::vector<float>& held) const;
   void fill(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept override;
   void draw(SequenceBatch& noise, int first, int count, RandomKey key) const;
-  py::array next(const py::array& x, const py::array& u) const;
+  py::array next(const py::array& x, const py::array& u, int k) const;
+  py::object stage_cost(const py::array& x, const py::array& u, int k) const;
   template <class Real>
   void add_cost(const char* what, const py::object& result, py::ssize_t count, Real* costs,
                 std::uint8_t* collided, Prediction* prediction = nullptr) const;
 
   CallableParts parts_;
+  bool dynamics_take_k_ = false, cost_takes_k_ = false;  ///< the index of the step
   std::vector<float> state_, previous_;
   py::handle owner_;                  ///< during a solve
   mutable std::exception_ptr error_;  ///< the first of a solve; guarded by the interpreter lock

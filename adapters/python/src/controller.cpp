@@ -55,6 +55,19 @@ InputBounds bounds_of(const SolverOptions& options, int inputs) {
   return bounds;
 }
 
+/// Throws std::invalid_argument if a time of the request is not one, or if the problem cannot use it.
+void check_times(const SolveRequest& request, double time_step) {
+  if (!(request.elapsed >= 0 && std::isfinite(request.elapsed)))
+    throw std::invalid_argument("elapsed: " + std::to_string(request.elapsed) +
+                                " must be finite and at least 0");
+  if (request.elapsed > 0 && !(time_step > 0))
+    throw std::invalid_argument(
+        "elapsed: the problem has no dt (the duration of its steps, s): make it with dt=..., or omit "
+        "elapsed");
+  if (!(request.deadline >= 0))
+    throw std::invalid_argument("deadline: " + std::to_string(request.deadline) + " must be at least 0");
+}
+
 /// Warns with slalom.FewSamplesWarning. Throws if the program's warning filter turns it into an error.
 void warn_of_few_samples() {
   const py::object category = py::module_::import("slalom").attr("FewSamplesWarning");
@@ -63,7 +76,7 @@ void warn_of_few_samples() {
                            std::to_string(SolveResult::few_samples_patience) +
                            " solves in a row, so plans follow single samples: raise temperature, reduce the "
                            "variances, or set target_ess_fraction";
-  if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+  if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
 }
 
 }  // namespace
@@ -114,6 +127,7 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
   if (static_cast<int>(state.size()) != problem_->states())
     throw std::invalid_argument("state: has " + std::to_string(state.size()) + " values, must have " +
                                 std::to_string(problem_->states()));
+  check_times(request, problem_->evaluator().time_step());
   const Busy busy(usage_);
   ++solves_;
   is_new_ = false;

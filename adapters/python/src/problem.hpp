@@ -46,8 +46,8 @@ class AnyProblem {
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
   /// Sets the start of the next rollouts; `states()` values.
   virtual void set_state(std::span<const double> state) = 0;
-  /// One step of the dynamics from a state.
-  virtual std::vector<double> step(std::span<const double> state, std::span<const double> input) = 0;
+  /// Step `k` of the dynamics from a state.
+  virtual std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) = 0;
   /// `inputs` [step][input].
   virtual Prediction predict(std::span<const double> state, std::span<const double> inputs) = 0;
   /// Bounds of the problem for an input; infinite if it has none.
@@ -80,7 +80,7 @@ class BuiltIn final : public AnyProblem {
 
   void set_state(std::span<const double> state) override { evaluator_.set_state(to_state(state)); }
 
-  std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
+  std::vector<double> step(std::span<const double> state, std::span<const double> input, int) override {
     const Prediction one = predict(state, input);
     return {one.states.begin() + state_count, one.states.end()};
   }

@@ -1,4 +1,6 @@
+import inspect
 import threading
+import time
 import warnings
 
 import numpy as np
@@ -51,6 +53,19 @@ def test_every_option_is_a_keyword_with_its_default():
     (lambda: slalom.Mppi(slalom.Pendulum()).solve([0, 0, 0]), ValueError, "state: has 3 values, must have 2"),
     (lambda: linear(dynamics=3), ValueError, "dynamics: must be callable"),
     (lambda: linear(states=0), ValueError, "states: 0 must be in"),
+    (lambda: slalom.Mppi(linear(dt=0)).solve([0, 0], elapsed=0.1), ValueError, "elapsed: the problem has no dt"),
+    (lambda: slalom.Mppi(linear()).solve([0, 0], elapsed=-0.1), ValueError, "elapsed: -0.1.* must be finite and at least 0"),
+    (lambda: slalom.Mppi(linear()).solve([0, 0], elapsed=np.nan), ValueError, "elapsed: nan must be finite"),
+    (lambda: slalom.Mppi(linear()).solve([0, 0], deadline=np.nan), ValueError, "deadline: nan must be at least 0"),
+    (lambda: slalom.Mppi(linear()).solve([0, 0], deadline=-1), ValueError, "deadline: -1.* must be at least 0"),
+    (lambda: setattr(slalom.Mppi(linear()), "temperature", 1e-3), AttributeError,
+     r"Mppi.temperature cannot be set; make another controller with .*'temperature': 0.001}"),
+    (lambda: setattr(slalom.Mppi(linear()), "temprature", 1e-3), AttributeError, "no attribute 'temprature'"),
+    (lambda: slalom.Mppi(linear()).options.update(temperature=1), TypeError, "make another one with"),
+    (lambda: slalom.Mppi(linear()).options.__setitem__("temperature", 1), TypeError, "cannot be changed"),
+    *((lambda theirs=theirs: slalom.Mppi(linear(), **{theirs: 1}), TypeError, f"'{theirs}'; did you mean '{ours}'")
+      for theirs, ours in {"num_samples": "samples", "K": "samples", "T": "horizon", "lambda_": "temperature",
+                           "noise_sigma": "variance", "u_min": "input_min", "u_max": "input_max"}.items()),
 ])
 def test_mistakes_name_the_option_the_value_and_the_rule(make, error, text):
     with pytest.raises(error, match=text):
@@ -117,7 +132,7 @@ def test_collisions_of_callables_are_reported():
 
 @pytest.mark.parametrize("changes, error, text", [
     ({"cost": lambda x, u: 1 / 0}, ZeroDivisionError, "division"),
-    ({"cost": lambda x, u: np.zeros(3)}, ValueError, r"cost: returned shape \(3\), must be \(64,\)"),
+    ({"cost": lambda x, u: np.zeros(3)}, ValueError, r"cost: returned shape \(3\), must be \(1920,\)"),
     ({"cost": lambda x, u: 0.0}, TypeError, "cost: returned <class 'float'>, must be an array"),
     ({"dynamics": lambda x, u: x[:, :1]}, ValueError, r"dynamics: returned shape \(64, 1\), must be \(64, 2\)"),
 ])
@@ -247,7 +262,7 @@ def test_plans_that_follow_single_samples_are_reported_once():
         for solve in range(1, 31):
             plan = cold.solve([1.0, 0.0])
             assert plan.few_samples_solves == solve and plan.has_few_samples == (solve >= 20)
-    assert len(caught) == 1
+    assert len(caught) == 1 and caught[0].filename == __file__
 
     warm = slalom.Mppi(linear(), horizon=10, samples=64, temperature=100)
     with warnings.catch_warnings():
@@ -278,3 +293,82 @@ def test_proposals_that_do_not_fit_are_errors():
         controller.solve([0, 0], proposals=np.full((10, 1), np.nan))
     with pytest.raises(ValueError, match="proposals: the method sv_mpc does not accept proposals"):
         slalom.SvMpc(slalom.Pendulum(), horizon=10).solve([0, 0], proposals=np.zeros((10, 1)))
+
+
+@pytest.mark.parametrize("method, rollouts", [("mppi", 1), ("svg_mppi", 13), ("reverse_mppi", 20), ("sv_mpc", 6),
+                                              ("cem", 5), ("icem", 5), ("dial_mpc", 2)])
+def test_a_solve_calls_callables_as_often_as_the_page_says(method, rollouts):
+    calls, costs = [], []
+    plain = linear()
+
+    def dynamics(x, u):
+        calls.append(len(x))
+        return plain.dynamics(x, u)
+
+    def cost(x, u):
+        costs.append(len(x))
+        return plain.cost(x, u)
+
+    problem = linear(dynamics=dynamics, cost=cost)
+    for threads in 1, 3:
+        controller = slalom.Controller(method, problem, horizon=7, samples=1024, threads=threads)
+        controller.solve([1, 0])
+        calls.clear()
+        costs.clear()
+        controller.solve([1, 0], elapsed=0.1)
+        assert len(calls) == 7 * rollouts and sum(costs) == sum(calls)
+        assert len(costs) == (7 + 12 if method == "svg_mppi" else 7 * rollouts)  # one for each rollout of guides
+
+
+def test_a_solve_with_guides_takes_a_few_times_as_long_as_one_without():
+    def shortest(controller):
+        times = []
+        for _ in range(20):
+            start = time.thread_time()
+            controller.solve([1, 0], elapsed=0.1)
+            times.append(time.thread_time() - start)
+        return min(times)
+
+    mppi, svg_mppi = (shortest(method(linear(), horizon=30, samples=1024)) for method in (slalom.Mppi, slalom.SvgMppi))
+    assert svg_mppi < 10 * mppi
+
+
+def test_callables_may_take_the_index_of_the_step():
+    seen = []
+
+    def dynamics(x, u, k):
+        return x + np.float32(k) * u
+
+    def cost(x, u, k):
+        seen.append(k)
+        return (x[:, 0] - k) ** 2
+
+    problem = slalom.Problem(dynamics, cost, states=1, inputs=1, dt=0.1)
+    plan = slalom.Mppi(problem, horizon=4, samples=64).solve([0])
+    assert seen == [0, 1, 2, 3]
+    inputs = plan.inputs[:, 0]
+    assert plan.states[:, 0] == pytest.approx(np.cumsum([0, *(np.arange(4) * inputs)]))
+    assert plan.cost == pytest.approx(np.sum((plan.states[:4, 0] - np.arange(4)) ** 2))
+    assert problem.step([1], [2], k=3) == pytest.approx([7])
+    spring = linear(cost=lambda x, u, k=5.0: k * x[:, 0] ** 2)  # a default: not the index
+    assert slalom.Mppi(spring, horizon=4).solve([1, 0]).cost_terms["stage"] > 5
+
+
+def test_signatures_name_options_and_arguments():
+    options = inspect.signature(slalom.SvgMppi).parameters
+    assert list(options)[0] == "problem" and options["guides"].default == 4
+    assert inspect.signature(slalom.Pendulum).parameters["dt"].default == slalom.Pendulum().dt
+    assert inspect.signature(slalom.Problem).parameters["sampler"].default is None
+    solve = inspect.signature(slalom.Mppi(linear()).solve).parameters
+    assert list(solve) == ["state", "elapsed", "deadline", "proposals"] and solve["deadline"].default == np.inf
+
+
+def test_a_class_derived_from_a_controller_may_have_attributes():
+    class Mine(slalom.Mppi):
+        pass
+
+    mine = Mine(linear())
+    mine.note = 3
+    assert mine.note == 3
+    with pytest.raises(AttributeError, match="temperature cannot be set"):
+        mine.temperature = 1

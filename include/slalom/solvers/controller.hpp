@@ -36,10 +36,8 @@ namespace slalom {
 ///     const MyProblem& problem() const;                 // gives bounds and rates, as in RiskEvaluator
 template <class E>
 concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, const typename E::State& x) {
-  requires std::is_trivially_copyable_v<typename E::State>;
   requires sizeof(typename E::State) % sizeof(double) == 0;
-  requires E::input_count >
-  0;
+  requires(std::is_trivially_copyable_v<typename E::State> && E::input_count > 0);
   e.set_state(x);
 };
 
@@ -49,6 +47,11 @@ namespace detail {
 template <class P>
 struct Controlled {
   static_assert(check_problem<P>());
+  static_assert(HasTimeStep<P> ||
+                    !(
+                        requires { &P::ts; } || requires { &P::Ts; } || requires { &P::delta_t; } ||
+                        requires { &P::timestep; } || requires { &P::time_step; }),
+                "slalom: the problem's duration of a step must be `dt`, or the result of `time_step()`");
   using Evaluator = ProblemEvaluator<P>;
   using State = StateOf<P, double>;
   static constexpr int inputs = P::inputs;

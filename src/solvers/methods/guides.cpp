@@ -251,10 +251,11 @@ void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey ke
   const CostGradient* const exact = exact_gradient(evaluator);
   for (int l = 0; l < options_.guides.iterations && !deadline.passed(); ++l) {
     fill_blocks({key.seed, key.stream + l}, first, last);
-    // Guides are evaluated one at a time, so that the ranges do not depend on the threads: a compiler may
-    // fuse products and sums differently at the end of a range.
-    for (int g = first; g < last; ++g)
-      evaluator.evaluate(batch_, g * block_, block_, costs_.data(), collided_.data());
+    // Unless a call has a high fixed cost, guides are evaluated one at a time, so that the ranges do not
+    // depend on the threads: a compiler may fuse products and sums differently at the end of a range.
+    const int together = evaluator.whole_batches() ? last - first : 1;
+    for (int g = first; g < last; g += together)
+      evaluator.evaluate(batch_, g * block_, together * block_, costs_.data(), collided_.data());
     kernels::make_finite({first * block_, (last - first) * block_}, costs_.data());
     for (int g = first; g < last; ++g) step(g, l, exact);
     made_[share] = l + 1;

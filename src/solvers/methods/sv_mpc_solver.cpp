@@ -237,7 +237,9 @@ class SvMpcSolver final : public SolverBase {
 
   /// One SVGD step of all particles.
   void move(const BatchEvaluator& evaluator, int iteration) noexcept {
-    pool().run(tiles(), [&](int t) { estimate_gradients(evaluator, iteration, range(t)); });
+    const int parts = evaluator.whole_batches() ? 1 : tiles();
+    const auto part = [&](int t) { return parts == 1 ? detail::Range{0, particles_.stride()} : range(t); };
+    pool().run(parts, [&](int t) { estimate_gradients(evaluator, iteration, part(t)); });
     const detail::Rows x = particles_.row_view();
     const int count = particles_.samples();
     const int values = reproduction().bandwidth == BandwidthModel::squared_norms
@@ -259,8 +261,10 @@ class SvMpcSolver final : public SolverBase {
     const int biased = zero_mean_from(options_.gradient_samples, options_.zero_mean_share);
     detail::kernels::sample_around(v, x, {nullptr, deviation_.data(), low().data(), high().data(), biased},
                                    stride, options_.gradient_samples, r);
-    for (int s = 0; s < options_.gradient_samples; ++s)
-      evaluator.evaluate(gradient_batch_, s * stride + r.first, r.count, exponents_.data(), collided_.data());
+    const int together = evaluator.whole_batches() ? options_.gradient_samples : 1;
+    for (int s = 0; s < options_.gradient_samples; s += together)
+      evaluator.evaluate(gradient_batch_, s * stride + r.first, together * r.count, exponents_.data(),
+                         collided_.data());
     const detail::GradientSettings how{options_.gradient_samples,
                                        stride,
                                        static_cast<float>(options_.temperature),
@@ -280,23 +284,21 @@ class SvMpcSolver final : public SolverBase {
   }
 
   void step(detail::Range r) noexcept {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    const bool clamps = reproduction().clamp_particles;
     for (int row = 0; row < rows(); ++row) {
       float* x = particles_.values().data(row);
       const float* direction = phi_.data(row);
-      const float low_bound =
-          reproduction().clamp_particles ? low()[row] : -std::numeric_limits<float>::infinity();
-      const float high_bound =
-          reproduction().clamp_particles ? high()[row] : std::numeric_limits<float>::infinity();
+      const float least = clamps ? low()[row] : -infinite, most = clamps ? high()[row] : infinite;
       for (int k = r.first; k < r.first + r.count; ++k)
-        x[k] = std::min(std::max(x[k] + limited_step_[row] * direction[k], low_bound), high_bound);
+        x[k] = std::min(std::max(x[k] + limited_step_[row] * direction[k], least), most);
     }
   }
 
   bool finite_particles() noexcept {
     bool finite = true;
-    for (int row = 0; row < rows(); ++row) {
+    for (int row = 0; row < rows(); ++row)
       for (const float x : particles_.values()[row]) finite &= std::abs(x) < 1e18f;  // squares are finite too
-    }
     return finite;
   }
 
@@ -310,12 +312,11 @@ class SvMpcSolver final : public SolverBase {
     }
     particles_.weighted_sums(zero_.data(), sums_.data(), pool());
     std::copy(sums_.begin(), sums_.end(), mean_.begin());
+    std::copy(mean_.begin(), mean_.end(), solution_.begin());
     if (options_.best_particle) {
       const auto weights = particles_.weights();
       const auto best = std::max_element(weights.begin(), weights.end()) - weights.begin();
       particles_.values().get_sample(static_cast<int>(best), solution_);
-    } else {
-      std::copy(mean_.begin(), mean_.end(), solution_.begin());
     }
     if (reproduction().clamp_solution) clamp(solution_.data());
     expand_solution();

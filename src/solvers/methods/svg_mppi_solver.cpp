@@ -123,7 +123,8 @@ class SvgMppiSolver final : public SolverBase {
   /// move between caches.
   void move_guides(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::SampleSet& set = update_.samples();
-    const int threads = pool().threads(), shares = threads > 1 ? guides_.sequences().sequences : 1;
+    const int threads = pool().threads();
+    const int shares = threads > 1 && !evaluator.whole_batches() ? guides_.sequences().sequences : 1;
     const bool draws = threads > 1 && set.lacks_noise(evaluator, key(samples));
     const int first = set.tiles() / threads, tiles = draws ? set.tiles() - first : 0;
     const Deadline half = deadline.part(0.5);  // guides without samples would give no solution
