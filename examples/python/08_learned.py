@@ -40,6 +40,7 @@ def record(trips, steps, random):
     return np.concatenate(before), np.concatenate(after)
 
 
+print("training on 200 trips", flush=True)
 network = train_mlp(*record(trips=200, steps=60, random=np.random.default_rng(0)), residual=True, epochs=100)
 if len(sys.argv) > 2:
     network.save(sys.argv[2])

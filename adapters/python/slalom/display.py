@@ -15,7 +15,7 @@ from typing import Any, Callable, Dict, Iterable, Tuple
 _PARTS = ("dynamics", "cost", "terminal_cost", "states", "inputs", "dt", "input_min", "input_max", "input_rate_max",
           "sampler")
 
-_option_names: set[str] = set()  # of all methods
+_option_names: set[str] = set()  # names of the options of all methods
 
 Arguments = Tuple[Tuple[Any, ...], Dict[str, Any]]  # arguments by position and by name
 
