@@ -27,5 +27,5 @@
 
 // A warning for a source file that is compiled without optimisation.
 #if !defined(__OPTIMIZE__) && !defined(SLALOM_ALLOW_UNOPTIMISED)
-#warning "slalom: rollouts without optimisation are about 40 times slower: -O2, or define SLALOM_ALLOW_UNOPTIMISED"
+#warning "slalom: 40 times slower without optimisation: use -O2, or define SLALOM_ALLOW_UNOPTIMISED"
 #endif

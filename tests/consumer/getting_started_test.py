@@ -48,7 +48,7 @@ without = re.sub(r"if\(NOT CMAKE_BUILD_TYPE\).*?endif\(\)\n", "", project, flags
 assert without != project
 where = robot("without", without)
 assert "slalom: this project sets no build type" in run("cmake -B build -DCMAKE_PREFIX_PATH=~/.local", where)
-warning = "slalom: rollouts without optimisation"
+warning = "slower without optimisation: use -O2"
 header = f"${{CXX:-c++}} -std=c++20 -fsyntax-only -I{prefix}/include"
 assert warning in run(f"{header} main.cpp", where)
 assert warning not in run(f"{header} -DSLALOM_ALLOW_UNOPTIMISED main.cpp; {header} -Og main.cpp", where)
