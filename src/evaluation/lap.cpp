@@ -89,7 +89,7 @@ struct LapDrive::State {
   SequenceCostMeter meter;
   std::optional<OvertakingMeter> overtaking;  ///< meter of encounters with opponents
   sim::CollisionLog log;
-  LapFigures sums;  ///< over control steps or solves, where the result has means
+  LapFigures sums;  ///< sums over control steps or solves; the result has their means
   int solves = 0;
   double length, timeout;  ///< m, s
 };

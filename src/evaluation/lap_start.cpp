@@ -20,8 +20,8 @@ std::vector<maps::Pose> place_obstacles(const LapSetup& setup, std::uint64_t lap
                            "; the course may be too narrow to pass a parked car");
 }
 
-/// Returns positions at equal distances along the course, or with `opponent_gap` at this distance one after
-/// the other ahead of the start. A position less than 1 m from another car is moved forward.
+/// Returns positions at equal distances along the course, or with `opponent_gap` ahead of the start and this
+/// far apart. A position less than 1 m from another car is moved forward.
 std::vector<maps::Pose> place_opponents(const LapSetup& setup, const std::vector<maps::Pose>& obstacles) {
   const sim::LapPath& path = *setup.environment->track->lap_path();
   const LapSettings& settings = setup.settings;

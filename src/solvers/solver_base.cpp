@@ -13,11 +13,12 @@ namespace slalom {
 
 namespace {
 
-/// The float32 value next to `bound` that is not below (above) it.
+/// The nearest float32 value that is not below `bound`.
 float not_below(double bound) {
   const float f = static_cast<float>(bound);
   return f < bound ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
+/// The nearest float32 value that is not above `bound`.
 float not_above(double bound) {
   const float f = static_cast<float>(bound);
   return f > bound ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;

@@ -14,7 +14,8 @@ struct Delays {
   double car = 0, ghost = 0;
 };
 
-/// The car, and the ghost if there is one, each in a world of its own. A copy goes on with the same bits.
+/// The car, and the ghost if there is one, each in a world of its own. A copy continues bit for bit like the
+/// original.
 struct Drives {
   evaluation::LapDrive car;
   std::optional<evaluation::LapDrive> ghost{};

@@ -11,8 +11,8 @@
 
 namespace slalom::python {
 
-/// A problem and a method that solves it. A copy goes on with the same bits; it shares the threads and the
-/// callables of the problem.
+/// A problem and a method that solves it. A copy continues bit for bit like the original; it shares the
+/// threads and the callables of the problem.
 class Controller {
  public:
   Controller(const AnyProblem& problem, const SolverOptions& options);

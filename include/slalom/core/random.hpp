@@ -13,7 +13,7 @@ namespace slalom {
 /// of threads.
 struct RandomKey {
   std::uint64_t seed = 0;    ///< seed of the random numbers
-  std::uint64_t stream = 0;  ///< for instance a count of solves and stages
+  std::uint64_t stream = 0;  ///< for instance made of the numbers of a solve and a stage
 };
 
 namespace detail {

@@ -11,7 +11,7 @@
 /// each computes while others wait.
 namespace slalom::detail {
 
-// A state may hold arrays. This list of all scalars fills them without inner braces.
+// Clang warns where the list of scalars below fills the arrays of a state without inner braces.
 #if defined(__clang__)
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wmissing-braces"
@@ -29,9 +29,9 @@ SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<
 template <class P, class F>
 using SeenOf = decltype(look_up<P, F>(std::declval<const P&>(), std::declval<const StateOf<P, F>&>()));
 
-/// Replaces the previous input if none must be remembered.
+/// Takes the place of the previous inputs in a problem that does not limit their rates.
 struct NoInput {};
-/// The inputs of the step before, of a problem that limits their rates.
+/// The inputs of the previous step, if the problem limits their rates.
 template <class P, class F>
 using HeldInput = std::conditional_t<limits_rates<P>, InputOf<P, F>, NoInput>;
 
@@ -88,8 +88,8 @@ SLALOM_INLINE_CALLS RolloutStart<P, F> rollout_start(const P& problem, const flo
 }
 
 /// Computes the rollouts of `packs` packs of samples, beginning at `sample`. The packs advance together, so
-/// that each computes while others wait. With `ahead` 1, the look-up of a pack is made before the step of the
-/// pack before it: a processor does not look so far ahead by itself.
+/// that each computes while others wait. With `ahead` 1, each pack does its look-up before the previous pack
+/// takes its step, since a processor does not look that far ahead by itself.
 template <int packs, int ahead, class P, class F>
 SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& start, const InputRows& rows,
                                   int sample, float* costs, std::uint8_t* collided) {

@@ -9,7 +9,7 @@ namespace slalom::evaluation {
 
 /// The loop that drives a world: in each step all drivers decide, then the world moves for one control
 /// period. Laps, races, rooms and the racing benchmark use it. If world and drivers can be copied, so can the
-/// drive; a copy goes on with the same bits.
+/// drive; a copy continues bit for bit like the original.
 ///
 /// A world has `step(commands)`, with one command per driver. A driver has
 ///

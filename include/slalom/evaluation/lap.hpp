@@ -41,14 +41,14 @@ struct ControlStep {
   int step = 0;                     ///< index of the control step, from 0
   double time = 0;                  ///< s
   double progress = 0;              ///< share of the lap that is driven, 0 ... 1
-  int collisions = 0;               ///< so far, as the protocol counts them
+  int collisions = 0;               ///< collisions so far, as the protocol counts them
   const sim::Observation& seen;     ///< the true state of the car
   const maps::LaserScanView& scan;  ///< input of the planner
   /// Input of the planner. While the car is not localised, the planner gets a pose of NaN; this is the true
   /// one.
   const vehicle::Odometry& odometry;
   const vehicle::PlannerOutput& output;  ///< output of the planner
-  const vehicle::Planner& planner;       ///< after the update
+  const vehicle::Planner& planner;       ///< the planner after the update
   const sim::World& world;               ///< the simulated world
   SequenceCostMeter::Cost cost;          ///< cost of the control sequence that the planner chose
   /// Input of the planner: the other cars that are tracked, with their hypotheses, in the map frame.
@@ -68,22 +68,22 @@ struct EstimationRecord {
 
 /// The figures of a lap that a results table has, too. Means are over its control steps.
 struct LapFigures {
-  std::uint64_t seed = 0;     ///< seed of the random numbers
-  bool finished = false;      ///< whether the car reached the finish in time
-  bool timeout = false;       ///< stopped after the timeout of the lap
-  int collisions = 0;         ///< collisions as the protocol counts them
-  int collided_bodies = 0;    ///< number of different bodies hit, all walls as one
-  bool wall = false;          ///< whether the car hit a wall
-  int impassable = 0;         ///< number of obstacles in impassable_obstacles
-  double time = 0;            ///< s, of the lap; of an unfinished lap until it ended
-  int steps = 0;              ///< control steps
-  double state_cost = 0;      ///< mean, of distance and yaw error
-  double collision_cost = 0;  ///< mean
-  double paper_model_cost =
-      0;                   ///< MS predicted with the model of the paper's program; with `additional_costs`
-  double driven_cost = 0;  ///< MS of the states that the car reached; with `additional_costs`
-  double input_error = 0;  ///< mean of the sum of |steering| over the control sequence, rad
-  double mean_speed = 0;   ///< m/s
+  std::uint64_t seed = 0;       ///< seed of the random numbers
+  bool finished = false;        ///< whether the car reached the finish in time
+  bool timeout = false;         ///< whether the lap was stopped at its timeout
+  int collisions = 0;           ///< collisions as the protocol counts them
+  int collided_bodies = 0;      ///< number of different bodies hit, all walls as one
+  bool wall = false;            ///< whether the car hit a wall
+  int impassable = 0;           ///< number of obstacles that block the course (impassable_obstacles)
+  double time = 0;              ///< s, of the lap, or until it was stopped
+  int steps = 0;                ///< control steps
+  double state_cost = 0;        ///< mean cost of distance and yaw error
+  double collision_cost = 0;    ///< mean cost of collisions
+  double paper_model_cost = 0;  ///< MS (mean_sequence_cost), but of states predicted with the model of the
+                                ///< paper's program; with `additional_costs`
+  double driven_cost = 0;         ///< MS of the states that the car reached; with `additional_costs`
+  double input_error = 0;         ///< mean of the sum of |steering| over the control sequence, rad
+  double mean_speed = 0;          ///< m/s
   double mean_path_distance = 0;  ///< m, of the rear axle
   double max_path_distance = 0;   ///< m
   /// Least clearance over the control steps, m: from the corners of the car to a wall (0 in a wall, with the
@@ -139,7 +139,8 @@ class LapDrive {
   /// obstacle or opponent overlaps the start, and std::runtime_error if there is no room for them.
   LapDrive(const LapSetup& setup, std::uint64_t seed);
   ~LapDrive();
-  /// Copies everything: the copy goes on with the same bits. Environment, maps and threads are shared.
+  /// Copies everything: the copy continues bit for bit like the original. Environment, maps and threads are
+  /// shared.
   LapDrive(const LapDrive& other);
   LapDrive& operator=(const LapDrive& other);
   LapDrive(LapDrive&&) noexcept;

@@ -86,7 +86,7 @@ struct Plan {
   using State = typename detail::Controlled<P>::State;  ///< the problem's state in double
 
   Status status = Status::ok;                                            ///< how the solve ended
-  std::span<const Input<double, detail::Controlled<P>::inputs>> inputs;  ///< [horizon]; the first is for now
+  std::span<const Input<double, detail::Controlled<P>::inputs>> inputs;  ///< [horizon]; apply the first now
   /// [horizon + 1]; the first is the state given. Empty if the evaluator has no `predict`.
   std::span<const State> states;
   double cost = 0;                       ///< cost of the plan
@@ -108,8 +108,8 @@ struct Plan {
 /// always finite, within the bounds and within the rates; its cost and states are always finite
 /// (final_check.hpp).
 ///
-/// A copy goes on with the same bits. It has its own problem and solver and shares only the threads. Both
-/// controllers may be used at the same time (see ThreadPool).
+/// A copy continues bit for bit like the original. It has its own problem and solver and shares only the
+/// threads. Both controllers may be used at the same time (see ThreadPool).
 template <class P>
 class Controller {
   using Controlled = detail::Controlled<P>;
@@ -338,9 +338,9 @@ class Controller {
   std::vector<State> states_;
   Cost<double> cost_{0.0, false};
   decltype(Controlled::cost_terms()) terms_ = Controlled::cost_terms();
-  Inputs previous_{};    ///< applied before the last solve; within the bounds
-  Inputs given_{};       ///< by set_previous_input
-  bool told_ = true;     ///< whether `given_` was applied before the next solve
+  Inputs previous_{};    ///< input applied before the last solve, within the bounds
+  Inputs given_{};       ///< argument of the last set_previous_input
+  bool told_ = true;     ///< whether the next solve uses `given_`
   int corrections_ = 0;  ///< corrections by the final check, in the last solve
   SequenceBatch alone_;  ///< the plan as a batch of one, for an evaluator that does not predict
   AlignedBuffer alone_cost_;

@@ -15,7 +15,7 @@ class ThreadPool;
 /// A list of control sequences.
 struct SequenceList {
   std::span<const float> values;  ///< [sequence][step][input]
-  int sequences = 0;              ///< number
+  int sequences = 0;              ///< number of sequences
 };
 
 /// The inputs of a solve that change from one to the next.
@@ -65,7 +65,7 @@ struct SolveResult {
   double minimum_cost = 0;           ///< the least cost of a sample
   double expected_cost = 0;          ///< weighted mean of the samples' costs
   double effective_sample_size = 0;  ///< 1 / sum of squared weights
-  int few_samples_solves = 0;        ///< solves in a row, with this one, below `few_samples`
+  int few_samples_solves = 0;        ///< solves below `few_samples` in a row, this one included
   double collided_share = 0;         ///< share of the samples that collide, 0 ... 1
   double temperature = 0;            ///< lambda in use; 0 with `cem` and `icem`, which have none
   int iterations = 0;                ///< guide or distribution updates made
@@ -96,8 +96,9 @@ class Solver {
   /// Whether `solve` uses the proposals of a request.
   virtual bool takes_proposals() const noexcept { return false; }
 
-  /// Returns a copy that goes on with the same bits: the same requests from the same states give the same
-  /// results. The last result of the copy points into the copy. Both share their threads; see ThreadPool.
+  /// Returns a copy that continues bit for bit like the original: the same requests from the same states give
+  /// the same results. The last result of the copy points into the copy. Both share their threads; see
+  /// ThreadPool.
   virtual std::unique_ptr<Solver> clone() const = 0;
 
   /// The result of the last solve, or the state after the last reset.

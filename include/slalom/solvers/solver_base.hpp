@@ -35,8 +35,8 @@ class Deadline {
 /// The outcome of evaluating a batch.
 struct BatchOutcome {
   int samples = 0;    ///< number in the batch
-  int evaluated = 0;  ///< before the deadline
-  int finite = 0;     ///< number of finite cost
+  int evaluated = 0;  ///< number evaluated before the deadline
+  int finite = 0;     ///< number whose cost is finite
   int collided = 0;   ///< number that collide
   int best = 0;       ///< index of the sample of least cost, the first of equal ones
 

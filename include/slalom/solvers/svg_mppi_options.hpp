@@ -9,8 +9,8 @@
 
 namespace slalom {
 
-/// The costs in the weights of the guides' gradient; S is the cost of a sample v, u the last solution, n the
-/// last nominal sequence.
+/// The cost by which a gradient of the guides weighs its samples. S is the cost of a sample v, u the last
+/// solution, n the last nominal sequence.
 enum class GuideWeight {
   state_cost,  ///< S alone
   importance,  ///< S and (u - n)^T Sigma^-1 v, the control term of the paper's equation (8)
@@ -54,7 +54,7 @@ struct GuideOptions {
   PerInput gradient_variance = 0.25;
   double gradient_temperature = 1;
   GuideWeight weight = GuideWeight::state_cost;
-  /// Guides that restart search for other modes; the best guide is kept until another is better.
+  /// Restarted guides search for other modes; the best guide is kept until another is better.
   bool restart = true;
   PerInput restart_variance = 1;
   /// If `use_nominal` is false, samples are always drawn around the last solution.

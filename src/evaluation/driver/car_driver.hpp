@@ -30,8 +30,8 @@ struct PlannerUpdate {
   std::span<const maps::PredictedObstacle> others{};  ///< input of the planner
 };
 
-/// A driver with a planner. It also has sensors and localiser, tracker and predictor of other cars, and the
-/// commands that have not taken effect yet.
+/// A driver with a planner. It also has sensors, a localiser, a tracker and a predictor of other cars, and
+/// the commands that have not taken effect yet.
 class PlanningDriver {
  public:
   /// Drives car `car` of a world that has been reset. All random numbers follow from `seed` and `label`;
@@ -110,7 +110,7 @@ bool ends_with_path(const LapSetup& setup) noexcept;
 /// Checks what LapSetup::validate checks, except for the options of drivers. Throws std::invalid_argument.
 void check_settings(const LapSetup& setup);
 /// Returns the setup with which opponent `index` drives; it must have a planner. Throws std::invalid_argument
-/// if it is too slow for its configuration.
+/// if the opponent is too slow for its configuration.
 LapSetup setup_of_opponent(const LapSetup& setup, int index);
 
 /// Makes the drive of a lap: places the obstacles, whose poses are returned in `obstacles`, and puts the cars

@@ -5,8 +5,8 @@
 
 #include "slalom/core/sequence_batch.hpp"
 
-/// The inner loops of the solvers over batches [row][sample], row = step * inputs + input. Each runs on packs
-/// of float32 of the widest instruction set (core/dispatch.hpp). All arrays are padded to whole packs.
+/// The inner loops of the solvers over batches [row][sample], row = step * inputs + input. Each loop runs on
+/// packs of float32 of the widest instruction set (core/dispatch.hpp). All arrays are padded to whole packs.
 namespace slalom::detail {
 
 /// A view of values [row][sample]; `stride` is the distance from one row to the next.
@@ -109,8 +109,8 @@ class Matrix {
 
 namespace kernels {
 
-/// Makes samples of standard normal values: clamp(mean + deviation z, low, high). `noise` and `samples` may
-/// be the same.
+/// Turns standard normal values z into samples, clamp(mean + deviation z, low, high). `noise` and `samples`
+/// may be the same.
 void sample(const Rows& noise, const Rows& samples, const SamplingDistribution& to, Range range);
 /// totals[k] += sum over rows of coefficient[row] v[row][k].
 void add_linear(const Rows& v, const float* coefficient, Range range, float* totals);
@@ -141,7 +141,7 @@ void colour(const Rows& z, const float* factor, int first, int step, Range range
 /// Gradients [row][particle]. `exponents` holds the samples' costs and is replaced by their weights.
 void particle_gradients(const GradientSettings& how, const Rows& samples, const Rows& theta, Range particles,
                         float* exponents, const Rows& gradient);
-/// Makes `count` samples around each particle theta from standard normal values, in place:
+/// Turns standard normal values z into `count` samples around each particle theta, in place:
 /// clamp(theta + deviation z, low, high). `to.zero_mean_from` counts the samples of a particle.
 void sample_around(const Rows& samples, const Rows& theta, const SamplingDistribution& to,
                    int particle_stride, int count, Range particles);

@@ -78,8 +78,8 @@ struct Colour {
   }
 };
 
-/// sum over rows of coefficient[row] v[row][k], for a pack of samples; two sums that do not wait for each
-/// other.
+/// The sum over rows of coefficient[row] v[row][k], for a pack of samples. Adds up even and odd rows
+/// separately, so that the two sums do not wait for each other.
 template <class F>
 SLALOM_INLINE F linear_term(const Rows& v, const float* coefficient, int k) {
   F term0(0.0f), term1(0.0f);

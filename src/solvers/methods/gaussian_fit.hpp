@@ -15,7 +15,8 @@ struct GaussianFit {
   bool determined = false;  ///< whether the points determine the curvature
 };
 
-/// The squares and logarithms of the densities of `count` points. Densities below 1e-10 count as 1e-10.
+/// Computes the squares and logarithms of the densities of `count` points. Densities below 1e-10 count as
+/// 1e-10.
 inline void fit_weights(const double* density, int count, double* square, double* logarithm) {
   for (int k = 0; k < count; ++k) {
     const double y = std::max(density[k], 1e-10);
@@ -72,7 +73,7 @@ inline double fitted_variance(const GaussianFit& fit, bool absolute_curvature) {
 }
 
 /// Fits as the paper's program does, by the normal equations of the raw abscissas. If these equations are
-/// nearly dependent, rounding decides the result.
+/// nearly linearly dependent, rounding decides the result.
 GaussianFit fit_gaussian_as_published(const double* x, const double* square, const double* logarithm,
                                       int count);
 

@@ -108,10 +108,10 @@ class Guides {
   /// Copies `theta_` to `guides_`.
   void round_to_float() noexcept;
 
-  /// The first guide of a share; those of a share follow each other.
+  /// The first guide of a share, whose guides have consecutive indices.
   int first_guide(int share) const noexcept { return count_ * share / shares_; }
 
-  static constexpr int restart_intervals_ = 3;  ///< between the knots of a deviation
+  static constexpr int restart_intervals_ = 3;  ///< number of intervals between knots of a deviation
 
   SvgMppiOptions options_;
   int inputs_;
@@ -128,13 +128,13 @@ class Guides {
   AlignedBuffer costs_, totals_, weights_, end_costs_;
   std::vector<std::uint8_t> collided_, end_collided_;
   Matrix<float> gradient_;                  ///< [guide][row]
-  std::vector<float> deviation_, inverse_;  ///< deviations of gradient samples and their inverse [row]
+  std::vector<float> deviation_, inverse_;  ///< standard deviation, 1 / variance of gradient samples [row]
   std::vector<float> step_;                 ///< epsilon [row]
   std::vector<float> weight_variance_, linear_, distance_weight_, solution_;  ///< [row]
   Matrix<double> path_;                                                       ///< [point][row]
   Matrix<float> path_float_;                                                  ///< `path_` as float32
   std::vector<float> path_costs_;                                             ///< [point]
-  std::vector<double> workspace_;   ///< workspace of exact gradients, for each guide
+  std::vector<double> workspace_;   ///< working memory of exact gradients, for each guide
   std::vector<int> kinks_;          ///< exact gradients at a kink or not finite [guide]
   Matrix<double> taken_;            ///< with exact gradients: the best point of a guide [guide][row]
   std::vector<double> part_;        ///< part of a step that a guide makes from `taken_` [guide]

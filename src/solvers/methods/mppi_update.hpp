@@ -17,8 +17,8 @@ namespace slalom::detail {
 /// value. In J = S + lambda g, the control term g is in units of lambda.
 class Weighting {
  public:
-  /// `temperature` is lambda, at first or always; `share` is effective sample size / samples, or 0 if lambda
-  /// is fixed.
+  /// `temperature` is lambda, or its first value if it is adapted. `share` is the wanted effective sample
+  /// size / samples, or 0 if lambda is fixed.
   Weighting(double temperature, double share)
       : first_temperature_(temperature), share_(share), temperature_(temperature) {}
 

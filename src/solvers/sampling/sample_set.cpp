@@ -11,7 +11,7 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/// Rollouts process four packs at a time.
+/// Rollouts process up to four packs at a time.
 constexpr int together = 4 * simd::padding;
 
 /// Samples per tile. Their values fill about 32 KiB.

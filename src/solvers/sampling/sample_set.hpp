@@ -140,7 +140,7 @@ class SampleSet {
   std::vector<std::uint8_t> collided_;
   int tile_;
   std::vector<std::uint8_t> prepared_;          ///< whether `noise_` is that of `prepared_key_` [tile]
-  std::vector<BatchStatistics> statistics_;     ///< [part of a tile]
+  std::vector<BatchStatistics> statistics_;     ///< [part], see part_size
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
   std::vector<float> least_;                    ///< [tile]
   Matrix<float> tile_sums_;                     ///< [tile][sum]

@@ -164,7 +164,7 @@ class DynamicPlanner final : public PlannerBase {
   Detour detour_;
   WaysAround ways_;
   DrivingConditions conditions_;
-  double path_friction_ = 0;  ///< friction for the path's speeds
+  double path_friction_ = 0;  ///< friction for which the path's speeds were computed
   bool on_detour_ = false;    ///< plans follow the detour, not the path
 };
 

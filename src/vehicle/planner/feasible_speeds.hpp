@@ -48,7 +48,7 @@ inline DrivingLimits driving_limits(const VehicleTraits& traits, double friction
 class FeasibleSpeeds {
  public:
   /// `grip_shares` are shares of the grip in the limits, one for each part of the path; the parts have equal
-  /// lengths. At least one share.
+  /// lengths. There must be at least one share.
   explicit FeasibleSpeeds(std::span<const maps::ReferencePoint> path,
                           std::span<const double> grip_shares = std::span(&whole, 1)) {
     std::vector<maps::Point> points;
@@ -141,7 +141,7 @@ class FeasibleSpeeds {
   }
 
   std::vector<double> own_, speed_;  ///< m/s
-  std::vector<double> profile_;      ///< m/s, before they are looked up ahead
+  std::vector<double> profile_;      ///< m/s, speeds before `look_ahead` replaces them
   std::vector<double> arc_;          ///< m
   std::vector<double> curvature_;    ///< 1/m, positive to the left
   std::vector<double> share_;        ///< share of the grip at each point

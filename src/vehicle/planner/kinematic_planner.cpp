@@ -66,7 +66,7 @@ class KinematicPlanner final : public PlannerBase {
   }
 
   /// Brakes if every plan collides. If the start itself collides, braking does not help: then the car follows
-  /// the best plan, slowly once it is slow. If it does not get away, it reverses.
+  /// the best plan, and creeps once it is slow. If it does not get away, it reverses.
   void slow_down(const PredictedCost& cost, double speed) noexcept {
     constexpr double creep = 0.5;  // m/s
     const bool too_near = model_->start_collides();
@@ -82,7 +82,7 @@ class KinematicPlanner final : public PlannerBase {
   }
 
   /// Records the angle that the wheels turn to: that of the command. The observer of the paper's program
-  /// (`wrap_steer`) follows the planned angle instead, which is not limited, unless the command is another.
+  /// (`wrap_steer`) follows the planned angle instead, which is not limited, unless another command is sent.
   void send() noexcept override {
     const double sent = output_.command.steer;
     const bool sends_plan = !output_.inputs.empty() && sent == limited(planned_steer_);

@@ -34,8 +34,8 @@ void check_parts(const PlannerOptions& options, const VehicleModel* model,
 }
 
 /// Returns the point of a 100 km grid that is nearest to the path's first point, m; (0, 0) for most courses.
-/// The planner works relative to this point. The difference of a coordinate to it is exact, whereas sums of
-/// UTM coordinates (5e6 m, which double resolves to 1e-9 m) would round differently than near the origin.
+/// The planner works relative to this point. Subtracting it from a coordinate is exact, whereas sums of UTM
+/// coordinates (5e6 m, which double resolves to 1e-9 m) would round differently from sums near (0, 0).
 maps::Point grid_origin(std::span<const maps::ReferencePoint> path) {
   constexpr double grid = 1e5;
   return {grid * std::round(path[0].x / grid), grid * std::round(path[0].y / grid)};

@@ -74,7 +74,7 @@ class PlannerBase {
   Polymorphic<VehicleModel> model_;
   VehicleTraits traits_;
   Polymorphic<Solver> solver_;
-  double stopping_time_;  ///< s; maps reach this much beyond plans, at the given friction
+  double stopping_time_;  ///< s by which maps reach beyond plans, to stop at the given friction
   double reach_;          ///< m; how far the maps reach
   Obstacles obstacles_;
   maps::ReferenceField field_;

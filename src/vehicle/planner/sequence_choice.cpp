@@ -72,7 +72,7 @@ PredictedCost SequenceChoice::predict(const VehicleModel& model, std::span<const
   return cost;
 }
 
-/// Whether the body collides after the first free state, as VehicleModel::predict has it.
+/// Whether the body collides after the first free state, as in VehicleModel::predict.
 bool SequenceChoice::body_collides(std::span<const PredictedState> states) const noexcept {
   bool was_free = false;
   for (const PredictedState& s : states) {
@@ -157,8 +157,8 @@ void SequenceChoice::stop(bool reversing) noexcept {
   brake(reversing ? max_deceleration_ : -max_deceleration_);
 }
 
-/// Calls `use` with the sequence sent last, as `last` has it, the nominal sequence and the guides: those that
-/// there are.
+/// Calls `use` with `last` (a form of the sequence sent last), the nominal sequence and each guide. Leaves
+/// out those that do not exist.
 template <class Use>
 void SequenceChoice::for_each_known(std::span<const float> last, Use&& use) const {
   const std::size_t size = candidate_.size();
@@ -215,8 +215,8 @@ void SequenceChoice::brake(float acceleration) noexcept {
   for_each_known(previous_, consider_stop);
 }
 
-/// Returns the harm of a sequence: the squared speed (m^2/s^2) of its first collision, times the share of its
-/// steps after it, since a collision far ahead can still be avoided. Returns 0 without a collision.
+/// Returns the harm of a sequence: the squared speed (m^2/s^2) of its first collision, times the share of the
+/// sequence that follows, since a collision far ahead can still be avoided. Returns 0 without a collision.
 double SequenceChoice::harm(std::span<const float> inputs) noexcept {
   const std::size_t steps = inputs.size() / inputs_;
   const auto collides = [&](std::size_t end) {

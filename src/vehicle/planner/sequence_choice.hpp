@@ -24,7 +24,7 @@ class SequenceChoice {
   /// Sequences have `horizon` steps of `inputs` inputs.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
 
-  /// Sets the clearances (m, robot's frame) around the car and the moving obstacles (in the frame of
+  /// Sets the map of clearances (m, robot's frame), and the moving obstacles (in the frame of the
   /// predictions). Both are used until the next call.
   void sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept;
 
@@ -52,9 +52,10 @@ class SequenceChoice {
   void consider_samples() noexcept;
 
   /// Replaces the best sequence by a full stop, for when every sequence collides. The car brakes as hard as
-  /// the tyres allow and steers like the solution, the sequence sent last, the nominal one or a guide: like
-  /// the cheapest one that does not collide, or else the cheapest of all. If plans seek the shortest time
-  /// with a margin, the sequence that does the least harm is taken instead. For models whose tyres slip.
+  /// the tyres allow, with the steering of the solution, the sequence sent last, the nominal one or a guide.
+  /// Takes the cheapest stop without a collision, or else the cheapest of all. If plans seek the shortest
+  /// time with a margin, and the car drives forwards and does not collide yet, takes the sequence that does
+  /// the least harm instead. For models whose tyres slip.
   void stop(bool reversing) noexcept;
 
   /// The best sequence so far.

@@ -28,7 +28,7 @@ struct PathInSight {
 class Sight {
  public:
   /// Looks along this path, up to `reach` (m) ahead. The options give the pose of the laser. An obstacle that
-  /// the body of the car would touch stands on the path.
+  /// the body of the car would touch counts as on the path.
   Sight(std::span<const maps::ReferencePoint> path, bool closed, double reach, const PlannerOptions& options,
         const BodyOptions& body)
       : path_(path.begin(), path.end()),
@@ -41,9 +41,9 @@ class Sight {
         laser_{options.laser_x, options.laser_y, options.laser_yaw},
         unknown_(2 * path.size()) {}
 
-  /// Looks from a pose in the frame of the path, with its nearest point. A beam without a reading shows
-  /// everything. Obstacles on the path hide nothing, since a plan that passes them sees the path behind them
-  /// in time.
+  /// Looks from a pose in the frame of the path; `nearest` is the point of the path nearest to it. A beam
+  /// without a reading shows everything. Obstacles on the path hide nothing, since a plan that passes them
+  /// sees the path behind them in time.
   PathInSight look(const maps::LaserScanView& scan, const maps::Pose& pose, int nearest) noexcept {
     PathInSight seen;
     unknown_count_ = 0;

@@ -66,9 +66,9 @@ class WaysAround {
   static constexpr int speeds = 3;                            ///< number of top speeds
   static constexpr int count = (2 * sides + 1) * speeds;      ///< number of ways
   static constexpr double turning_share = 0.6;                ///< share of the usable grip
-  static constexpr double braking = 0.8, accelerating = 0.5;  ///< shares of the largest of both
+  static constexpr double braking = 0.8, accelerating = 0.5;  ///< shares of the car's limits
   static constexpr double look_ahead_time = 0.4;              ///< s to the point that the car steers to
-  static constexpr double min_wheelbases = 2;                 ///< wheelbases in addition
+  static constexpr double min_wheelbases = 2;                 ///< wheelbases that are added to it
 
   /// A car that drives one of the ways: a kinematic bicycle.
   struct Car {
@@ -116,7 +116,7 @@ class WaysAround {
     }
   }
 
-  /// Moves the car's two points of the path forward: the nearest one, and the one to steer to.
+  /// Updates the car's two points of the path: the nearest one, and the one to steer to.
   void look_ahead(Car& car) const noexcept {
     const auto squared_distance = [&](std::size_t i) {
       return square(path_[i].x - car.x) + square(path_[i].y - car.y);

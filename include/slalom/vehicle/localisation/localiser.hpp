@@ -91,7 +91,7 @@ class Localiser {
   /// positive; and if the table of ranges would have more than 2^27 entries.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
-  /// Copies everything: the copy goes on with the same bits. The tables of the map are shared.
+  /// Copies everything: the copy continues bit for bit like the original. The tables of the map are shared.
   Localiser(const Localiser& other);
   Localiser& operator=(const Localiser& other);
   Localiser(Localiser&&) noexcept;

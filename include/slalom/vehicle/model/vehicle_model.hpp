@@ -20,7 +20,7 @@ struct PredictedCost {
   bool collided = false;  ///< a state after the first free one collides, or none is free
 };
 
-/// A vehicle problem of any type, as the planner uses it. A copy goes on with the same bits.
+/// A vehicle problem of any type, as the planner uses it. A copy continues bit for bit like the original.
 class VehicleModel {
  public:
   virtual ~VehicleModel() = default;

@@ -46,12 +46,12 @@ struct Odometry {
 /// The reason for a command.
 enum class PlannerStatus {
   ok,
-  blocked,            ///< every plan collides; with tyre slip also while the car reverses. Without tyre slip
-                      ///< only with `verify_plan` and `stop_when_blocked`: else such a plan is sent as `ok`
-  fallback_plan,      ///< the solution collided; another sequence, which does not, was sent
-  bad_scan,           ///< empty, or of an invalid geometry: braking
-  bad_odometry,       ///< not finite, or larger than `Odometry` allows: braking
-  off_course,         ///< further from the path than the reference field reaches: braking
+  blocked,        ///< every plan collides or, with tyre slip, the car reverses. Without tyre slip only with
+                  ///< `verify_plan` and `stop_when_blocked`; otherwise such a plan is sent as `ok`
+  fallback_plan,  ///< the solution collided; another sequence, which does not, was sent
+  bad_scan,       ///< empty, or of an invalid geometry: braking
+  bad_odometry,   ///< not finite, or larger than `Odometry` allows: braking
+  off_course,     ///< further from the path than the reference field reaches: braking
   solver_degenerate,  ///< no usable weights or no finite cost; the sequence that the solver falls back to was
                       ///< sent
 };
@@ -67,8 +67,8 @@ struct PlannerInput {
   maps::LaserScanView scan;                  ///< the scan, in the frame of the laser
   Odometry odometry;                         ///< at the time of the scan
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
-  std::optional<ImuReading> imu{};  ///< mean since the last update, where there is a unit; it is used
-                                    ///< with models whose tyres slip, if it is `plausible`
+  std::optional<ImuReading> imu{};           ///< mean since the last update, if the car has a unit. Used with
+                                             ///< models whose tyres slip, if it is `plausible`
   /// Other cars and their predictions from the time of the scan on, map frame; used with `predict_others`.
   /// Readings of these cars are not obstacles, and count as invalid in the report of the scan.
   std::span<const maps::PredictedObstacle> others{};
@@ -83,8 +83,8 @@ struct ParameterEstimate {
   double steering_gain_deviation = 0;  ///< standard deviation
   double delay = 0;                    ///< s, from sending a steering command to its first effect, mean
   double delay_deviation = 0;          ///< s, standard deviation
-  double confidence = 0;  ///< 0 .. 1, share of the prior variance of the logarithm of the friction that the
-                          ///< drive has removed: 0 without turning
+  double confidence = 0;  ///< 0 ... 1, how far the drive has reduced the variance of log(friction): 1 -
+                          ///< variance / prior variance. 0 if the car has not turned
 };
 
 /// The outcome of an update. Spans stay valid until the next one. For any input the command is finite and
@@ -94,7 +94,7 @@ struct PlannerOutput {
   PlannerStatus status = PlannerStatus::ok;  ///< result of the update
   Command command;                           ///< to send now
   std::span<const float> inputs;  ///< [step][input], the sequence that is sent: steering in rad, and with
-                                  ///< two inputs acceleration in m/s^2; empty where none is
+                                  ///< two inputs acceleration in m/s^2; empty if none is sent
   int inputs_per_step = 1;        ///< number of inputs of a step
   /// The horizon + 1 states of the sequence that is sent. Empty if none is sent or its cost is not finite.
   std::span<const PredictedState> predicted;
@@ -120,7 +120,8 @@ class Planner {
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
-  /// Copies everything: the copy goes on with the same bits. The threads of the solver are shared.
+  /// Copies everything: the copy continues bit for bit like the original. The threads of the solver are
+  /// shared.
   Planner(const Planner& other);
   Planner& operator=(const Planner& other);
   Planner(Planner&&) noexcept;
