@@ -40,8 +40,8 @@ enum class Agreement {
 /// each measured lap, since the seed places the obstacles: only these laps of the log count, and the tests
 /// are those of paired laps.
 struct LogComparison {
-  int our_laps = 0,
-      laps = 0;          ///< number of measured laps, number of laps of the log that they are compared with
+  int our_laps = 0;      ///< number of measured laps
+  int laps = 0;          ///< number of laps of the log that they are compared with
   bool paired = false;   ///< whether the laps are paired by seed
   double ms_mean = 0;    ///< MS of the whole log
   Interval ms_ci;        ///< interval of the log's MS, bootstrap over laps

@@ -49,6 +49,7 @@ template <class P>
 struct Mppi : GpuController<P, MppiOptions> {
   using GpuController<P, MppiOptions>::GpuController;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 Mppi(P, MppiOptions = {}) -> Mppi<P>;
 
@@ -57,6 +58,7 @@ template <class P>
 struct SvgMppi : GpuController<P, SvgMppiOptions> {
   using GpuController<P, SvgMppiOptions>::GpuController;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 SvgMppi(P, SvgMppiOptions = {}) -> SvgMppi<P>;
 

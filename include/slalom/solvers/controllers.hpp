@@ -31,6 +31,7 @@ template <class P>
 struct Mppi : detail::ControllerOf<P, MppiOptions> {
   using detail::ControllerOf<P, MppiOptions>::ControllerOf;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 Mppi(P, MppiOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> Mppi<P>;
 
@@ -39,6 +40,7 @@ template <class P>
 struct SvgMppi : detail::ControllerOf<P, SvgMppiOptions> {
   using detail::ControllerOf<P, SvgMppiOptions>::ControllerOf;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 SvgMppi(P, SvgMppiOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> SvgMppi<P>;
 
@@ -48,6 +50,7 @@ template <class P>
 struct ReverseMppi : detail::ControllerOf<P, ReverseMppiOptions> {
   using detail::ControllerOf<P, ReverseMppiOptions>::ControllerOf;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 ReverseMppi(P, ReverseMppiOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> ReverseMppi<P>;
 
@@ -56,6 +59,7 @@ template <class P>
 struct SvMpc : detail::ControllerOf<P, SvMpcOptions> {
   using detail::ControllerOf<P, SvMpcOptions>::ControllerOf;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 SvMpc(P, SvMpcOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> SvMpc<P>;
 
@@ -64,6 +68,7 @@ template <class P>
 struct Cem : detail::ControllerOf<P, CemOptions> {
   using detail::ControllerOf<P, CemOptions>::ControllerOf;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 Cem(P, CemOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> Cem<P>;
 
@@ -72,6 +77,7 @@ template <class P>
 struct Icem : detail::ControllerOf<P, IcemOptions> {
   using detail::ControllerOf<P, IcemOptions>::ControllerOf;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 Icem(P, IcemOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> Icem<P>;
 
@@ -80,6 +86,7 @@ template <class P>
 struct DialMpc : detail::ControllerOf<P, DialMpcOptions> {
   using detail::ControllerOf<P, DialMpcOptions>::ControllerOf;
 };
+/// Takes the type of the problem from the argument.
 template <class P>
 DialMpc(P, DialMpcOptions = {}, std::shared_ptr<ThreadPool> = nullptr) -> DialMpc<P>;
 

@@ -154,8 +154,10 @@ class Ilqr {
   std::vector<double> start_;  ///< [step][input], as `IterativeLqr` takes it
 };
 
+/// Takes the type of the problem from the argument.
 template <Problem P>
 Ilqr(const P&, int, IlqrOptions = {}) -> Ilqr<P>;
+/// Takes the type of the problem from its controller.
 template <class C>
 Ilqr(const Controller<C>&, IlqrOptions = {})
     -> Ilqr<std::remove_cvref_t<decltype(std::declval<const Controller<C>&>().problem())>>;

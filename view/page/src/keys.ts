@@ -3,7 +3,7 @@ import { get, make } from "./dom";
 /** Controls that use keys themselves. */
 const controls = "button, input, select, textarea, summary, a[href], [role=tab], [role=tabpanel]";
 
-/** Some keys as the help shows them, their meaning, and what each does; with Ctrl, its name begins with it. */
+/** Keys as the help shows them, their meaning, and what each does. Names of keys with Ctrl begin with it. */
 export type Shortcut = [shown: string, meaning: string, acts: Record<string, () => void>];
 
 /** Lists the keys in the help. Calls the function of a key unless a control or a dialog has the focus. */

@@ -4,7 +4,7 @@ import type { Body, Frame } from "./protocol";
 /** On which side of an obstacle something passes: left, right, or into it. */
 type Side = "left" | "right" | "into";
 
-/** The way in which a controller passes the next obstacle: that of its plan, and the weight of the samples. */
+/** The side on which a controller passes the next obstacle: that of its plan, and the weight of each side. */
 interface Modes {
   plan: Side;
   left: number; // share of the weight, 0 ... 1

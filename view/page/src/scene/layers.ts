@@ -1,4 +1,4 @@
-/** A layer that can be shown: its name, its title, its description and its colour in the theme, if it has one. */
+/** A layer that can be shown: its name, title, description and, if it has one, its colour in the theme. */
 export const layers = [
   ["costMap", "Cost map", "where the rear axle would mean a collision, from the scan", "cost"],
   ["path", "Course line", "the line to follow", "path"],
