@@ -85,8 +85,8 @@ auto closed_loop(const P& problem, const typename P::template State<double>& sta
                  Change change = nullptr) {
   return [=](const Runs& runs) {
     Outcome outcome;
-    Controller<GradientEvaluator<P>> controller(GradientEvaluator<P>(problem), runs.options);
-    std::optional<Proposals<GradientEvaluator<P>>> proposals;
+    Controller controller(problem, runs.options);
+    std::optional<Proposals<P>> proposals;
     if (runs.ilqr_iterations > 0) proposals.emplace(controller, 1);
     Ilqr ilqr(controller, {std::max(runs.ilqr_iterations, 1)});
     for (int run = 0; run < runs.count; ++run) {

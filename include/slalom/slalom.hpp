@@ -4,7 +4,6 @@
 /// vehicle, sim) are included by their own headers.
 
 #include "slalom/core/batch_evaluator.hpp"
-#include "slalom/core/derivatives/gradient_evaluator.hpp"
 #include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/grid_view.hpp"

@@ -170,8 +170,6 @@ TEST(GpuSettings, RefusesOptionsThatAGpuLacksByName) {
   };
   EXPECT_EQ(refusal(MppiOptions{.samples = 2048}), "");
   EXPECT_EQ(refusal(MppiOptions{.noise = {.knots = 4}}), "mppi.noise_knots: 4 must be 0 on a GPU");
-  EXPECT_EQ(refusal(SvgMppiOptions{.guides = {.gradient = GuideGradient::exact}}),
-            "svg_mppi.guide_gradient: exact must be surrogate on a GPU");
   EXPECT_EQ(refusal(MppiOptions{.horizon = 5000}),
             "mppi.horizon: 5000 steps of 2 inputs do not fit into 64 KiB of a GPU's shared memory");
 }

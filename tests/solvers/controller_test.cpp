@@ -65,9 +65,6 @@ TEST(Controller, ACopyHasAProblemOfItsOwn) {
   const SvgMppiOptions options{.horizon = 12, .samples = 256, .input_min = -2, .input_max = 2, .threads = 2};
   expect_independent_copy([&] { return SvgMppi{DoubleIntegrator{}, options}; });
   expect_independent_copy([&] { return Controller{DoubleIntegrator{}, SolverOptions(MppiOptions{})}; });
-  SvgMppiOptions exact = options;
-  exact.guides.gradient = GuideGradient::exact;
-  expect_independent_copy([&] { return Controller{GradientEvaluator{DoubleIntegrator{}}, exact}; });
 }
 
 TEST(Controller, RejectsASolverForAnotherNumberOfInputs) {

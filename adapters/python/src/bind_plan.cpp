@@ -70,8 +70,6 @@ void bind_results(py::class_<Plan>& plan) {
   number("minimum_cost", &SolveResult::minimum_cost, "the lowest cost of a sample");
   number("expected_cost", &SolveResult::expected_cost, "weighted mean of the samples' costs");
   number("effective_sample_size", &SolveResult::effective_sample_size, "1 / sum of squared weights");
-  number("gradient_kinks", &SolveResult::gradient_kinks,
-         "exact gradients of guides in this solve that were taken at a kink, or were not finite");
   number("few_samples_solves", &SolveResult::few_samples_solves,
          "solves in a row, with this one, whose effective sample size was below 3");
   number("collided_share", &SolveResult::collided_share, "fraction of the samples that collide, 0 ... 1");

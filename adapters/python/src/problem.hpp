@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "slalom/core/derivatives/gradient_evaluator.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 
 namespace slalom::python {
@@ -126,7 +125,7 @@ class BuiltIn final : public AnyProblem {
     return state;
   }
 
-  GradientEvaluator<P> evaluator_;
+  ProblemEvaluator<P> evaluator_;
 };
 
 }  // namespace slalom::python

@@ -7,8 +7,6 @@
 
 namespace slalom {
 
-class CostGradient;
-
 /// Source of a problem's own noise, used instead of independent standard normal values: for example smooth or
 /// one-sided noise. `mppi`, `svg_mppi`, `cem`, `icem` and `dial_mpc` scale it by their standard deviations,
 /// shift it by their means and clamp it to the bounds; their formulas assume a normal distribution with mean
@@ -50,10 +48,6 @@ class BatchEvaluator {
   /// `simd::padding` may be written. Called from several threads at once for different ranges.
   virtual void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                         std::uint8_t* collided) const noexcept = 0;
-
-  /// Exact gradients of the costs from the current state (derivatives/cost_gradient.hpp), or null.
-  /// `GradientEvaluator` has them.
-  virtual const CostGradient* gradient() const noexcept { return nullptr; }
 };
 
 }  // namespace slalom

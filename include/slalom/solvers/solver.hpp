@@ -70,7 +70,6 @@ struct SolveResult {
   double temperature = 0;            ///< lambda in use; 0 with `cem` and `icem`, which have none
   int iterations = 0;                ///< guide or distribution updates made
   StageTimes times;                  ///< times of the stages
-  int gradient_kinks = 0;            ///< exact gradients of guides that were taken at a kink, or not finite
 
   /// Whether the effective sample size stays below `few_samples`: the plans then follow single samples. A
   /// larger temperature, smaller variances or `target_ess_fraction` raise it.

@@ -21,16 +21,6 @@ inline const char* const* enum_names(GuideWeight) {
   return names;
 }
 
-/// The gradient that the guides of `svg_mppi` follow.
-enum class GuideGradient {
-  surrogate,  ///< the surrogate gradient of samples, equation (11)
-  exact,      ///< the derivative of the cost; needs a `GradientEvaluator`
-};
-inline const char* const* enum_names(GuideGradient) {
-  static constexpr const char* const names[] = {"surrogate", "exact", nullptr};
-  return names;
-}
-
 /// The sequence around which `svg_mppi` draws its samples. docs/algorithms/svg-mppi.md derives both forms.
 enum class SampleCentre {
   /// The nominal sequence: the weights need no control term. The last solution joins the guides.
@@ -59,9 +49,6 @@ struct GuideOptions {
   PerInput restart_variance = 1;
   /// If `use_nominal` is false, samples are always drawn around the last solution.
   SampleCentre sample_around = SampleCentre::nominal;
-  /// With `exact`, `weight` must be `state_cost`, `gradient_variance` limits a step, and `gradient_samples`
-  /// and `zero_mean_share` have no effect on guides.
-  GuideGradient gradient = GuideGradient::surrogate;
 };
 
 /// Options of `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024). Equation numbers are those
@@ -119,9 +106,6 @@ void visit_guide_options(Options& o, Visit&& visit) {
         {"restart_variance", "input^2", "variance of the deviations at which guides restart", 0, finite});
   visit(o.sample_around, {"sample_around", "",
                           "mean of the samples: the nominal sequence, or the last solution as in the paper"});
-  visit(o.gradient,
-        {"guide_gradient", "",
-         "gradient for the guides: estimated from samples, or exact if the problem has derivatives"});
 }
 
 template <class Options, class Visit>

@@ -49,8 +49,7 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
     : options_(options),
       inputs_(inputs),
       count_(options.guides.count),
-      gradient_samples_(options.guides.gradient == GuideGradient::exact ? 0
-                                                                        : options.guides.gradient_samples),
+      gradient_samples_(options.guides.gradient_samples),
       block_(padded(gradient_samples_ + 1)),
       rows_(options.horizon * inputs),
       low_(low.begin(), low.end()),
@@ -77,9 +76,6 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       path_(point(options.guides.iterations, 0), rows_),
       path_float_(point(options.guides.iterations, 0), rows_),
       path_costs_(point(options.guides.iterations, 0)),
-      kinks_(count_),
-      part_(count_),
-      taken_costs_(count_),
       made_(count_),
       fit_points_(path_costs_.size()),
       density_(path_costs_.size()),
@@ -172,16 +168,13 @@ std::span<const float> Guides::path_costs() const noexcept {
 
 /// Fills the block of each guide with its gradient samples and the guide itself.
 void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
-  if (gradient_samples_ > 0) fill_normal(batch_, first * block_, (last - first) * block_, key);
+  fill_normal(batch_, first * block_, (last - first) * block_, key);
   const Rows rows = rows_of(batch_);
   const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * gradient_samples_);
   for (int g = first; g < last; ++g) {
     const Range block{g * block_, block_};
-    if (gradient_samples_ > 0) {
-      kernels::sample(rows, rows,
-                      {guides_[g], deviation_.data(), low_.data(), high_.data(), block.first + biased},
-                      block);
-    }
+    kernels::sample(rows, rows,
+                    {guides_[g], deviation_.data(), low_.data(), high_.data(), block.first + biased}, block);
     const int own = block.first + gradient_samples_;
     batch_.set_sample(own, std::span<const float>(guides_[g], rows_));
   }
@@ -207,18 +200,13 @@ void Guides::estimate_gradient(int g) noexcept {
 }
 
 /// Moves a guide one step along its gradient (equation (9)), given the costs of its block.
-void Guides::step(int g, int iteration, const CostGradient* exact) noexcept {
+void Guides::step(int g, int iteration) noexcept {
   if (iteration > 0) path_costs_[point(iteration - 1, g)] = costs_[g * block_ + gradient_samples_];
   double* theta = theta_[g];
-  double part = 1;
-  if (exact) {
-    part = take_gradient(*exact, g, iteration);
-  } else {
-    estimate_gradient(g);
-  }
+  estimate_gradient(g);
   for (int r = 0; r < rows_; ++r) {
     const double slope = gradient_[g][r];
-    theta[r] += part * step_[r] * slope;
+    theta[r] += step_[r] * slope;
     if (reproduction().clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
     if (!(std::abs(theta[r]) < 1e30)) theta[r] = solution_[r];
   }
@@ -239,8 +227,6 @@ void Guides::begin_move(const float* solution, const float* nominal, int shares)
   }
   std::fill(path_costs_.begin(), path_costs_.end(), infinite);
   std::fill(made_.begin(), made_.end(), 0);
-  std::fill(kinks_.begin(), kinks_.end(), 0);
-  std::fill(taken_costs_.begin(), taken_costs_.end(), infinite);
   shares_ = shares;
 }
 
@@ -248,7 +234,6 @@ void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey ke
                         const Deadline& deadline) noexcept {
   // Guides are independent, so each share makes all iterations of its guides.
   const int first = first_guide(share), last = first_guide(share + 1);
-  const CostGradient* const exact = exact_gradient(evaluator);
   for (int l = 0; l < options_.guides.iterations && !deadline.passed(); ++l) {
     fill_blocks({key.seed, key.stream + l}, first, last);
     // Unless a call has a high fixed cost, guides are evaluated one at a time, so that the ranges do not
@@ -257,7 +242,7 @@ void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey ke
     for (int g = first; g < last; g += together)
       evaluator.evaluate(batch_, g * block_, together * block_, costs_.data(), collided_.data());
     kernels::make_finite({first * block_, (last - first) * block_}, costs_.data());
-    for (int g = first; g < last; ++g) step(g, l, exact);
+    for (int g = first; g < last; ++g) step(g, l);
     made_[share] = l + 1;
   }
 }
@@ -273,7 +258,6 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
     const bool ends_there = iterations_ > 0 && made_[share] == iterations_;
     for (int g = first_guide(share); g < first_guide(share + 1); ++g) {
       if (ends_there) path_costs_[point(iterations_ - 1, g)] = end_costs_[g];
-      if (exact_gradient(evaluator)) return_if_worse(g);
       if (end_costs_[g] < end_costs_[best_]) best_ = g;
     }
   }

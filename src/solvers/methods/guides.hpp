@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "slalom/core/derivatives/cost_gradient.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/sampling/sample_set.hpp"
@@ -39,16 +38,11 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
 
 /// The guide particles of SVG-MPPI (Honda et al., ICRA 2024): a few control sequences that follow the
 /// surrogate gradient to a mode of the optimal distribution, theta <- theta + epsilon g (equations (9) to
-/// (11)). They can follow the exact gradient of the cost instead. A Gaussian is fitted to the path of the
-/// best guide (equations (12) and (13)).
+/// (11)). A Gaussian is fitted to the path of the best guide (equations (12) and (13)).
 class Guides {
  public:
   /// `low` and `high` are the bounds [row].
   Guides(const SvgMppiOptions& options, int inputs, std::span<const float> low, std::span<const float> high);
-
-  /// Allocates the working memory for exact gradients, if guides follow them. Throws std::invalid_argument if
-  /// the evaluator has no gradient.
-  void connect(const BatchEvaluator& evaluator);
 
   /// Draws new guides from N(0, guide_variance).
   void restart(RandomKey key) noexcept;
@@ -76,8 +70,6 @@ class Guides {
   float best_cost() const noexcept { return best_cost_; }
   /// The control sequence [row] of the best guide.
   std::span<const float> best_sequence() const noexcept;
-  /// The number of exact gradients in the last move that were taken at a kink, or were not finite.
-  int gradient_kinks() const noexcept;
 
   /// Fits the variances [row] to the paths of the last move (equation (13)), within `variance_min` and
   /// `variance_max`.
@@ -94,12 +86,8 @@ class Guides {
   /// The differences between the program proj-svg_mppi and the paper, all off by default.
   const PublishedSvgMppi& reproduction() const noexcept { return options_.published; }
   void fill_blocks(RandomKey key, int first, int last) noexcept;
-  const CostGradient* exact_gradient(const BatchEvaluator& evaluator) const noexcept;
   void estimate_gradient(int guide) noexcept;
-  double take_gradient(const CostGradient& cost, int guide, int iteration) noexcept;
-  void differentiate(const CostGradient& cost, int guide) noexcept;
-  void return_if_worse(int guide) noexcept;
-  void step(int guide, int iteration, const CostGradient* exact) noexcept;
+  void step(int guide, int iteration) noexcept;
   void densities(std::span<const int> points) noexcept;
   double fit_row(int r, std::span<const int> points) noexcept;
 
@@ -116,7 +104,7 @@ class Guides {
   SvgMppiOptions options_;
   int inputs_;
   int count_;             ///< guides
-  int gradient_samples_;  ///< samples for the gradient of a guide; 0 with exact gradients
+  int gradient_samples_;  ///< samples for the gradient of a guide
   int block_;             ///< samples of a guide's block: its gradient samples, the guide itself, padding
   int rows_;              ///< values of a control sequence
   std::vector<float> low_, high_;  ///< bounds [row]
@@ -134,14 +122,9 @@ class Guides {
   Matrix<double> path_;                                                       ///< [point][row]
   Matrix<float> path_float_;                                                  ///< `path_` as float32
   std::vector<float> path_costs_;                                             ///< [point]
-  std::vector<double> workspace_;   ///< working memory of exact gradients, for each guide
-  std::vector<int> kinks_;          ///< exact gradients at a kink or not finite [guide]
-  Matrix<double> taken_;            ///< with exact gradients: the best point of a guide [guide][row]
-  std::vector<double> part_;        ///< part of a step that a guide makes from `taken_` [guide]
-  std::vector<float> taken_costs_;  ///< [guide]
-  std::vector<int> made_;           ///< iterations made [share]
-  std::vector<int> fit_points_;     ///< indices of the fitted points
-  double log_error_ = 0;  ///< error of the logarithms of the densities, from the rounding of the costs
+  std::vector<int> made_;                                                     ///< iterations made [share]
+  std::vector<int> fit_points_;  ///< indices of the fitted points
+  double log_error_ = 0;         ///< error of the logarithms of the densities, from the rounding of the costs
   std::vector<double> density_, square_, logarithm_, abscissa_;  ///< [fitted point]
   int shares_ = 1;
   int iterations_ = 0;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <stdexcept>
 
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/methods/guides.hpp"
@@ -53,8 +52,6 @@ class SvgMppiSolver final : public SolverBase {
     bind_result();
   }
 
-  void connect(const BatchEvaluator& evaluator) override { guides_.connect(evaluator); }
-
   void prepare() noexcept override { update_.samples().prepare(key(samples), pool()); }
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
@@ -84,7 +81,6 @@ class SvgMppiSolver final : public SolverBase {
                                     high().data(), pool(), deadline, mean_.data(), result_);
     result_.guides = guides_.sequences();
     result_.guide_path = guides_.path();
-    result_.gradient_kinks = guides_.gradient_kinks();
     next_solve();
     result_.times.total = detail::seconds(start, detail::Clock::now());
     return result_;
@@ -162,8 +158,6 @@ class SvgMppiSolver final : public SolverBase {
 std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, SvgMppiOptions::method, inputs);
-  if (options.guides.gradient == GuideGradient::exact && options.guides.weight != GuideWeight::state_cost)
-    throw std::invalid_argument("svg_mppi: guide_weight must be state_cost if guide_gradient is exact");
   return std::make_unique<SvgMppiSolver>(options, inputs, std::move(pool));
 }
 
