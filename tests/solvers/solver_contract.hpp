@@ -73,7 +73,6 @@ inline std::vector<OptionSet> option_sets() {
                                                              .sample_around = SampleCentre::solution}}},
       {"reverse_mppi_without_rejection", ReverseMppiOptions{.reject_samples = false}},
       {"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}},
-      {"sv_mpc_splines", SvMpcOptions{.control_points = 5}},
       {"cem_send_best", CemOptions{.send_best = true}},
       {"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}},
       {"mppi_knots", MppiOptions{.noise = {.knots = 5}}},

@@ -115,8 +115,8 @@ class Solver {
   /// `Sampler`.
   virtual void prepare() noexcept {}
 
-  /// Allocates memory that this evaluator needs in addition, for instance for exact gradients. Call it before
-  /// the first solve with an evaluator; a `Controller` does so at construction. The solver must not keep a
+  /// Allocates memory that this evaluator needs in addition, for instance on a GPU. Call it before the first
+  /// solve with an evaluator; a `Controller` does so at construction. The solver must not keep a
   /// reference to the evaluator. Throws std::invalid_argument if the evaluator cannot fulfil an option.
   virtual void connect(const BatchEvaluator& /*evaluator*/) {}
 };

@@ -26,9 +26,6 @@ struct SvMpcOptions {
   /// The inverse curvature is 1 / (Sigma^-1 + Sigma_g^-1), that of the log posterior as far as it is known:
   /// particles then cannot overshoot further and further.
   bool limit_step = true;
-  /// At most the horizon counts. With fewer than four the spline has a lower degree. All variances are then
-  /// those of control points.
-  int control_points = 0;
   int gradient_samples = 16;
   PerInput gradient_variance = 0.25;
   bool best_particle = false;
@@ -49,10 +46,6 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.iterations, {"iterations", "", "SVGD steps in a solve", 1, 10000});
   visit(o.step, {"step", "input^2", "step size of SVGD", 0, detail::finite, "epsilon"});
   visit(o.limit_step, {"limit_step", "", "keep the step below the inverse curvature"});
-  visit(
-      o.control_points,
-      {"control_points", "",
-       "control points of a particle, a cubic B-spline for each input; 0: inputs for each step", 0, 64, "n"});
   visit(o.gradient_samples,
         {"gradient_samples", "", "samples for the gradient of a particle", 1, 65536, "N"});
   visit(o.gradient_variance, {"gradient_variance", "input^2", "variance of the samples for the gradient", 0,

@@ -7,34 +7,24 @@
 #include "solvers/methods/stein.hpp"
 #include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"
-#include "solvers/sampling/spline.hpp"
 
 namespace slalom {
 
 namespace {
 
-/// The options of the particles: with splines, they have as many steps as control points.
-SvMpcOptions particle_options(SvMpcOptions options) {
-  if (options.control_points > 0) options.horizon = std::min(options.control_points, options.horizon);
-  return options;
-}
-
 /// `sv_mpc` (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020): all samples are
-/// particles. SVGD moves them towards the posterior of optimal control sequences for a Gaussian prior. The
-/// particles may be control points of splines (Miura et al., "Spline-Interpolated Model Predictive Path
-/// Integral Control with Stein Variational Inference for Reactive Navigation", ICRA 2024).
+/// particles. SVGD moves them towards the posterior of optimal control sequences for a Gaussian prior.
 class SvMpcSolver final : public SolverBase {
  public:
   SvMpcSolver(const SvMpcOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
-      : SolverBase(particle_options(options), inputs, std::move(pool)),
+      : SolverBase(options, inputs, std::move(pool)),
         options_(options),
-        steps_(particle_options(options).horizon),
-        particles_(steps_, inputs, options.samples),
-        gradient_batch_(steps_, inputs, particles_.stride() * options.gradient_samples),
+        particles_(options.horizon, inputs, options.samples),
+        gradient_batch_(options.horizon, inputs, particles_.stride() * options.gradient_samples),
         exponents_(gradient_batch_.stride()),
         collided_(exponents_.size()),
-        gradient_(steps_, inputs, options.samples),
-        phi_(steps_, inputs, options.samples),
+        gradient_(options.horizon, inputs, options.samples),
+        phi_(options.horizon, inputs, options.samples),
         distances_(std::max(options.samples, 2016)),
         solution_(size()),
         mean_(size()),
@@ -56,11 +46,9 @@ class SvMpcSolver final : public SolverBase {
       inverse_[r] = detail::inverse_variance<float>(deviation_[r], reproduction().inverse_variance_offset);
       deviation_[r] = std::sqrt(deviation_[r]);
     }
-    if (options.control_points > 0) use_splines();
     reset(options.seed);
   }
 
-  int horizon() const noexcept override { return options_.horizon; }
   const char* name() const noexcept override { return SvMpcOptions::method; }
   std::unique_ptr<Solver> clone() const override {
     auto copy = std::make_unique<SvMpcSolver>(*this);
@@ -74,16 +62,12 @@ class SvMpcSolver final : public SolverBase {
     draw_particles();
     std::fill(solution_.begin(), solution_.end(), 0.0f);
     clamp(solution_.data());
-    expand_solution();
     result_ = {};
     bind_result();
   }
 
-  const SolveResult& solve(const BatchEvaluator& problem, const SolveRequest& request) noexcept override {
+  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto begin = detail::Clock::now();
-    const detail::SplineEvaluator of_splines(problem, spline_, sequences_);
-    const BatchEvaluator& evaluator =
-        spline_.active() ? static_cast<const BatchEvaluator&>(of_splines) : problem;
     const Deadline deadline(begin, request.deadline);
     result_.times = {};
     next_solve();
@@ -118,7 +102,6 @@ class SvMpcSolver final : public SolverBase {
                      : late                              ? Status::deadline
                      : all_collided                      ? Status::all_collided
                                                          : Status::ok;
-    expand_result();
     result_.times.update = detail::seconds(evaluated, detail::Clock::now());
     result_.times.total = detail::seconds(begin, detail::Clock::now());
     return result_;
@@ -135,7 +118,6 @@ class SvMpcSolver final : public SolverBase {
     result_.nominal = zero_;
     result_.variances = variance_;
     if (result_.samples) detail::bind_samples(particles_, result_);
-    expand_result();
   }
 
   int tiles() const noexcept { return (particles_.stride() + tile - 1) / tile; }
@@ -153,69 +135,16 @@ class SvMpcSolver final : public SolverBase {
                     pool());
   }
 
-  /// Makes the particles control points of splines.
-  void use_splines() {
-    spline_ = detail::Spline(options_.horizon, steps_, inputs());
-    sequences_ = SequenceBatch(options_.horizon, inputs(), gradient_batch_.samples());
-    expanded_ = SequenceBatch(options_.horizon, inputs(), options_.samples);
-    const std::size_t rows = static_cast<std::size_t>(options_.horizon) * static_cast<std::size_t>(inputs());
-    for (std::vector<float>* of_steps :
-         {&step_solution_, &step_shifted_, &step_mean_, &step_zero_, &step_variance_})
-      of_steps->resize(rows);
-  }
-
-  /// Expands the solution to a sequence if particles are splines.
-  void expand_solution() noexcept {
-    if (!spline_.active()) return;
-    spline_.expand(solution_.data(), step_solution_.data());
-    if (!reproduction().clamp_solution) return;
-    for (std::size_t r = 0; r < step_solution_.size(); ++r) {  // a mean may be rounded past a bound
-      const std::size_t input = r % static_cast<std::size_t>(inputs());
-      step_solution_[r] = std::clamp(step_solution_[r], low()[input], high()[input]);
-    }
-  }
-
-  /// Expands the result to sequences if particles are splines.
-  void expand_result() noexcept {
-    if (!spline_.active()) return;
-    spline_.expand(mean_.data(), step_mean_.data());
-    spline_.expand_variances(variance_.data(), step_variance_.data());
-    spline_.expand(particles_.values(), expanded_, {0, particles_.stride()});
-    result_.inputs = step_solution_;
-    result_.mean = step_mean_;
-    result_.nominal = step_zero_;
-    result_.variances = step_variance_;
-    if (result_.samples) result_.samples = &expanded_;
-  }
-
-  /// Moves the values of a particle forward in time.
-  void shift_particle(float* particle, double steps) noexcept {
-    if (spline_.active()) {
-      spline_.shift(particle, steps);
-      if (reproduction().clamp_particles) clamp(particle);  // least squares may leave the bounds
-      return;
-    }
-    shift_sequence(particle, steps_, inputs(), steps, shifted_.data());
-    std::copy(shifted_.begin(), shifted_.end(), particle);
-  }
-
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    shift_particle(mean_.data(), steps);
-    if (spline_.active()) {
-      shift_sequence(step_solution_.data(), options_.horizon, inputs(), steps, step_shifted_.data());
-      step_solution_.swap(step_shifted_);
-    } else {
-      shift_particle(solution_.data(), steps);
+    for (std::vector<float>* const values : {&mean_, &solution_, &variance_}) {
+      shift_sequence(values->data(), horizon(), inputs(), steps, shifted_.data());
+      std::copy(shifted_.begin(), shifted_.end(), values->begin());
     }
-    // Variances must not fall below 0, so those of control points are shifted as if these were steps.
-    const double per_step = options_.horizon > 1 ? (steps_ - 1.0) / (options_.horizon - 1) : 1;
-    shift_sequence(variance_.data(), steps_, inputs(), steps * per_step, shifted_.data());
-    std::copy(shifted_.begin(), shifted_.end(), variance_.begin());
     for (int k = 0; k < particles_.samples(); ++k) {
       particles_.values().get_sample(k, particle_);
-      shift_particle(particle_.data(), steps);
-      particles_.values().set_sample(k, particle_);
+      shift_sequence(particle_.data(), horizon(), inputs(), steps, shifted_.data());
+      particles_.values().set_sample(k, shifted_);
     }
   }
 
@@ -319,15 +248,9 @@ class SvMpcSolver final : public SolverBase {
       particles_.values().get_sample(static_cast<int>(best), solution_);
     }
     if (reproduction().clamp_solution) clamp(solution_.data());
-    expand_solution();
   }
 
   SvMpcOptions options_;
-  int steps_;  ///< steps of a particle: the horizon, or the control points of its spline
-  detail::Spline spline_;
-  SequenceBatch sequences_, expanded_;  ///< with splines: of what is evaluated, and of the particles
-  std::vector<float> step_solution_, step_shifted_, step_mean_, step_zero_,
-      step_variance_;  ///< with splines [step][input]
   detail::SampleSet particles_;
   SequenceBatch gradient_batch_;  ///< sample s of particle p at s * stride + p
   AlignedBuffer exponents_;
