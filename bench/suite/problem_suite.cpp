@@ -14,9 +14,8 @@
 namespace slalom::suite {
 
 constexpr const char* usage =
-    "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...] [--ilqr ITERATIONS]\n"
-    "                            [--methods METHOD[:OPTION=VALUE]...,...] [--temperatures NUMBER,...]\n\n"
-    "--ilqr adds a proposal by iterative LQR to every solve.\n";
+    "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...]\n"
+    "                            [--methods METHOD[:OPTION=VALUE]...,...] [--temperatures NUMBER,...]\n";
 
 namespace {
 
@@ -94,7 +93,6 @@ struct Arguments {
   std::vector<std::string> tasks;  ///< empty: all
   std::vector<std::string> methods{"mppi", "svg_mppi"};
   std::vector<std::string> temperatures{"0.01", "0.1", "1", "10", "100"};
-  int ilqr_iterations = 0;
 };
 
 Arguments parse(int argc, char** argv) {
@@ -113,8 +111,6 @@ Arguments parse(int argc, char** argv) {
       a.methods = split(value, ',');
     } else if (name == "--temperatures") {
       a.temperatures = split(value, ',');
-    } else if (name == "--ilqr") {
-      a.ilqr_iterations = std::stoi(value);
     } else {
       throw std::invalid_argument("unknown argument '" + name + "'");
     }
@@ -144,9 +140,8 @@ void run(const Arguments& a) {
         const std::vector<std::string> parts = split(method, ':');
         SolverOptions options = method_options(parts[0], task, std::stod(temperature));
         set_options(options, parts);
-        const Outcome outcome = of_any_temperature
-                                    ? *of_any_temperature
-                                    : task.run({options, a.first_seed, a.seeds, a.ilqr_iterations});
+        const Outcome outcome =
+            of_any_temperature ? *of_any_temperature : task.run({options, a.first_seed, a.seeds});
         if (!options.find<double>("temperature")) of_any_temperature = outcome;
         std::printf("%s,%d,%s,%s,%d,%d,%.4g\n", task.name.c_str(), task.ways == Ways::several, method.c_str(),
                     temperature.c_str(), a.seeds, outcome.solved, median(outcome.effective_sample_sizes));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -29,7 +28,6 @@ struct Runs {
   SolverOptions options;    ///< method
   std::uint64_t first = 0;  ///< seed of the first run; the others follow
   int count = 0;            ///< number
-  int ilqr_iterations = 0;  ///< of a proposal by iterative LQR in every solve; 0: none
   int steps = 0;            ///< most steps of a run; 0: those of the task
 };
 
@@ -86,27 +84,16 @@ auto closed_loop(const P& problem, const typename P::template State<double>& sta
   return [=](const Runs& runs) {
     Outcome outcome;
     Controller controller(problem, runs.options);
-    std::optional<Proposals<P>> proposals;
-    if (runs.ilqr_iterations > 0) proposals.emplace(controller, 1);
-    Ilqr ilqr(controller, {std::max(runs.ilqr_iterations, 1)});
     for (int run = 0; run < runs.count; ++run) {
       const std::uint64_t seed = runs.first + static_cast<std::uint64_t>(run);
       controller.reset(seed);
-      ilqr.start_from({});
       controller.problem() = problem;
       auto x = start;
       Verdict verdict = Verdict::running;
       const int most = runs.steps > 0 ? std::min(runs.steps, steps) : steps;
       for (int k = 0; k < most && verdict == Verdict::running; ++k) {
         if constexpr (!std::is_same_v<Change, std::nullptr_t>) change(controller.problem(), x, k);
-        SolveRequest request{.elapsed = problem.dt};
-        if (proposals) {
-          proposals->clear();
-          proposals->add(ilqr.improve(controller.problem(), x, problem.dt));
-          request.proposals = *proposals;
-        }
-        const auto plan = controller.solve(x, request);
-        ilqr.start_from(plan.inputs);
+        const auto plan = controller.solve(x, {.elapsed = problem.dt});
         outcome.plan.assign(plan.stats.inputs.begin(), plan.stats.inputs.end());
         outcome.effective_sample_sizes.push_back(plan.stats.effective_sample_size);
         x = slalom::detail::step<P, double>(controller.problem(), x, NoLookUp{}, plan.inputs[0], 0);

@@ -5,8 +5,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/solvers/controller.hpp"
-#include "slalom/solvers/differentiable_problem.hpp"
+#include "slalom/solvers/feedback_gains.hpp"
 
 namespace slalom {
 
@@ -47,14 +48,22 @@ class Feedback {
   /// false, and makes all gains 0, if a derivative is not finite. Does not allocate.
   bool update(const Controller<P>& controller, const Plan<P>& plan) noexcept {
     const Problem& problem = controller.problem();
+    kink_ = false;
     for (int k = 0; k < steps(); ++k) {
+      const State& x = plan.states[static_cast<std::size_t>(k)];
+      const Inputs& u = plan.inputs[static_cast<std::size_t>(k)];
       const auto to = gains_.step(k);
-      detail::scalars_of<Problem, double>(plan.states[static_cast<std::size_t>(k)], to.state.data());
-      std::copy_n(plan.inputs[static_cast<std::size_t>(k)].value, nu, to.inputs.begin());
+      detail::scalars_of<Problem, double>(x, to.state.data());
+      std::copy_n(u.value, nu, to.inputs.begin());
+      const auto l = linearize(problem, x, u, k);
+      std::copy_n(l.state_jacobian[0], nx * nx, to.state_jacobian.begin());
+      std::copy_n(l.input_jacobian[0], nx * nu, to.input_jacobian.begin());
+      kink_ |= l.kink;
+      copy(expand_stage_cost(problem, x, u, k), to);
     }
-    detail::scalars_of<Problem, double>(plan.states.back(), gains_.terminal().state.data());
-    ProblemDerivatives derivatives(problem);
-    kink_ = gains_.expand(derivatives);
+    const auto end = gains_.terminal();
+    detail::scalars_of<Problem, double>(plan.states.back(), end.state.data());
+    copy(expand_terminal_cost(problem, plan.states.back()), end);
     const double step = detail::time_step_of(problem);
     return gains_.solve(step > 0 ? step : 1);
   }
@@ -79,6 +88,13 @@ class Feedback {
   bool has_kink() const noexcept { return kink_; }
 
  private:
+  template <int N>
+  void copy(const CostExpansion<N>& cost, const auto& to) noexcept {
+    std::copy_n(cost.gradient, N, to.gradient.begin());
+    std::copy_n(cost.hessian[0], N * N, to.hessian.begin());
+    kink_ |= cost.kink;
+  }
+
   FeedbackGains gains_;
   bool kink_ = false;
 };

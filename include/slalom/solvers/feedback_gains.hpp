@@ -8,8 +8,6 @@
 
 namespace slalom {
 
-class DifferentiableProblem;
-
 /// Linear feedback around a plan: the gains of a time-varying linear-quadratic regulator along it, by the
 /// Riccati recursion (D. Q. Mayne, "A second-order gradient method for determining optimal trajectories of
 /// non-linear discrete-time systems", Int. J. Control 3, 1966, with linear dynamics). `Feedback`
@@ -18,13 +16,11 @@ class DifferentiableProblem;
 ///
 /// Hessians of the cost that are not positive semidefinite are replaced by the nearest matrix that is, so
 /// that the gains exist for every cost. An input that the plan holds at a bound because the cost would fall
-/// beyond it gets no feedback. The same recursion gives a change of the plan's inputs that lowers its cost:
-/// the step of iterative LQR (ilqr.hpp). Construction allocates; nothing else does.
+/// beyond it gets no feedback. Construction allocates; nothing else does.
 class FeedbackGains {
  public:
   /// The plan around one step and the derivatives there, to be filled before `solve`; matrices row by row.
-  /// `expand` fills all but state and inputs. The gradient and the rows of the Hessian have the entries of
-  /// the states first, then those of the inputs.
+  /// The gradient and the rows of the Hessian have the entries of the states first, then those of the inputs.
   struct Step {
     std::span<double> state;           ///< x at the start of the step [states]
     std::span<double> inputs;          ///< u [inputs]
@@ -58,26 +54,9 @@ class FeedbackGains {
   /// Returns the place for the values of the plan's end.
   Terminal terminal() noexcept;
 
-  /// Fills the derivatives along the plan, whose states and inputs must have been filled. Returns whether a
-  /// function has no derivative somewhere along it (see Dual). Throws as the problem does.
-  bool expand(DifferentiableProblem& problem);
-
   /// Computes the gains for a plan whose steps take `time_step` (s). Returns false, and makes all gains 0, if
   /// a derivative is not finite or a gain would not be.
   bool solve(double time_step) noexcept;
-
-  /// Computes gains and the change of the inputs that lowers the cost of the plan most, as far as linear
-  /// dynamics and quadratic costs tell. Inputs that would leave their bounds end at them. The diagonal of the
-  /// Hessian by the inputs is multiplied by 1 + `damping`, so that a large damping gives small changes.
-  /// Returns false, and makes gains and changes 0, if a derivative is not finite or a gain would not be.
-  bool solve_step(double damping) noexcept;
-
-  /// The change of the inputs of step `k` [inputs]; 0 unless it was computed by `solve_step`.
-  std::span<const double> change(int k) const noexcept;
-
-  /// The change of the plan's cost that its derivatives predict if its inputs move `part` (0 ... 1) of the
-  /// way of their changes.
-  double expected_change(double part) const noexcept { return part * (linear_ + 0.5 * part * quadratic_); }
 
   /// K of step `k` [inputs][states]: near the plan, inputs change by K times the deviation of the state.
   std::span<const double> gain(int k) const noexcept;
@@ -92,21 +71,18 @@ class FeedbackGains {
   void input_at(double t, std::span<const double> x, std::span<double> u) const noexcept;
 
  private:
-  bool recurse(bool change_inputs, double damping) noexcept;
   void begin_step(int k) noexcept;
   int choose_free_inputs(int k) noexcept;
-  bool solve_inputs(int k, bool change_inputs, double damping) noexcept;
+  bool solve_gain(int k) noexcept;
   void end_step(int k) noexcept;
 
   struct Workspace;
 
   int states_, inputs_, steps_;
   InputBounds bounds_;
-  double time_step_ = 1;                           ///< s
-  double linear_ = 0, quadratic_ = 0;              ///< terms of the expected change of the cost
-  std::vector<double> plan_states_, plan_inputs_;  ///< [steps + 1][states], [steps][inputs]
+  double time_step_ = 1;                                          ///< s
+  std::vector<double> plan_states_, plan_inputs_;                 ///< [steps + 1][states], [steps][inputs]
   std::vector<double> jacobians_, gradients_, hessians_, gains_;  ///< values of all steps
-  std::vector<double> changes_;                                   ///< [steps][inputs]
   std::vector<int> free_;                                         ///< inputs that may move
   Polymorphic<Workspace> workspace_;
 };

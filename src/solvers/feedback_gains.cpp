@@ -8,7 +8,6 @@
 #include <string>
 
 #include "slalom/core/option_access.hpp"
-#include "slalom/solvers/differentiable_problem.hpp"
 #include "solvers/all_finite.hpp"
 
 namespace slalom {
@@ -60,8 +59,6 @@ struct FeedbackGains::Workspace {
         qux(m, n),
         value_gradient(n),
         gradient(n + m),
-        inputs_change(m),
-        solution(m),
         eigen_of_states(n),
         eigen_of_all(n + m) {}
   std::unique_ptr<Workspace> clone() const { return std::make_unique<Workspace>(*this); }
@@ -71,9 +68,8 @@ struct FeedbackGains::Workspace {
   Eigen::MatrixXd product, of_states, of_all;  ///< working memory
   Eigen::MatrixXd inputs_gain;                 ///< Quu K
   Eigen::MatrixXd quu, qux;                    ///< for the free inputs
-  Eigen::VectorXd value_gradient,
-      gradient;  ///< gradients of the cost to go, by the state and by state and inputs
-  Eigen::VectorXd inputs_change, solution;  ///< Quu times the change; the change of the free inputs
+  Eigen::VectorXd value_gradient;              ///< gradient of the cost to go, by the state
+  Eigen::VectorXd gradient;                    ///< gradient of the cost to go, by state and inputs
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_of_states, eigen_of_all;
 };
 
@@ -104,7 +100,6 @@ FeedbackGains::FeedbackGains(int states, int inputs, int steps, const InputBound
   gradients_.resize(count(steps, all) + count(states));
   hessians_.resize(count(steps, all, all) + count(states, states));
   gains_.resize(count(steps, inputs, states));
-  changes_.resize(count(steps, inputs));
   free_.resize(count(inputs));
   workspace_ = std::make_unique<Workspace>(states, inputs);
 }
@@ -130,17 +125,6 @@ FeedbackGains::Terminal FeedbackGains::terminal() noexcept {
 
 std::span<const double> FeedbackGains::gain(int k) const noexcept {
   return std::span(gains_).subspan(count(k, inputs_, states_), count(inputs_, states_));
-}
-
-std::span<const double> FeedbackGains::change(int k) const noexcept {
-  return std::span(changes_).subspan(count(k, inputs_), count(inputs_));
-}
-
-bool FeedbackGains::expand(DifferentiableProblem& problem) {
-  bool kink = false;
-  for (int k = 0; k < steps_; ++k) kink |= problem.expand_step(k, step(k));
-  kink |= problem.expand_end(terminal());
-  return kink;
 }
 
 /// Hessian and gradient of the cost to go by state and inputs of step `k`: those of its stage cost plus those
@@ -179,87 +163,52 @@ int FeedbackGains::choose_free_inputs(int k) noexcept {
   return free;
 }
 
-/// Gain and, if wanted, change of the inputs of step `k`: K = -Quu^-1 Qux and -Quu^-1 Qu for the free inputs,
-/// 0 for the others. Inputs that the change would move out of their bounds end at them and are no longer
-/// free; then the others are solved for again. Returns false if there is no finite solution. If the cost does
-/// not depend on the free inputs, they get neither gain nor change.
-bool FeedbackGains::solve_inputs(int k, bool change_inputs, double damping) noexcept {
+/// Gain of step `k`: K = -Quu^-1 Qux for the free inputs, 0 for the others. Returns false if there is no
+/// finite solution. If the cost does not depend on the free inputs, they get no gain.
+bool FeedbackGains::solve_gain(int k) noexcept {
   const int n = states_, m = inputs_;
   Workspace& w = *workspace_;
-  const std::span<double> change = part(changes_, k, count(m));
-  const std::span<const double> u = part(plan_inputs_, k, count(m));
-  for (int free = choose_free_inputs(k); free > 0;) {
-    auto quu = w.quu.topLeftCorner(free, free);
-    for (int i = 0; i < free; ++i)
-      for (int j = 0; j < free; ++j) quu(i, j) = w.hessian(n + free_[count(i)], n + free_[count(j)]);
-    const double largest = quu.diagonal().maxCoeff();
-    if (!(largest > 0)) return true;
-    quu.diagonal().array() += damping * quu.diagonal().array() + ridge * largest;
-    const Cholesky factor(quu);
-    if (factor.info() != Eigen::Success) return false;
-    if (change_inputs) {
-      auto solution = w.solution.head(free);
-      for (int i = 0; i < free; ++i) {
-        const int row = n + free_[count(i)];
-        solution[i] = -w.gradient[row] - w.hessian.row(row).tail(m).dot(Vector(change.data(), m));
-      }
-      factor.solveInPlace(solution);
-      int inside = 0;
-      for (int i = 0; i < free; ++i) {
-        const int input = free_[count(i)];
-        const double wanted = u[count(input)] + solution[i], nearest = bounds_.nearest(count(input), wanted);
-        if (!std::isfinite(wanted)) return false;
-        if (nearest == wanted) {
-          free_[count(inside++)] = input;
-        } else {
-          change[count(input)] = nearest - u[count(input)];
-        }
-      }
-      if (inside < free) {
-        free = inside;
-        continue;
-      }
-      for (int i = 0; i < free; ++i) change[count(free_[count(i)])] = solution[i];
-    }
-    Map gain(part(gains_, k, count(m, n)).data(), m, n);
-    auto qux = w.qux.topRows(free);
-    for (int i = 0; i < free; ++i) qux.row(i) = -w.hessian.row(n + free_[count(i)]).head(n);
-    for (int column = 0; column < n; ++column) factor.solveInPlace(qux.col(column));
-    for (int i = 0; i < free; ++i) gain.row(free_[count(i)]) = qux.row(i);
-    return gain.allFinite();
-  }
-  return true;
+  const int free = choose_free_inputs(k);
+  if (free == 0) return true;
+  auto quu = w.quu.topLeftCorner(free, free);
+  for (int i = 0; i < free; ++i)
+    for (int j = 0; j < free; ++j) quu(i, j) = w.hessian(n + free_[count(i)], n + free_[count(j)]);
+  const double largest = quu.diagonal().maxCoeff();
+  if (!(largest > 0)) return true;
+  quu.diagonal().array() += ridge * largest;
+  const Cholesky factor(quu);
+  if (factor.info() != Eigen::Success) return false;
+  Map gain(part(gains_, k, count(m, n)).data(), m, n);
+  auto qux = w.qux.topRows(free);
+  for (int i = 0; i < free; ++i) qux.row(i) = -w.hessian.row(n + free_[count(i)]).head(n);
+  for (int column = 0; column < n; ++column) factor.solveInPlace(qux.col(column));
+  for (int i = 0; i < free; ++i) gain.row(free_[count(i)]) = qux.row(i);
+  return gain.allFinite();
 }
 
-/// The cost to go from the states of step `k`, if the inputs change and follow the gain.
+/// The cost to go from the states of step `k`, if the inputs follow the gain.
 void FeedbackGains::end_step(int k) noexcept {
   const int n = states_, m = inputs_;
   Workspace& w = *workspace_;
   const Map gain(part(gains_, k, count(m, n)).data(), m, n);
-  const Vector change(part(changes_, k, count(m)).data(), m);
   const auto qxx = w.hessian.topLeftCorner(n, n);
   const auto qux = w.hessian.bottomLeftCorner(m, n);
   const auto quu = w.hessian.bottomRightCorner(m, m);
   w.inputs_gain = quu.lazyProduct(gain);
-  w.inputs_change = quu.lazyProduct(change);
   w.value = 0.5 * (qxx + qxx.transpose());
   w.value += gain.transpose().lazyProduct(qux);
   w.value += qux.transpose().lazyProduct(gain);
   w.value += gain.transpose().lazyProduct(w.inputs_gain);
   w.value.triangularView<Eigen::StrictlyUpper>() = w.value.transpose();
   w.value_gradient = w.gradient.head(n);
-  w.value_gradient += gain.transpose().lazyProduct(w.gradient.tail(m) + w.inputs_change);
-  w.value_gradient += qux.transpose().lazyProduct(change);
-  linear_ += change.dot(w.gradient.tail(m));
-  quadratic_ += change.dot(w.inputs_change);
+  w.value_gradient += gain.transpose().lazyProduct(w.gradient.tail(m));
 }
 
-/// The recursion from the end of the plan to its start, with or without changes of the inputs.
-bool FeedbackGains::recurse(bool change_inputs, double damping) noexcept {
+/// The recursion from the end of the plan to its start.
+bool FeedbackGains::solve(double time_step) noexcept {
   Workspace& w = *workspace_;
-  linear_ = quadratic_ = 0;
+  time_step_ = time_step;
   std::fill(gains_.begin(), gains_.end(), 0.0);
-  std::fill(changes_.begin(), changes_.end(), 0.0);
   bool valid = all_finite(jacobians_) && all_finite(gradients_) && all_finite(hessians_);
   if (valid) {
     const Terminal end = terminal();
@@ -270,22 +219,11 @@ bool FeedbackGains::recurse(bool change_inputs, double damping) noexcept {
   }
   for (int k = steps_ - 1; valid && k >= 0; --k) {
     begin_step(k);
-    valid = w.hessian.allFinite() && w.gradient.allFinite() && solve_inputs(k, change_inputs, damping);
+    valid = w.hessian.allFinite() && w.gradient.allFinite() && solve_gain(k);
     if (valid) end_step(k);
   }
-  if (valid) return true;
-  std::fill(gains_.begin(), gains_.end(), 0.0);
-  std::fill(changes_.begin(), changes_.end(), 0.0);
-  return false;
-}
-
-bool FeedbackGains::solve(double time_step) noexcept {
-  time_step_ = time_step;
-  return recurse(false, 0);
-}
-
-bool FeedbackGains::solve_step(double damping) noexcept {
-  return recurse(true, damping);
+  if (!valid) std::fill(gains_.begin(), gains_.end(), 0.0);
+  return valid;
 }
 
 void FeedbackGains::input_at(double t, std::span<const double> x, std::span<double> u) const noexcept {
