@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -16,6 +17,8 @@
 
 namespace slalom::maps {
 namespace {
+
+constexpr int free_grey = 254, unknown_grey = 205;  // as map_saver writes them
 
 enum class Mode { trinary, scale, raw };
 
@@ -146,6 +149,20 @@ Occupancy classify(const Header& header, MapRule rule, int grey) {
   return p < header.free_threshold ? Occupancy::free : Occupancy::unknown;
 }
 
+/// Whether the grey 205 of map_saver, which is free by the thresholds, means unknown: at least one pixel in a
+/// hundred has it, and lighter ones are the free floor. The map saver of nav2 (Humble) writes unknown as 205
+/// beside `free_thresh: 0.25`, which lies above its occupancy of 0.196.
+bool grey_205_is_unknown(const Header& header, const GreyImage& image) {
+  if (header.negate || header.mode != Mode::trinary ||
+      classify(header, MapRule::map_server, unknown_grey) != Occupancy::free)
+    return false;
+  const auto count = [&](auto matches) {
+    return std::count_if(image.grey.begin(), image.grey.end(), matches);
+  };
+  return 100 * count([](int grey) { return grey == unknown_grey; }) >= std::ssize(image.grey) &&
+         count([](int grey) { return grey > unknown_grey; }) > 0;
+}
+
 /// The shortest text that reads back as the same number.
 std::string text(double value) {
   std::array<char, 32> buffer{};
@@ -155,11 +172,20 @@ std::string text(double value) {
 
 }  // namespace
 
-OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule) {
+OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule,
+                           std::vector<std::string>* notes) {
   const Header header = read_header(yaml_file, rule);
   const GreyImage image = load_image(yaml_file.parent_path() / header.image);
   std::array<Occupancy, 256> table{};
   for (int grey = 0; grey < 256; ++grey) table[static_cast<std::size_t>(grey)] = classify(header, rule, grey);
+  if (rule == MapRule::map_server && grey_205_is_unknown(header, image)) {
+    table[unknown_grey] = Occupancy::unknown;
+    if (notes)
+      notes->push_back(yaml_file.filename().string() +
+                       ": the grey 205 is read as unknown, as map savers write it, though `free_thresh: " +
+                       text(header.free_threshold) +
+                       "` makes it free; 0.196 says the same in the file, and any other grey is free");
+  }
   const bool see_opacity = !image.opacity.empty() && rule == MapRule::map_server;
 
   OccupancyGrid grid{image.width, image.height, header.resolution, header.origin, {}};
@@ -183,7 +209,7 @@ void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_f
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       const Occupancy cell = grid.at(column, row);
-      const int grey = cell == Occupancy::occupied ? 0 : cell == Occupancy::free ? 254 : 205;
+      const int grey = cell == Occupancy::occupied ? 0 : cell == Occupancy::free ? free_grey : unknown_grey;
       image.grey[static_cast<std::size_t>(grid.height - 1 - row) * static_cast<std::size_t>(grid.width) +
                  static_cast<std::size_t>(column)] = static_cast<std::uint8_t>(grey);
     }

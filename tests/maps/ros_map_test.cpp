@@ -61,6 +61,30 @@ TEST_F(RosMap, NegateSwapsBlackAndWhite) {
   EXPECT_EQ(grid.cells, (std::vector<Occupancy>{o, o, f, f, o, o}));
 }
 
+TEST_F(RosMap, TheUnknownGreyOfAMapSaverIsUnknownThoughTheThresholdMakesItFree) {
+  const std::string humble = "mode: trinary\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n";
+  const auto f = Occupancy::free, o = Occupancy::occupied, u = Occupancy::unknown;
+  std::vector<std::string> notes;
+  write("map.pgm", pgm);
+  EXPECT_EQ(load_ros_map(map(geometry + humble), MapRule::map_server, &notes).cells,
+            (std::vector<Occupancy>{f, f, o, o, u, f}));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("map.yaml: the grey 205 is read as unknown"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("free_thresh: 0.25"), std::string::npos) << notes[0];
+
+  // A floor of this grey, a rare grey of a drawing, and thresholds that say unknown: as the file says.
+  notes.clear();
+  write("map.pgm", "P2 3 2 255 0 205 205 205 205 0");
+  EXPECT_EQ(load_ros_map(map(geometry + humble), MapRule::map_server, &notes).at(1, 0), f);
+  std::string drawing = "P2 101 1 255 205";
+  for (int i = 0; i < 100; ++i) drawing += " 254";
+  write("map.pgm", drawing);
+  EXPECT_EQ(load_ros_map(map(geometry + humble), MapRule::map_server, &notes).at(0, 0), f);
+  write("map.pgm", pgm);
+  EXPECT_EQ(load_ros_map(map(geometry + thresholds), MapRule::map_server, &notes).at(1, 1), u);
+  EXPECT_TRUE(notes.empty());
+}
+
 TEST_F(RosMap, RawModeReadsPercent) {
   write("map.pgm", "P2 3 2 255 0 100 50 255 0 100");
   const OccupancyGrid grid = load_ros_map(map(geometry + thresholds + "mode: raw\n"));

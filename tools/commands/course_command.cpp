@@ -55,10 +55,13 @@ RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
   options.reverse = arguments.reverse;
   if (!arguments.start.empty()) options.start = parse_start(arguments.start);
   if (!is_csv(arguments.input)) {
-    const auto map = maps::load_ros_map(arguments.input);
-    if (arguments.line.empty()) return vehicle::race_course(map, car, options);
-    const vehicle::GuideLine guide = read_guide(arguments.line);
-    return vehicle::race_course(map, car, options, &guide);
+    std::vector<std::string> notes;
+    const auto map = maps::load_ros_map(arguments.input, maps::MapRule::map_server, &notes);
+    std::optional<vehicle::GuideLine> guide;
+    if (!arguments.line.empty()) guide = read_guide(arguments.line);
+    RaceCourse course = vehicle::race_course(map, car, options, guide ? &*guide : nullptr);
+    course.notes.insert(course.notes.begin(), notes.begin(), notes.end());
+    return course;
   }
   if (!arguments.line.empty())
     throw CommandLineError("--line", "needs a map; " + arguments.input + " is a centre line");

@@ -207,8 +207,18 @@ void bind_maps(py::module_& module) {
   read("origin", lower_left_corner, [](const OccupancyGrid& g) { return to_tuple(g.origin); });
   bind_field(module);
   module.def(
-      "load_ros_map", [](const std::string& file) { return maps::load_ros_map(file); }, py::arg("file"),
-      py::call_guard<py::gil_scoped_release>(), "Loads a map of ROS map_server from its yaml file.");
+      "load_ros_map",
+      [](const std::string& file) {
+        std::vector<std::string> notes;
+        OccupancyGrid grid = [&] {
+          const py::gil_scoped_release others_run;
+          return maps::load_ros_map(file, maps::MapRule::map_server, &notes);
+        }();
+        for (const std::string& note : notes)
+          if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+        return grid;
+      },
+      py::arg("file"), "Loads a map of ROS map_server from its yaml file.");
   module.def(
       "signed_distance",
       [](const OccupancyGrid& grid, bool unknown_is_obstacle, bool outside_is_obstacle) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "slalom/maps/occupancy_grid.hpp"
 
@@ -13,8 +15,7 @@ enum class MapRule {
   /// the occupancy in percent.
   map_server,
   /// As f1tenth_gym: a grey of at most 128 is an obstacle, all else free, unknown cells too; `negate`, `mode`
-  /// and
-  /// the thresholds of the yaml file are neither used nor needed.
+  /// and the thresholds of the yaml file are neither used nor needed.
   grey_threshold,
 };
 
@@ -22,8 +23,11 @@ enum class MapRule {
 /// `origin` [x, y, yaw] of the lower left corner (m, m, rad), `negate`, `occupied_thresh`, `free_thresh` and,
 /// if present, `mode` (trinary, scale, raw). The grid keeps three states: values of `scale` and `raw` between
 /// free (0) and occupied (100) are unknown, as in AMCL, and so are, with MapRule::map_server, pixels less
-/// than half opaque. Throws IoError if a file cannot be read or breaks a rule.
-OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule = MapRule::map_server);
+/// than half opaque. With MapRule::map_server, the grey 205 of map_saver is also unknown where `free_thresh`
+/// would make it free, if at least 1 % of the pixels have it and others are lighter; `notes` then receives a
+/// sentence. Throws IoError if a file cannot be read or breaks a rule.
+OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule = MapRule::map_server,
+                           std::vector<std::string>* notes = nullptr);
 
 /// Writes `yaml_file` and, beside it, a PNG of the same name, with the greys and thresholds of map_saver.
 /// Throws IoError if a file cannot be written or the grid is too large for an image (image.hpp), and as

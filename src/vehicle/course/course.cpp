@@ -177,7 +177,7 @@ Course load_course(const fs::path& folder, maps::MapRule rule) {
   const fs::path paths = path_folder(folder);
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
-  course.map = maps::load_ros_map(find_map(folder, course.notes), rule);
+  course.map = maps::load_ros_map(find_map(folder, course.notes), rule, &course.notes);
   load_path(course, paths);
   if (const fs::path points = paths / obstacle_file; fs::exists(points))
     course.obstacle_path = detail::read_points(points);
