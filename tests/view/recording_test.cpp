@@ -12,6 +12,7 @@
 #include "view/recording/encodings.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
+#include "view/recording/small_frame.hpp"
 
 namespace slalom::view {
 namespace {
@@ -21,14 +22,15 @@ std::shared_ptr<const evaluation::Environment> environment() {
 }
 
 /// The first control steps of a drive, recorded; with `ghost` the same controller is the ghost too.
-std::string record(bool wall_clock, int ticks = 12, bool ghost = false) {
+std::string record(bool wall_clock, int ticks = 12, bool ghost = false, bool everything = true) {
   const auto where = environment();
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "64", "svg_mppi");
   evaluation::LapDrive loop({where, {configuration}, {.obstacles = 2}}, 5);
   std::ostringstream stream;
-  Recorder recorder(stream, {.settings = {{"settings", "{}"}}, .wall_clock = wall_clock});
-  recorder.add_text("{\"type\":\"hello\"}");
+  Recorder recorder(stream,
+                    {.settings = {{"settings", "{}"}}, .everything = everything, .wall_clock = wall_clock});
+  recorder.add_text("{\"type\":\"hello\",\"control_period\":0.025}");
   recorder.add_course(encode_scene(*where));
   FrameEncoder encoder;
   for (int i = 0; i < ticks; ++i)
@@ -124,6 +126,33 @@ TEST_F(McapRecording, AReplayHoldsEveryFrameInOrder) {
     at += 5 + length;
   }
   EXPECT_EQ(frames, 12);
+}
+
+TEST_F(McapRecording, ASmallOneHasEveryOtherFrameWithTwentyCandidates) {
+  const auto segments = load_replay(file(record(false, 12, true, false)));
+  ASSERT_EQ(segments.size(), 1u);
+  const std::string all = gunzip(segments[0]);
+  EXPECT_NE(all.find("\"control_period\":0.05"), std::string::npos) << "from frame to frame";
+  double expected = 0;
+  for (std::size_t at = 0; at < all.size();) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, all.data() + at + 1, sizeof length);
+    const std::string_view message(all.data() + at + 5, length);
+    at += 5 + length;
+    if (message[0] != 'S' || message[4] != static_cast<char>(Block::scalars)) continue;
+    const FrameReader reader(message), ghost(reader.block(Block::ghost_frame));
+    EXPECT_EQ(PayloadReader(reader.block(Block::scalars)).get<double>(), expected);
+    expected += small_stride;
+    for (const FrameReader* each : {&reader, &ghost}) {
+      PayloadReader candidates(each->block(Block::candidates));
+      EXPECT_EQ(candidates.get<std::uint16_t>(), 20);
+      EXPECT_TRUE(each->block(Block::cost_map).empty());
+      EXPECT_TRUE(each->block(Block::guides).empty());
+      EXPECT_FALSE(each->block(Block::plan).empty());
+    }
+  }
+  EXPECT_EQ(expected, 12);
+  EXPECT_LT(record(false, 40, false, false).size(), record(false, 40).size() / 3);
 }
 
 /// A recording may end anywhere: its program was killed, or the disk was full.

@@ -1,6 +1,8 @@
 // Commands to a session: the drive of the command line, going back exactly, edits, options.
 #include "view/session_fixture.hpp"
 
+#include <cmath>
+
 #include "view/protocol/frame_reader.hpp"
 
 namespace slalom::view {
@@ -197,14 +199,78 @@ TEST_F(ViewSession, APauseShowsTheNewestTickHoweverFastTheDriveIs) {
   }
 }
 
-TEST_F(ViewSession, APauseHoldsAtTheTickThatASlowClientShows) {
-  step_to(40);
-  tell({{"do", "pause"}, {"tick", 35}});
-  EXPECT_EQ(last_state_ticks()["tick"], 40) << "less than 0.25 s behind";
-  tell({{"do", "pause"}, {"tick", 20}});
-  const json state = last_state_ticks();
-  EXPECT_EQ(state["tick"], 20);
-  EXPECT_EQ(state["newest"], 40);
+/// The figures of a frame that follow from states, obstacles and options.
+std::vector<double> facts(const std::string& frame) {
+  std::vector<double> all;
+  for (const char* name : {"x", "y", "yaw", "speed", "samples", "minimum_cost", "expected_cost",
+                           "command_steer", "collided_share"})
+    all.push_back(scalar(frame, name));
+  return all;
+}
+
+class ViewSessionPaused : public ViewSession {
+ protected:
+  /// The frame that the last command made of a tick.
+  std::string answer(int tick) {
+    tell({{"do", "past"}, {"from", tick}, {"to", tick}, {"id", 77}});
+    next("done");
+    return frame(tick);
+  }
+  /// A disc in front of the car as a frame shows it.
+  json disc_ahead(const std::string& frame) const {
+    const double yaw = scalar(frame, "yaw");
+    return {{"do", "add"},
+            {"kind", "disc"},
+            {"x", scalar(frame, "x") + 1.5 * std::cos(yaw)},
+            {"y", scalar(frame, "y") + 1.5 * std::sin(yaw)},
+            {"length", 0.3}};
+  }
+};
+
+TEST_F(ViewSessionPaused, EveryChangeIsPlannedForAgainFromTheStateThatIsShown) {
+  const std::string before = step_to(30);
+  tell(disc_ahead(before));
+  const std::string added = answer(30);
+  EXPECT_EQ(scalar(added, "x"), scalar(before, "x")) << "the car stays";
+  EXPECT_EQ(scalar(added, "y"), scalar(before, "y"));
+  EXPECT_GT(scalar(added, "collided_share"), scalar(before, "collided_share")) << "the solver saw the disc";
+  EXPECT_LT(scalar(added, "clearance"), 1.5);
+  tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});
+  EXPECT_EQ(scalar(answer(30), "samples"), 64);
+  tell({{"do", "method"}, {"method", "mppi"}});
+  EXPECT_EQ(scalar(answer(30), "method"), 1);
+  tell({{"do", "undo"}});
+  EXPECT_EQ(scalar(answer(30), "samples"), 128);
+  tell({{"do", "ghost"}, {"method", "svg_mppi"}});
+  EXPECT_FALSE(FrameReader(answer(30)).block(Block::ghost_frame).empty());
+  EXPECT_EQ(last_state_ticks()["tick"], 30);
+}
+
+TEST_F(ViewSessionPaused, WhatIsShownIsWhatIsDriven) {
+  const std::string before = step_to(30);
+  tell(disc_ahead(before));
+  const auto added = facts(answer(30)), driven = facts(step_to(40));
+  tell({{"do", "seek"}, {"tick", 30}});
+  EXPECT_EQ(facts(frame(30)), added);
+  EXPECT_EQ(facts(step_to(40)), driven) << "the stored drive has the change";
+  tell({{"do", "seek"}, {"tick", 20}});
+  tell(disc_ahead(frame(20)));
+  EXPECT_GT(scalar(answer(20), "collided_share"), 0);
+  EXPECT_EQ(last_state_ticks()["newest"], 20) << "a change of an earlier tick replaces what followed";
+  tell({{"do", "undo"}});
+  EXPECT_EQ(facts(step_to(30)), facts(before));
+}
+
+TEST_F(ViewSessionPaused, AChangeJustBeforeAPauseIsShown) {
+  const std::string before = step_to(30);
+  tell({{"do", "rate"}, {"rate", 0.5}});
+  tell({{"do", "play"}});
+  tell(disc_ahead(before));
+  tell({{"do", "pause"}});
+  const int newest = last_state_ticks()["newest"];
+  tell({{"do", "seek"}, {"tick", newest}});
+  EXPECT_EQ(FrameReader(frame(newest)).block(Block::bodies).size(),
+            FrameReader(before).block(Block::bodies).size() + 24);
 }
 
 TEST_F(ViewSession, OneClientDrivesAndAnotherTakesOver) {

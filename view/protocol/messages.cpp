@@ -128,6 +128,7 @@ std::string state_message(const DriveState& facts, const evaluation::Environment
                 {"paused", facts.paused},
                 {"real_time", facts.real_time},
                 {"rate", facts.rate},
+                {"pace", facts.pace},
                 {"tick", facts.tick},
                 {"newest", facts.newest},
                 {"oldest", facts.oldest},

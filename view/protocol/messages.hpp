@@ -62,6 +62,7 @@ struct DriveState {
   ScenarioNames names;
   std::vector<LapNote> laps{};
   double time = 0, rate = 1;                ///< s; simulated to real time, 0: as fast as possible
+  double pace = 0;                          ///< simulated to real time, measured; 0: not known
   int tick = -1, newest = -1, oldest = -1;  ///< the one shown, and the range of the stored ones
   bool paused = false, real_time = false, edited = false;
   bool introduction = false;  ///< the scenario with which the program starts without arguments, unchanged

@@ -9,7 +9,7 @@ namespace slalom::view {
 namespace {
 
 constexpr int gzip_window = 15 + 16;  // the largest window, with gzip's head and tail
-constexpr int gzip_level = 6;
+constexpr int gzip_level = 9;
 
 z_stream stream_over(std::string_view bytes) {
   z_stream stream{};

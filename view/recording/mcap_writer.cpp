@@ -7,7 +7,7 @@
 namespace slalom::view::mcap {
 namespace {
 
-constexpr int compression_level = 3;
+constexpr int compression_level = 9;
 
 std::string compress(std::string_view bytes) {
   std::string out(ZSTD_compressBound(bytes.size()), '\0');

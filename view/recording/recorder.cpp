@@ -1,6 +1,7 @@
 #include "view/recording/recorder.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -8,6 +9,7 @@
 #include "src/evaluation/json.hpp"
 #include "view/embedded.hpp"
 #include "view/protocol/frame.hpp"
+#include "view/recording/small_frame.hpp"
 
 namespace slalom::view {
 namespace {
@@ -17,6 +19,26 @@ constexpr std::uint64_t gap_between_drives = 1'000'000'000;  // ns
 /// Whether a scalar of a frame is a wall-clock time.
 bool is_wall_clock(std::string_view name) {
   return name.size() > 3 && name.substr(name.size() - 3) == "_ms" && name != "deadline_ms";
+}
+
+/// Whether the figure is an input or output of the planner, from which a car is identified.
+bool is_exact(std::string_view name) {
+  return name == "time" || name.starts_with("odometry_") || name.starts_with("command_");
+}
+
+/// The number with the digits of a float, whose text is half as long.
+double short_value(double value) {
+  if (!std::isfinite(value)) return value;
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, static_cast<float>(value)).ptr;
+  double read = 0;
+  std::from_chars(text, end, read);
+  return read;
+}
+
+/// The number to 0.1 mm, 0.1 mm/s or 1e-4 rad.
+double rounded(double value) {
+  return std::round(1e4 * value) / 1e4;
 }
 
 /// The schema of an object whose fields are scalars of a frame, or null where there is no value.
@@ -38,7 +60,7 @@ Json figures_schema(bool wall_clock) {
 Recorder::Recorder(std::ostream& stream, RecorderOptions options)
     : options_(std::move(options)),
       writer_(stream, options_.program),
-      replay_([this](const std::string& segment) { attach(segment); }) {
+      replay_([this](const std::string& segment) { attach(segment); }, options_.everything) {
   writer_.add_metadata("slalom", options_.settings);
   const Json schemas = Json::parse(foxglove_schemas());
   std::map<std::string, std::uint16_t> ids;  // schemas that are in the file
@@ -148,11 +170,19 @@ void Recorder::add_frame(std::string_view frame) {
   replay_.add_frame(options_.wall_clock ? std::string(frame) : without_wall_clock(frame, reader));
 
   add_tick(reader, scalars);
+  if (options_.everything) {
+    add_scene(reader);
+    add_cost_map(reader);
+    add_guides(reader);
+  } else if (steps_++ % small_scene_stride == 0) {
+    add_scene(FrameReader(small_frame(frame)));
+  }
+}
+
+void Recorder::add_scene(const FrameReader& reader) {
   add_scan(reader);
-  add_cost_map(reader);
   add_cars(reader);
   add_candidates(reader);
-  add_guides(reader);
   add_plan(reader);
 }
 
@@ -165,13 +195,14 @@ void Recorder::add_tick(const FrameReader& reader, const std::vector<double>& sc
   Json tick = {{"timestamp", foxglove::timestamp(time_)}}, times = tick;
   const auto& names = scalar_names();
   for (std::size_t i = 0; i < names.size(); ++i)
-    (is_wall_clock(names[i]) ? times : tick)[names[i]] = scalars[i];
+    (is_wall_clock(names[i]) ? times : tick)[names[i]] =
+        is_exact(names[i]) ? scalars[i] : short_value(scalars[i]);
   Json covariance = Json::array(), plan = Json::array();
   const std::string_view variances = reader.block(Block::covariance);
   PayloadReader variance(variances);
-  for (std::size_t i = 0; i < variances.size() / 4; ++i) covariance.push_back(variance.f32());
+  for (std::size_t i = 0; i < variances.size() / 4; ++i) covariance.push_back(short_value(variance.f32()));
   for (const auto& [x, y, yaw, speed, steer, spread] : plan_of(reader))
-    plan.push_back({x, y, yaw, speed, steer});
+    plan.push_back({rounded(x), rounded(y), rounded(yaw), rounded(speed), rounded(steer)});
   tick["covariance"] = covariance;
   tick["plan"] = plan;
   add(Topic::tick, tick);

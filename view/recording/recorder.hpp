@@ -20,6 +20,7 @@ struct RecorderOptions {
   std::string program = "slalom";                         ///< name of the program that writes the recording
   std::map<std::string, std::string> settings;            ///< stored as the metadata "slalom"
   double lidar_angle_min = 0, lidar_angle_increment = 0;  ///< rad
+  bool everything = false;  ///< all candidates, guides and cost maps of every step; else a small recording
   bool wall_clock = false;  ///< records wall-clock times; without them the same drive gives the same bytes
 };
 
@@ -49,6 +50,7 @@ class Recorder {
   std::string without_wall_clock(std::string_view frame, const FrameReader& reader) const;
   static std::vector<std::array<double, 6>> plan_of(const FrameReader& reader);
   void add_tick(const FrameReader& reader, const std::vector<double>& scalars);
+  void add_scene(const FrameReader& reader);
   void add_scan(const FrameReader& reader);
   void add_cost_map(const FrameReader& reader);
   void add_cars(const FrameReader& reader);
@@ -60,7 +62,7 @@ class Recorder {
   mcap::Writer writer_;
   std::vector<std::uint16_t> channels_;
   ReplaySegments replay_;
-  int segments_ = 0;
+  int segments_ = 0, steps_ = 0;
   std::uint64_t time_ = 0, offset_ = 0;  ///< ns
 };
 

@@ -15,10 +15,12 @@ class ReplaySegments {
  public:
   using Take = std::function<void(std::string segment)>;
 
-  /// `take` gets each segment, compressed with gzip, when it is full or at `finish`.
-  explicit ReplaySegments(Take take) : take_(std::move(take)) {}
+  /// `take` gets each segment, compressed with gzip, when it is full or at `finish`. Without `everything`,
+  /// the replay is small: every other frame, as small_frame() makes it.
+  explicit ReplaySegments(Take take, bool everything = false)
+      : take_(std::move(take)), everything_(everything) {}
 
-  void add_text(std::string_view message) { add(0, message); }
+  void add_text(std::string_view message);
   void add_course(std::string_view message) { add(1, message); }
   void add_frame(std::string_view message);
   void finish();
@@ -27,8 +29,9 @@ class ReplaySegments {
   void add(char kind, std::string_view message);
 
   Take take_;
+  bool everything_;
   std::string segment_;
-  int frames_ = 0;
+  int frames_ = 0, steps_ = 0;  ///< frames of the segment; control steps
 };
 
 /// Returns the page with a replay inside: one file that needs no server. `page`: HTML.

@@ -34,18 +34,23 @@ std::size_t bytes_of(const SolveResult* solve) {
          static_cast<std::size_t>(batch.steps()) * static_cast<std::size_t>(batch.inputs());
 }
 
+/// Whether a message is a later step of the same drag of a body: only the last one is worth a plan.
+bool replaces(const Received& later, const Received& earlier) {
+  if (later.kind != Received::Kind::message || earlier.kind != Received::Kind::message ||
+      later.client != earlier.client)
+    return false;
+  const Json a = parse_json_or_null(earlier.text), b = parse_json_or_null(later.text);
+  const auto same = [&](const char* key) { return a.contains(key) && b.contains(key) && a[key] == b[key]; };
+  return a.is_object() && b.is_object() && !a.contains("id") && same("do") && a["do"] == "move" &&
+         same("body") && same("drag");
+}
+
 /// The message of a tick: the blocks of the car, the bodies of its world, and the same of the ghost.
 std::string frame_of(std::string_view car, std::string_view ghost, const Drives& drives) {
   std::string frame = std::string(car) + encode_bodies(drives.world());
   if (drives.ghost && !ghost.empty())
     frame += encode_ghost_frame(std::string(ghost) + encode_bodies(drives.ghost->world()));
   return frame;
-}
-
-/// The part of a message before its bodies.
-std::string_view before_bodies(std::string_view frame) {
-  constexpr std::size_t head = 8;  // length of the head of a block
-  return frame.empty() ? frame : frame.substr(0, FrameReader(frame).offset(Block::bodies) - head);
 }
 
 /// Whether a body that does not drive lies ahead of the first car of a world, or beside it.
@@ -75,7 +80,10 @@ void Session::run(const std::atomic<bool>& stop) {
 }
 
 void Session::turn() {
-  for (const Received& each : server_.take()) {
+  const std::vector<Received> received = server_.take();
+  for (std::size_t i = 0; i < received.size(); ++i) {
+    const Received& each = received[i];
+    if (i + 1 < received.size() && replaces(received[i + 1], each)) continue;
     if (each.kind == Received::Kind::joined)
       join(each.client);
     else if (each.kind == Received::Kind::left)
@@ -92,6 +100,7 @@ void Session::turn() {
   if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
   last_state_ = now;
   is_state_changed_ = false;
+  measure_pace();
   tell_text(0, state());
 }
 
@@ -136,19 +145,20 @@ void Session::begin(Drives drives) {
   }
   viewed_ = stop_at_ = passing_ticks_ = -1;
   steps_left_ = 0;
+  held_.reset();
   slow_down();
   due_ = Clock::now();
   is_state_changed_ = are_options_changed_ = true;
 }
 
-void Session::tick() {
+void Session::tick(bool is_shown) {
   if (state_.rate > 0) {
     const auto period = std::chrono::duration<double>(control_period());
     const auto step = std::chrono::duration_cast<Clock::duration>(period / state_.rate);
     due_ = std::max(due_ + step, Clock::now() - max_late_ticks * step);
   }
   Drives& drives = *drives_;
-  timeline_.checkpoint(drives, copy_bytes_);
+  timeline_.checkpoint(drives, copy_bytes_, last_updates_.car + last_updates_.ghost);
   copy_bytes_ = 0;
   std::string car, ghost_car, ghost;
   const Delays delays = state_.real_time ? last_updates_ : Delays{};
@@ -169,6 +179,7 @@ void Session::tick() {
     frame = frame_of(car, ghost, drives);
   };
   drives.tick(delays, on_car, on_ghost);
+  ++paced_ticks_;
   timeline_.keep({number, delays, shared(std::move(frame))});
   note_laps(drives.car, driver().method, false);
   if (drives.ghost) note_laps(*drives.ghost, drives.ghost_label, true);
@@ -178,7 +189,7 @@ void Session::tick() {
     stop_at_ = -1;
   }
   is_newest_sent_ = false;
-  if (Clock::now() - last_frame_ >= min_frame_gap || state_.paused) publish_newest();
+  if (is_shown && (Clock::now() - last_frame_ >= min_frame_gap || state_.paused)) publish_newest();
 }
 
 StepFacts Session::facts_of(const evaluation::LapDrive& drive) const {
@@ -221,6 +232,18 @@ void Session::show_step(int tick) {
   server_.publish(0, timeline_.at(tick).frame);
 }
 
+/// Measures the simulated time per time while the drive goes on.
+void Session::measure_pace() {
+  constexpr double least = 0.5;  // s
+  const auto now = Clock::now();
+  const double passed = std::chrono::duration<double>(now - paced_).count();
+  if (state_.paused) state_.pace = 0;
+  if (passed < least && !state_.paused) return;
+  if (!state_.paused) state_.pace = paced_ticks_ * control_period() / passed;
+  paced_ = now;
+  paced_ticks_ = 0;
+}
+
 /// Keeps the introduction in slow motion until both cars have passed the obstacle.
 void Session::slow_down() {
   if (!state_.introduction || passing_ticks_ > max_passing_ticks) return;
@@ -236,55 +259,73 @@ void Session::slow_down() {
   state_.rate = rate;
 }
 
-/// Returns a copy of the drives as they were after the tick that is shown.
-Drives Session::shown() const {
-  return viewed_ >= 0 ? timeline_.after(viewed_) : *drives_;
+/// Whether a change is to be shown before the next tick: the drive is paused, or in slow motion.
+bool Session::is_held() const {
+  constexpr double longest_wait = 0.05;  // s
+  const bool is_slow = state_.rate > 0 && control_period() > longest_wait * state_.rate;
+  return (state_.paused || is_slow) && steps_left_ == 0 && !timeline_.empty();
 }
 
-/// Applies actions to the drives, from the tick that is shown on. If one throws, nothing has changed.
-void Session::perform(const std::vector<Action>& actions) {
-  Drives drives = shown();
-  for (const Action& each : actions) each(drives);
-  commit(std::move(drives), actions);
+/// Returns the drives that a change applies to. While nothing moves these are the drives when the tick that
+/// is shown began, or with `lead` the tick before it; else the present ones.
+const Drives& Session::present(int lead) {
+  if (!is_held()) return *drives_;
+  const int tick = std::max(shown_tick() - lead, timeline_.oldest());
+  if (!held_ || held_->ticks() != tick) held_ = timeline_.before(tick);
+  return *held_;
 }
 
-/// Makes a copy that `shown` returned the present, after these actions have been applied to it.
-void Session::commit(Drives drives, const std::vector<Action>& actions) {
-  const bool is_back = viewed_ >= 0;
+/// Makes the tick that is shown the newest one.
+void Session::continue_from_shown() {
+  if (viewed_ < 0) return;
+  Drives drives = present();
+  drives.tick(timeline_.at(viewed_).delays);
   drives_ = std::move(drives);
-  if (is_back) {
-    timeline_.forget_after(viewed_);
-    std::erase_if(state_.laps, [&](const LapNote& lap) { return lap.tick > viewed_ + 1; });
-    for (auto* changes : {&undo_, &redo_})
-      std::erase_if(*changes, [&](const Change& each) { return each.ticks > viewed_; });
-    viewed_ = -1;
-    due_ = Clock::now();
-  }
-  for (const Action& each : actions) timeline_.note(drives_->ticks(), each);
-  is_state_changed_ = true;
-  are_options_changed_ = are_options_changed_ || is_back || !actions.empty();
+  forget_after(viewed_, viewed_);
+  due_ = Clock::now();
 }
 
-/// Edits the worlds. While nothing moves, this is shown at once. Returns the bodies before.
-std::vector<Body> Session::edit(const Action& action) {
-  Drives drives = shown();
-  std::vector<Body> before = bodies_of(drives.world());
-  action(drives);
-  commit(std::move(drives), {action});
-  if (timeline_.empty()) return before;
-  const std::string& frame = *timeline_.steps().back().frame;
-  const std::string_view ghost = FrameReader(frame).block(Block::ghost_frame);
-  timeline_.show(shared(frame_of(before_bodies(frame), before_bodies(ghost), *drives_)));
-  if (state_.paused) server_.publish(0, timeline_.steps().back().frame);
-  return before;
+/// Forgets what was driven after a tick, and what was changed after `ticks` ticks.
+void Session::forget_after(int tick, int ticks) {
+  timeline_.forget_after(tick, ticks);
+  std::erase_if(state_.laps, [&](const LapNote& lap) { return lap.tick > tick + 1; });
+  for (auto* changes : {&undo_, &redo_})
+    std::erase_if(*changes, [&](const Change& each) { return each.ticks > ticks; });
+  viewed_ = -1;
+  is_state_changed_ = are_options_changed_ = true;
+}
+
+/// Applies actions to the drives, from the tick that is shown on. While nothing moves, this tick is driven
+/// again, so that the plan that is shown belongs to the change. The scan of a tick was taken at the end of
+/// the tick before; a change of what it sees therefore has the `lead` 1: both are driven again. If an action
+/// throws, nothing has changed.
+void Session::perform(const std::vector<Action>& actions, int lead) {
+  const bool is_driven_again = is_held();
+  const int shown = shown_tick();
+  Drives drives = present(lead);
+  for (const Action& each : actions) each(drives);
+  acted_ = drives.ticks();
+  drives_ = std::move(drives);
+  if (is_driven_again) forget_after(acted_ - 1, shown);
+  for (const Action& each : actions) timeline_.note(acted_, each);
+  is_state_changed_ = are_options_changed_ = true;
+  if (!is_driven_again) return;
+  held_ = *drives_;
+  const Clock::time_point due = due_;
+  if (acted_ < shown) {
+    tick(false);
+    timeline_.act(*drives_);
+  }
+  tick();
+  due_ = due;
 }
 
 /// Stores what a change has replaced, so that it can be undone; what was undone cannot be done again after
 /// it. Changes of the same drag count as one; 0 is never the same.
-void Session::remember(Change change, int drag) {
+void Session::remember(decltype(Change::before) before, int drag) {
   if (drag != 0 && drag == std::exchange(drag_, drag)) return;
   drag_ = drag;
-  undo_.push_back(std::move(change));
+  undo_.push_back({acted_, std::move(before)});
   if (undo_.size() > max_changes) undo_.erase(undo_.begin());
   redo_.clear();
 }

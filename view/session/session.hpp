@@ -74,20 +74,22 @@ class Session {
   void install(LoadedScenario loaded, const ScenarioNames& names);
   void restart();
   void begin(Drives drives);
-  void tick();
+  void tick(bool is_shown = true);
   void show_step(int tick);
   void publish_newest();
   void slow_down();
+  void measure_pace();
   void note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost);
   StepFacts facts_of(const evaluation::LapDrive& drive) const;
   Clock::duration until_due() const;
 
   // Changing the drive, from the tick that is shown on.
-  Drives shown() const;
-  void perform(const std::vector<Action>& actions);
-  void commit(Drives drives, const std::vector<Action>& actions);
-  std::vector<Body> edit(const Action& action);
-  void remember(Change change, int drag = 0);
+  bool is_held() const;
+  const Drives& present(int lead = 0);
+  void continue_from_shown();
+  void forget_after(int tick, int ticks);
+  void perform(const std::vector<Action>& actions, int lead = 0);
+  void remember(decltype(Change::before) before, int drag = 0);
   void change_driver(const vehicle::Configuration& configuration, const std::string& method);
   void undo(bool again);
   void fork(const Json& command);
@@ -126,6 +128,8 @@ class Session {
   std::shared_ptr<const std::string> scene_;  ///< message with the course
   std::optional<Drives> drives_;
   Timeline timeline_;
+  std::optional<Drives> held_;       ///< while paused: what a change last applied to, with the change
+  int acted_ = 0;                    ///< ticks before the last change
   std::vector<Change> undo_, redo_;  ///< changes to undo and to do again, newest last
   int drag_ = 0;                     ///< the drag of the last change
   /// The drive as pages are told of it. `state` fills in what follows from drives and timeline.
@@ -133,6 +137,7 @@ class Session {
 
   FrameEncoder encoder_;
   Delays last_updates_;         ///< s of wall clock
+  int paced_ticks_ = 0;         ///< ticks since `paced_`
   std::size_t copy_bytes_ = 0;  ///< about the size of a copy of the drives
 
   bool waiting_ = true;     ///< for the first page to be opened
@@ -140,8 +145,9 @@ class Session {
   int stop_at_ = -1;        ///< tick at which to pause
   int steps_left_ = 0;      ///< ticks of a command "step" that are still to come
   int passing_ticks_ = -1;  ///< ticks of the introduction since the cars came to the obstacle; -1 before
-  Clock::time_point due_ = Clock::now(), last_state_ = Clock::now(), last_frame_ = Clock::now();
-  bool is_newest_sent_ = true;  ///< false if the newest tick came too early for a frame
+  Clock::time_point due_ = Clock::now(), last_state_ = due_, last_frame_ = due_;
+  Clock::time_point paced_ = due_;  ///< from when the pace of the drive is measured
+  bool is_newest_sent_ = true;      ///< false if the newest tick came too early for a frame
   bool is_state_changed_ = true, are_options_changed_ = false;
   std::uint64_t refused_ = 0;
   std::future<void> saving_;  ///< the last member: its thread ends before what it uses

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int max_steps = 400;  // ticks of one command "step"
 constexpr double least_rate = 0.001, most_rate = 100;
-constexpr double max_lag = 0.25;                              // s that a page may be behind when it pauses
 constexpr double before_contact = 2.0, after_contact = 0.25;  // s that are shown of a collision
 constexpr double contact_rate = 0.25;
+constexpr int scan_lead = 1;  // ticks from which on the scan of the tick that is shown sees a change
 
 bool is_among(std::initializer_list<std::string_view> names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
@@ -54,11 +54,13 @@ void Session::obey(std::uint64_t client, const std::string& what, const Json& co
   if (client != driving_client_)
     throw std::invalid_argument("another page drives this car; take over to change it");
   is_state_changed_ = true;
-  if (what == "nudge" && viewed_ >= 0) perform({});  // it is relative to where the car is shown
-  if (const Action action = edit_of(what, command, drives_->world().state(0))) {
-    const int drag = field::integer(command, "drag", 0);
-    std::vector<Body> before = edit(action);
-    if (what != "nudge" && what != "place_car") remember({drives_->ticks(), std::move(before)}, drag);
+  const bool is_of_car = what == "nudge" || what == "place_car";
+  const sim::CarState car = is_of_car ? present().world().state(0) : sim::CarState{};
+  if (const Action action = edit_of(what, command, car)) {
+    const int drag = field::integer(command, "drag", 0), lead = is_of_car ? 0 : scan_lead;
+    std::vector<Body> before = bodies_of(present(lead).world());
+    perform({action}, lead);
+    if (!is_of_car) remember(std::move(before), drag);
   } else if (!obey_transport(what, command) && !obey_options(what, command)) {
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command");
   }
@@ -71,21 +73,20 @@ void Session::obey(std::uint64_t client, const std::string& what, const Json& co
 
 bool Session::obey_transport(const std::string& what, const Json& command) {
   if (what == "pause") {
+    if (!state_.paused && timeline_.is_action_due()) tick();
     state_.paused = true;
     steps_left_ = 0;
     publish_newest();
-    // A page that is far behind keeps the tick that it shows.
-    const int tick = field::integer(command, "tick", timeline_.newest());
-    if ((timeline_.newest() - tick) * control_period() > max_lag) show_step(tick);
   } else if (what == "play") {
-    if (viewed_ >= 0) perform({});
+    continue_from_shown();
     stop_at_ = -1;
     steps_left_ = 0;
     state_.paused = waiting_ = false;
-    due_ = Clock::now();
+    due_ = paced_ = Clock::now();
+    paced_ticks_ = 0;
   } else if (what == "step") {
     const int ticks = std::clamp(field::integer(command, "ticks", 1), 1, max_steps);
-    if (viewed_ >= 0) perform({});
+    continue_from_shown();
     waiting_ = false;
     state_.paused = true;
     steps_left_ = std::min(steps_left_ + ticks, max_steps);
@@ -119,11 +120,11 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
 }
 
 bool Session::obey_options(const std::string& what, const Json& command) {
-  const vehicle::Configuration before = driver().configuration;
-  const std::string method = driver().method;
+  const vehicle::Configuration before = present().car.setup().driver.configuration;
+  const std::string method = present().car.setup().driver.method;
   const auto change_options = [&](const vehicle::Configuration& changed) {
     change_driver(changed, method);
-    remember({drives_->ticks(), before});
+    remember(before);
   };
   if (what == "set") {
     vehicle::Configuration changed = before;
@@ -151,40 +152,44 @@ void Session::change_driver(const vehicle::Configuration& configuration, const s
   changed.driver = {configuration, method};
   if (changed.control_period() == control_period())
     perform({view::change_driver(changed.driver)});
-  else
+  else {
     begin({evaluation::LapDrive(changed, state_.names.seed)});
+    if (state_.paused) tick();
+  }
 }
 
 /// Takes the last change back, or with `again` the last undo.
 void Session::undo(bool again) {
   auto &from = again ? redo_ : undo_, &to = again ? undo_ : redo_;
   if (from.empty()) throw std::invalid_argument(again ? "nothing to redo" : "nothing to undo");
-  if (viewed_ >= 0) perform({});
+  continue_from_shown();
   if (from.empty()) return;  // going back has undone it
   const Change last = from.back();
-  Change replaced{drives_->ticks(), driver().configuration};
+  Change replaced{last.ticks, driver().configuration};
   if (const auto* bodies = std::get_if<1>(&last.before)) {
-    replaced.before = edit(set_bodies(*bodies));
+    replaced.before = bodies_of(present(scan_lead).world());
+    perform({set_bodies(*bodies)}, scan_lead);
   } else {
     change_driver(std::get<0>(last.before), driver().method);
   }
   from.pop_back();
+  replaced.ticks = acted_;
   to.push_back(std::move(replaced));
   drag_ = 0;
 }
 
 /// Continues with another method or other options; the present driver continues as a ghost.
 void Session::fork(const Json& command) {
-  const std::string method = field::text(command, "method"), before = driver().method;
-  const vehicle::Configuration replaced = driver().configuration;
-  evaluation::LapSetup changed = setup();
+  evaluation::LapSetup changed = present().car.setup();
+  const std::string method = field::text(command, "method"), before = changed.driver.method;
+  const vehicle::Configuration replaced = changed.driver.configuration;
   changed.driver.method = method;
   const bool has_settings = apply_settings(changed.driver.configuration, command, method);
   if (changed.control_period() != control_period())
     throw std::invalid_argument("fork: the control period cannot change during a drive");
   perform(
       {start_ghost(before == method ? before + " as before" : before), view::change_driver(changed.driver)});
-  if (has_settings) remember({drives_->ticks(), replaced});
+  if (has_settings) remember(replaced);
 }
 
 /// Starts a ghost with a method as a copy of the car; without one, ends the ghost.

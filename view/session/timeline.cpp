@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t max_frame_bytes = 400u << 20;
 constexpr std::size_t max_copy_bytes = 1u << 30;
-constexpr std::size_t max_copies = 48;
+constexpr std::size_t max_copies = 200;
+constexpr double longest_way = 0.03;  // s of wall clock from a copy to the tick that is sought
 
 }  // namespace
 
@@ -17,8 +18,20 @@ Timeline::Timeline(double control_period)
     : most_steps_(static_cast<std::ptrdiff_t>(stored_seconds / control_period)),
       ticks_per_copy_(std::max(1, static_cast<int>(std::lround(1 / control_period)))) {}
 
-void Timeline::checkpoint(const Drives& drives, std::size_t copy_bytes) {
-  if (!copies_.empty() && drives.ticks() - copies_.back().ticks() < ticks_per_copy_) return;
+void Timeline::note(int ticks, Action action) {
+  const auto later = std::ranges::find_if(actions_, [&](const auto& each) { return each.first > ticks; });
+  actions_.emplace(later, ticks, std::move(action));
+}
+
+void Timeline::act(Drives& drives) const {
+  const int ticks = drives.ticks();
+  for (const auto& [noted, action] : actions_)
+    if (noted == ticks) action(drives);
+}
+
+void Timeline::checkpoint(const Drives& drives, std::size_t copy_bytes, double tick_time) {
+  const double way = copies_.empty() ? 0 : drives.ticks() - copies_.back().ticks();
+  if (!copies_.empty() && way < ticks_per_copy_ && way * tick_time < longest_way) return;
   copies_.push_back(drives);
   const std::size_t most = max_copy_bytes / std::max<std::size_t>(1, copy_bytes);
   while (copies_.size() > std::clamp(most, std::size_t{4}, max_copies)) thin_out();
@@ -50,26 +63,23 @@ void Timeline::forget_oldest() {
   std::erase_if(actions_, [&](const auto& each) { return each.first <= first; });
 }
 
-void Timeline::show(std::shared_ptr<const std::string> frame) {
-  bytes_ += frame->size() - steps_.back().frame->size();
-  steps_.back().frame = std::move(frame);
-}
-
-Drives Timeline::after(int tick) const {
+Drives Timeline::before(int tick) const {
   const auto later = std::ranges::find_if(copies_, [&](const Drives& each) { return each.ticks() > tick; });
   Drives drives = *std::prev(later);
-  auto noted = std::ranges::find_if(actions_, [&](const auto& each) { return each.first > drives.ticks(); });
-  while (drives.ticks() <= tick) {
-    for (; noted != actions_.end() && noted->first <= drives.ticks(); ++noted) noted->second(drives);
-    drives.tick(at(drives.ticks()).delays);
-  }
+  for (; drives.ticks() < tick; act(drives)) drives.tick(at(drives.ticks()).delays);
   return drives;
 }
 
-void Timeline::forget_after(int tick) {
+Drives Timeline::after(int tick) const {
+  Drives drives = before(tick);
+  drives.tick(at(tick).delays);
+  return drives;
+}
+
+void Timeline::forget_after(int tick, int ticks) {
   for (; newest() > tick; steps_.pop_back()) bytes_ -= steps_.back().frame->size();
-  while (copies_.size() > 1 && copies_.back().ticks() > tick) copies_.pop_back();
-  std::erase_if(actions_, [&](const auto& each) { return each.first > tick; });
+  while (!copies_.empty() && copies_.back().ticks() > tick) copies_.pop_back();
+  std::erase_if(actions_, [&](const auto& each) { return each.first > ticks; });
 }
 
 }  // namespace slalom::view

@@ -33,8 +33,10 @@ export class Controls {
   }
 
   setFollow(what: "follow" | "heading" | "fit") {
+    const { camera, isFitted } = this.scene;
+    if (isFitted) camera.zoom = camera.drivingZoom;
     if (what === "fit") this.scene.fit();
-    else this.scene.camera.follow = what;
+    else camera.follow = what;
     redraw();
   }
 

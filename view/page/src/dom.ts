@@ -20,3 +20,6 @@ export function press(button: HTMLElement, on: boolean) {
   button.classList.toggle("on", on);
   button.setAttribute("aria-pressed", String(on));
 }
+
+/** A number with its noun: "1 lap", "2 laps". */
+export const counted = (n: number, noun: string) => `${n} ${noun}${n === 1 ? "" : "s"}`;

@@ -1,5 +1,6 @@
 import { get } from "./dom";
-import { page, scalar, send } from "./page";
+import { page, send } from "./page";
+import { showStatus } from "./status";
 
 /** The controls of the drive: time, nudges and forks. `openFork` opens the dialog. Returns what they do. */
 export function attachDrive(openFork: () => void) {
@@ -11,9 +12,11 @@ export function attachDrive(openFork: () => void) {
     if (now) send({ do: "seek", tick: (now.paused ? now.tick : now.newest) - 1 });
   };
   const play = () => {
-    // A slow browser shows an earlier tick than the server has reached; it pauses at the tick shown.
-    if (page.state?.paused) send({ do: "play" });
-    else send({ do: "pause", tick: page.frame && scalar("tick") });
+    const { state } = page;
+    if (!state) return;
+    send({ do: state.paused ? "play" : "pause" });
+    state.paused = !state.paused; // until the server says so, which may take a moment
+    showStatus(state);
   };
   const fork = () => {
     if (!page.state?.paused) send({ do: "pause" });

@@ -1,4 +1,4 @@
-import { all, get } from "./dom";
+import { all, counted, get } from "./dom";
 import { modesOf, verdict } from "./modes";
 import { page, scalar, send } from "./page";
 import type { Frame } from "./protocol";
@@ -64,5 +64,5 @@ export class Introduction {
 }
 
 function collisions(n: number): string {
-  return n === 0 ? "without a collision" : n === 1 ? "with 1 collision" : `with ${n} collisions`;
+  return n === 0 ? "without a collision" : `with ${counted(n, "collision")}`;
 }

@@ -1,12 +1,14 @@
 import { get, make } from "./dom";
 
-/** Controls that use keys themselves. */
-const controls = "button, input, select, textarea, summary, a[href], [role=tab], [role=tabpanel]";
+/** Controls that use all keys themselves, and those that use only the keys with which they are pressed. */
+const typed = "select, textarea, input:not([type=checkbox])";
+const pressed = "button, summary, a[href], [type=checkbox], [role=tab], [role=tabpanel]";
+const pressing = /^( |Enter|Home|End|Arrow.*)$/;
 
 /** Keys as the help shows them, their meaning, and what each does. Names of keys with Ctrl begin with it. */
 export type Shortcut = [shown: string, meaning: string, acts: Record<string, () => void>];
 
-/** Lists the keys in the help. Calls the function of a key unless a control or a dialog has the focus. */
+/** Lists the keys in the help. Calls the function of a key unless a dialog is open or a control uses it. */
 export function attachKeys(shortcuts: Shortcut[]) {
   const rows = shortcuts.flatMap(([shown, meaning]) => {
     const names = shown.split(" ").flatMap((key) => [make("kbd", {}, key), " "]);
@@ -16,7 +18,9 @@ export function attachKeys(shortcuts: Shortcut[]) {
   const keys: Record<string, () => void> = Object.assign({}, ...shortcuts.map(([, , acts]) => acts));
   addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
-    if (document.querySelector("dialog[open]") || target.closest(controls)) return;
+    if (document.querySelector("dialog[open]")) return;
+    if (event.key === "Escape" && target.closest(typed)) return target.blur();
+    if (target.closest(typed) || (target.closest(pressed) && pressing.test(event.key))) return;
     const act = keys[event.ctrlKey || event.metaKey ? "Ctrl " + event.key.toLowerCase() : event.key];
     if (!act || event.altKey) return;
     act();

@@ -307,7 +307,7 @@ if (isReplay) {
   get("rate").querySelector('[value="0"]')?.remove();
 }
 get<HTMLDetailsElement>("layers").open = innerWidth >= 900;
-if (innerWidth < 900) scene.camera.zoom = innerWidth < 480 ? 32 : 42;
+scene.camera.zoom = scene.camera.drivingZoom;
 showTheme();
 controls.setTool(isReplay ? "pan" : "disc");
 showPane("charts");

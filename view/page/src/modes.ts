@@ -94,8 +94,12 @@ export function verdict(modes: Modes | undefined): Verdict | undefined {
 
 const hold = 0.5; // s of simulated time that a sentence stays, so that it can be read
 
-/** The sentence over a scene. Another verdict is shown once it has held for two frames. */
+/**
+ * The sentence over a scene. While time passes, another verdict is shown once it has held for two frames; a
+ * frame of the same time, planned again for a change, is judged at once.
+ */
 export class Caption {
+  private time = NaN; // s
   private since = 0; // s
   private before?: Verdict; // verdict of the frame before
 
@@ -105,10 +109,12 @@ export class Caption {
   show(method: string, frame: Frame | undefined, time: number) {
     const modes = frame && modesOf(frame);
     const now = verdict(modes);
-    const what = now === this.before || now === this.line.dataset.verdict ? now : undefined;
+    const isAgain = time === this.time;
+    const what = isAgain || now === this.before || now === this.line.dataset.verdict ? now : undefined;
+    this.time = time;
     this.before = now;
     if (what) this.since = time;
-    else if (frame && time >= this.since && time < this.since + hold) return;
+    else if (frame && !isAgain && time >= this.since && time < this.since + hold) return;
     this.line.hidden = !what;
     this.line.dataset.verdict = what ?? "";
     this.line.replaceChildren(...(what ? sentence(method, modes!, what) : []));

@@ -73,6 +73,7 @@ export class Player implements Link {
       paused: this.paused,
       real_time: false,
       rate: this.rate,
+      pace: 0,
       tick: index,
       newest: this.frames.length - 1,
       oldest: 0,
@@ -91,7 +92,7 @@ export class Player implements Link {
 
   private turn(now: number) {
     const period = this.states[0]?.state.control_period ?? 0.025;
-    const passed = Math.min(0.1, (now - this.last) / 1000);
+    const passed = Math.min(1, (now - this.last) / 1000);
     this.last = now;
     if (!this.paused && this.frames.length) {
       this.at += (passed * this.rate) / period;

@@ -195,7 +195,16 @@ export interface LapRow extends Numbers<"lap" | "time" | "contacts"> {
 }
 type Names = "course" | "description" | "method" | "config" | "evaluation" | "seed" | "ghost" | "ghost_label";
 type Counts =
-  "length" | "obstacles" | "opponents" | "rate" | "tick" | "newest" | "oldest" | "time" | "generation";
+  | "length"
+  | "obstacles"
+  | "opponents"
+  | "rate"
+  | "pace"
+  | "tick"
+  | "newest"
+  | "oldest"
+  | "time"
+  | "generation";
 export interface State extends Texts<Names>, Numbers<Counts | "control_period"> {
   type: "state";
   paused: boolean;

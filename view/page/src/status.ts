@@ -1,4 +1,4 @@
-import { get, make } from "./dom";
+import { counted, get, make } from "./dom";
 import { icon } from "./layout";
 import { isReplay } from "./page";
 import type { State } from "./protocol";
@@ -29,7 +29,11 @@ function modeOf(state: State): [name: string, meaning: string] {
 
 function progressOf(state: State): string {
   if (state.paused) return state.tick < state.newest && !isReplay ? " · earlier tick" : " · paused";
-  return state.rate === 0 ? " · max speed" : state.rate !== 1 ? ` · ${state.rate}×` : "";
+  const rate = state.rate === 0 ? "max speed" : `${state.rate}×`;
+  const pace = `${state.pace.toPrecision(2)}×`;
+  if (state.rate === 0) return ` · ${rate}` + (state.pace > 0 ? `, ${pace}` : "");
+  if (state.pace > 0 && state.pace < 0.95 * state.rate) return ` · ${pace} of ${rate}`;
+  return state.rate === 1 ? "" : ` · ${rate}`;
 }
 
 /** Shows whether the drive is paused, how time passes, and the laps driven. */
@@ -49,9 +53,10 @@ export function showStatus(state: State) {
   const rules =
     state.evaluation === "published" ? "evaluation of the published program" : "physical evaluation";
   const edited = state.edited ? ", edited" : "";
-  get("about").textContent = `${state.description} ${state.length.toFixed(1)} m, ${rules}${edited}.`;
-  const parts = [state.course, state.method, `seed ${state.seed}`, `${state.obstacles} obstacles`];
-  if (state.opponents) parts.push(`${state.opponents} opponents`);
+  const description = state.description.replace(/([^.])$/, "$1."); // a sentence of course.yaml
+  get("about").textContent = `${description} ${state.length.toFixed(1)} m, ${rules}${edited}.`;
+  const parts = [state.course, state.method, `seed ${state.seed}`, counted(state.obstacles, "obstacle")];
+  if (state.opponents) parts.push(counted(state.opponents, "opponent"));
   get("caption").textContent = isReplay ? parts.join(" · ") : "";
 }
 

@@ -2,7 +2,7 @@ import uPlot from "uplot";
 import type { Past } from "../past";
 import { page, period, scalar } from "../page";
 import { axis, Chart, css, padded, vertical } from "./plots";
-import { isEstimate, strips, type Strip } from "./strips";
+import { isEstimate, strips, unitOf, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
 const max_ticks = 500; // ticks in the histogram
@@ -213,12 +213,13 @@ export class Charts {
   csv(): string {
     if (page.hello) this.collect();
     const shown = this.plotted.filter((p) => !p.chart.box.hidden);
-    const columns = shown.flatMap((p) => p.strip.lines.map((line, i) => ({ line, values: p.columns[i] })));
-    const cell = (v: number | null, scale = 1) => (v === null ? "" : v / scale);
+    const columns = shown.flatMap((p) =>
+      p.strip.lines.map((line, i) => ({ line, unit: unitOf(p.strip, line), values: p.columns[i] })),
+    );
     const rows = this.positions.map((position, i) => {
-      return [position, this.times[i], ...columns.map(({ line, values }) => cell(values[i], line.scale))];
+      return [position, this.times[i], ...columns.map(({ values }) => values[i] ?? "")];
     });
-    const head = ["tick", "time", ...columns.map(({ line }) => line.name)];
+    const head = ["tick", "time [s]", ...columns.map(({ line, unit }) => line.name + (unit && ` [${unit}]`))];
     return [head, ...rows].map((row) => row.join()).join("\n") + "\n";
   }
 }

@@ -1,4 +1,4 @@
-import { get, make } from "../dom";
+import { counted, get, make } from "../dom";
 import { send } from "../page";
 import type { Evaluation, EvaluationLap, State } from "../protocol";
 
@@ -57,13 +57,17 @@ export class EvaluationPane {
     const contacts = laps.reduce((n, l) => n + l.points.length, 0);
     const finished = laps.filter((l) => l.finished).length;
     get("evaluation-folder").textContent =
-      `${evaluation.folder}: ${evaluation.laps.length} laps on ${evaluation.course}.`;
+      `${evaluation.folder}: ${counted(evaluation.laps.length, "lap")} on ${evaluation.course}.`;
     get("evaluation-counts").textContent =
-      `${laps.length} laps, ${finished} finished, ${contacts} collisions`;
+      `${counted(laps.length, "lap")}, ${finished} finished, ${counted(contacts, "collision")}`;
     const names = evaluation.experiments.map((e) => `${e.label} · ${e.scenario}`);
     this.select.replaceChildren(...names.map((name, i) => new Option(name, String(i))));
     this.select.value = String(this.experiment);
-    const shown = laps.filter((lap) => lap.points.length || !this.only.checked);
+    get("evaluation-hint").textContent = contacts
+      ? "Click a collision, here or on the map, to see the two seconds before it."
+      : "No lap of this experiment has a collision. Click a number to drive its lap.";
+    get("only-contacts-line").hidden = contacts === 0;
+    const shown = laps.filter((lap) => lap.points.length || !this.only.checked || contacts === 0);
     get("evaluation-laps").replaceChildren(...shown.map((lap) => this.row(lap)));
     this.changed();
   }

@@ -25,6 +25,18 @@ function travel(o: OptionDeclaration) {
   };
 }
 
+const greek: Record<string, string> = {
+  alpha: "α",
+  beta: "β",
+  gamma: "γ",
+  epsilon: "ε",
+  lambda: "λ",
+  mu: "μ",
+};
+Object.assign(greek, { nu: "ν", rho: "ρ", sigma: "σ", Sigma: "Σ", tau: "τ", theta: "θ", phi: "φ", psi: "ψ" });
+/** The symbol of a formula, with its Greek letters. */
+const symbol = (name: string) => name.replace(/[A-Za-z]+/g, (word) => greek[word] ?? word);
+
 /** The options that are changed most often; those that were changed are shown as well. */
 const short = `samples horizon temperature variance guides restart_variance adapt_covariance use_nominal
   vehicle.body_margin planner.max_speed`.split(/\s+/);
@@ -84,7 +96,7 @@ export class OptionsPane {
 
   private row(section: string, o: OptionDeclaration): HTMLElement {
     const key = `${section}.${o.name}`;
-    const aside = [o.symbol, o.unit && `[${o.unit}]`].filter(Boolean).join(" ");
+    const aside = [symbol(o.symbol), o.unit && `[${o.unit.replace("^2", "²")}]`].filter(Boolean).join(" ");
     const isBounded = [o.min, o.max].some((v) => v !== undefined && Math.abs(v) < 1e6);
     const upper = o.max !== undefined && o.max < 1e9 ? o.max : "∞";
     const range = isBounded ? ` (${o.min ?? "−∞"} … ${upper})` : "";

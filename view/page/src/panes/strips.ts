@@ -69,5 +69,10 @@ export const strips: Strip[] = [
   strip("Clearance, m", ["clearance", "to wall or obstacle", "accent"]),
 ];
 
+/** The unit of a line, at the end of its label or of the title: "rad", "%"; empty if it has none. */
+export const unitOf = ({ title }: Strip, { label }: Line) =>
+  /, (\S+)$/.exec(label)?.[1] ??
+  (title.startsWith("Steering, estimates") ? "" : (/, (\S+)/.exec(title)?.[1] ?? ""));
+
 /** Whether a line has no value where tyres do not slip. */
 export const isEstimate = (line: Line) => line.name.endsWith("_estimate") || line.name === "grip_used";

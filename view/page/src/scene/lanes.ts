@@ -1,4 +1,4 @@
-import { get } from "../dom";
+import { counted, get } from "../dom";
 import { Caption } from "../modes";
 import type { Camera } from "./camera";
 import { page, scalar } from "../page";
@@ -22,9 +22,7 @@ export class Lanes {
       const method = each && page.hello!.methods[scalar("method", each.scalars)];
       const collisions = scalar("contacts", each?.scalars);
       this.captions[i].show(method ?? "", isShown ? each : undefined, time);
-      if (each)
-        this.titles[i].textContent =
-          `${method} · ${collisions === 1 ? "1 collision" : `${collisions} collisions`}`;
+      if (each) this.titles[i].textContent = `${method} · ${counted(collisions, "collision")}`;
     });
   }
 

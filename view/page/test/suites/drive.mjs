@@ -71,6 +71,46 @@ export default async function (h) {
     await h.until((id) => !slalom.frame.bodies.some((o) => o.id === id), body.id);
   });
 
+  await h.test("a change while paused is planned for at once, from the state that is shown", async () => {
+    await h.pause();
+    const facts = () =>
+      page.evaluate(() => ["tick", "x", "y", "collided_share"].map((name) => slalom.scalar(name)));
+    const [tick, x, y, share] = await facts();
+    const count = await page.evaluate(() => slalom.frame.bodies.length);
+    const took = await page.evaluate(async () => {
+      const { plan, bodies } = slalom.frame;
+      const { x, y } = plan[Math.round(plan.length / 3)];
+      const begin = performance.now();
+      slalom.send({ do: "add", kind: "disc", x, y, length: 0.3 });
+      while (slalom.frame.bodies.length === bodies.length) await new Promise((f) => setTimeout(f));
+      return performance.now() - begin;
+    });
+    const now = await facts();
+    assert.deepEqual(now.slice(0, 3), [tick, x, y]);
+    assert.ok(now[3] > share, `${now[3]} of the samples collide, ${share} before`);
+    console.log(`      from the edit to the new plan: ${took.toFixed(0)} ms`);
+    const plan = () => page.evaluate(() => JSON.stringify(slalom.frame.plan));
+    const [before, options] = [await plan(), { do: "set", key: "svg_mppi.temperature", value: "30" }];
+    await h.send(options);
+    await h.until((p) => JSON.stringify(slalom.frame.plan) !== p, before);
+    assert.deepEqual((await facts()).slice(0, 3), [tick, x, y]);
+    for (let i = 0; i < 2; ++i) await h.send({ do: "undo" });
+    await h.until((n) => slalom.frame.bodies.length === n, count);
+  });
+
+  await h.test("Play and Pause answer before the server does", async () => {
+    const words = () => page.textContent("#play span");
+    for (const [before, after] of [
+      ["Play", "Pause"],
+      ["Pause", "Play"],
+    ]) {
+      assert.equal(await words(), before);
+      await page.evaluate(() => document.getElementById("play").click());
+      assert.equal(await words(), after);
+    }
+    await h.pause();
+  });
+
   await h.test("keys undo and redo a change of obstacles", async () => {
     const count = await page.evaluate(() => slalom.frame.bodies.length);
     const [x, y] = [(await h.scalar("x")) + 3, await h.scalar("y")];

@@ -63,10 +63,13 @@ export default async function (h) {
       .trim()
       .split("\n");
     const [head, ...cells] = rows.map((row) => row.split(","));
-    assert.deepEqual(head.slice(0, 3), ["tick", "time", "distance_cost"]);
+    assert.deepEqual(head.slice(0, 3), ["tick", "time [s]", "distance_cost"]);
     assert.ok(cells.length > 10 && cells.every((row) => row.length === head.length));
     const known = (t) => slalom.past.at(t)[slalom.hello.scalars.indexOf("speed")];
-    assert.equal(Number(cells[5][head.indexOf("speed")]), await page.evaluate(known, Number(cells[5][0])));
+    assert.equal(
+      Number(cells[5][head.indexOf("speed [m/s]")]),
+      await page.evaluate(known, Number(cells[5][0])),
+    );
   });
 
   await h.test("a short list of options comes first, and the search finds the others", async () => {
