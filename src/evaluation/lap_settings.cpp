@@ -1,11 +1,37 @@
 #include "slalom/evaluation/lap_settings.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "slalom/core/option_access.hpp"
 
 namespace slalom::evaluation {
+
+sim::CarParameters car_of(const LapSettings& settings, const vehicle::Configuration& configuration) {
+  sim::CarParameters car;
+  if (settings.car == CarKind::passenger_car) car = sim::CarParameters::full_scale();
+  if (settings.car == CarKind::configured) {
+    const vehicle::VehicleOptions& vehicle = configuration.vehicle;
+    const auto& own = vehicle.own_of<vehicle::SingleTrackOptions>();
+    car.cornering_front = own.cornering_front;
+    car.cornering_rear = own.cornering_rear;
+    car.front_length = vehicle.front_length;
+    car.rear_length = vehicle.rear_length;
+    car.gravity_height = own.gravity_height;
+    car.mass = own.mass;
+    car.inertia = own.inertia;
+    car.steer_max = configuration.planner.steer_limit;
+    car.steer_min = -car.steer_max;
+    car.steer_rate_max = own.steer_rate;
+    car.switch_speed = own.switch_speed;
+    car.acceleration_max = std::max(vehicle.max_acceleration, vehicle.max_deceleration);
+    car.length = vehicle.body.front + vehicle.body.rear;
+    car.width = vehicle.body.width;
+  }
+  car.friction = settings.friction;
+  return car;
+}
 
 bool has_planner(const LapSettings& settings, int index) noexcept {
   const int first = settings.blocking_opponents + settings.erratic_opponents;

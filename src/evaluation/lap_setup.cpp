@@ -23,6 +23,9 @@ void require(bool holds, const std::string& message) {
 void check(const LapSettings& settings, const LapRules& rules, bool closed) {
   require(settings.obstacles >= 0 && settings.obstacles <= 1000,
           "obstacles: " + std::to_string(settings.obstacles) + " must be in [0, 1000]");
+  require(std::ssize(settings.parked) <= settings.obstacles,
+          "parked: has " + std::to_string(settings.parked.size()) + " places; must be at most obstacles, " +
+              std::to_string(settings.obstacles));
   validate_options(settings, "world");
   require(settings.threads >= 1 && settings.threads <= 1024,
           "threads: " + std::to_string(settings.threads) + " must be in [1, 1024]");
@@ -143,6 +146,7 @@ LapSetup setup_of_opponent(const LapSetup& setup, int index) {
   if (setup.settings.opponent_planner) own.driver = *setup.settings.opponent_planner;
   LapSettings& settings = own.settings;
   settings.obstacles = settings.opponents = 0;
+  settings.parked.clear();
   settings.blocking_opponents = settings.erratic_opponents = settings.planning_opponents = 0;
   settings.opponent_speed = 1;
   const double share = own.driver.speed_share = setup.settings.opponent_speed[index];

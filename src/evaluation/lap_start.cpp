@@ -12,9 +12,14 @@ namespace {
 std::vector<maps::Pose> place_obstacles(const LapSetup& setup, std::uint64_t lap_seed) try {
   const maps::Pose start = setup.start();
   const LapSettings& settings = setup.settings;
-  return rules_of(setup.environment->protocol)
-      .place_obstacles(*setup.environment, settings.obstacles, settings.layout.value_or(lap_seed),
-                       {start.x, start.y}, sim::parameters_of(settings.car));
+  std::vector<maps::Pose> places = settings.parked;
+  const auto others =
+      rules_of(setup.environment->protocol)
+          .place_obstacles(*setup.environment, settings.obstacles - static_cast<int>(places.size()),
+                           settings.layout.value_or(lap_seed), {start.x, start.y},
+                           car_of(settings, setup.driver.configuration));
+  places.insert(places.end(), others.begin(), others.end());
+  return places;
 } catch (const std::runtime_error& error) {
   throw std::runtime_error("course " + setup.environment->course.name + ": " + error.what() +
                            "; the course may be too narrow to pass a parked car");

@@ -31,18 +31,27 @@ class StandardRules final : public LapRules {
     options.lidar.rate = 1 / period;
     options.lidar.noise = settings.range_noise;
     options.lidar.dropout = settings.dropout;
-    options.car = sim::parameters_of(settings.car);
-    options.car.friction = settings.friction;
-    if (settings.car == sim::CarKind::passenger_car) {
+    options.car = car_of(settings, configuration);
+    if (settings.car == CarKind::configured) {
+      const vehicle::VehicleOptions& vehicle = configuration.vehicle;
+      const vehicle::PlannerOptions& planner = configuration.planner;
+      const auto& own = vehicle.own_of<vehicle::SingleTrackOptions>();
+      options.lidar.mount = {planner.laser_x - vehicle.rear_length, planner.laser_y, planner.laser_yaw};
+      options.plant.steering_dead_time = vehicle.dead_time;
+      options.plant.actuation.speed_gain = own.speed_gain;
+      options.plant.actuation.brake_gain = own.brake_gain;
+    }
+    if (settings.car == CarKind::passenger_car) {
       options.lidar.range_max = 150;       // m
       options.lidar.mount = {1.25, 0, 0};  // on the bonnet
     }
     if (settings.saturating_tyres) options.plant.dynamics.model = sim::Model::saturating;
   }
   void check(const LapSettings& settings) const override {
-    if (settings.car != sim::CarKind::f1tenth && (settings.hardware || settings.localised))
+    if (settings.car == CarKind::passenger_car && (settings.hardware || settings.localised))
       throw std::invalid_argument(
-          "world.car: must be f1tenth with sensors of a real car, which are those of a 1/10-scale car");
+          "world.car: must not be passenger_car with sensors of a real car, which are those of a 1/10-scale "
+          "car");
   }
   double control_period(const vehicle::Configuration& configuration) const noexcept override {
     return configuration.planner.control_period;

@@ -127,7 +127,7 @@ TEST(Race, StandingStartsAreToldFromFlyingLaps) {
 TEST(Race, TheSimulatedCarMayBeAPassengerCar) {
   LapSettings settings;
   EXPECT_TRUE(set_world_option(settings, "world.car", "passenger_car"));
-  EXPECT_EQ(settings.car, sim::CarKind::passenger_car);
+  EXPECT_EQ(settings.car, CarKind::passenger_car);
   const auto environment = environment_of("stag");
   const LapDrive small(setup(environment), 1);
   EXPECT_EQ(small.world().options().car.mass, sim::CarParameters{}.mass);

@@ -51,6 +51,13 @@ TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
   EXPECT_GT(found["explained"], 0.9);
   EXPECT_EQ(found["wheelbase"]["deviation"], 0);
 
+  // The same drive as MCAP gives the same estimates.
+  ASSERT_EQ(program("drive --course eel --config default_kinematic --method mppi --set samples=256 "
+                    "--hardware --laps 3 --record lap.mcap")
+                .status,
+            0);
+  EXPECT_EQ(identified("lap.mcap"), found);
+
   const auto free = program("identify lap.jsonl --json free.json");
   ASSERT_EQ(free.status, 0) << free.output;
   EXPECT_NE(free.output.find("determines only the ratio of gain and wheelbase"), std::string::npos)
@@ -83,9 +90,9 @@ TEST_F(IdentifyCommand, FindsTheFrictionOfASimulatedCarWhoseTyresSlip) {
 
 TEST_F(IdentifyCommand, RejectsInvalidInput) {
   expect_refused("identify nothing.jsonl", {"nothing.jsonl", "cannot be read"});
-  expect_refused("identify .", {".: is a folder"});
+  expect_refused("identify .", {".: is a folder without files of rosbag2"});
   std::ofstream(folder_ / "a.mcap") << "\x89MCAP0\r\n";
-  expect_refused("identify a.mcap", {"a.mcap", "must be JSON lines"});
+  expect_refused("identify a.mcap", {"a.mcap: the bag has no poses"});
   std::ofstream(folder_ / "empty.jsonl") << "{\"type\":\"recording\",\"version\":1}\n";
   expect_refused("identify empty.jsonl", {"empty.jsonl: ", "200", "usable samples"});
 }

@@ -100,6 +100,19 @@ TEST_F(CommandLine, EveryNumberIsCheckedInTheSameWords) {
   EXPECT_GT(ranges, 30);
 }
 
+TEST_F(CommandLine, HelpFitsTheTerminalAndHasExamples) {
+  for (const std::string command : {"bench", "compare", "course", "drive", "eval", "explain", "identify",
+                                    "navigate", "options", "race", "replay", "reproduce", "track", "view"}) {
+    const std::string text = timed(command + " --help").output;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << command << ": " << line;
+    EXPECT_NE(text.find("\nExamples:\n  slalom " + command), std::string::npos) << text;
+    EXPECT_EQ(text.find(" in ["), std::string::npos) << "a rule of the parser: " << text;
+  }
+  const std::string help = timed("course --help").output;
+  EXPECT_NE(help.find("  --out TEXT                Required. Output folder"), std::string::npos) << help;
+}
+
 TEST_F(CommandLine, AFullStandardOutputIsAnError) {
   ASSERT_TRUE(fs::exists("/dev/full"));
   for (const std::string arguments : {"options", "options --json -", "options --yaml", "--help", "--version",

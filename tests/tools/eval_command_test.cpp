@@ -156,7 +156,7 @@ TEST_F(EvalCommand, RejectsLapsOfOtherSettings) {
   const ProgramRun again = run(small(1) + "--out one");
   EXPECT_EQ(again.status, 1);
   EXPECT_TRUE(contains(again.output, "--resume")) << again.output;
-  const ProgramRun other = run(small(1) + "--out one --resume --seed0 7 --evaluation published");
+  const ProgramRun other = run(small(1) + "--out one --resume --seed 7 --evaluation published");
   EXPECT_EQ(other.status, 1);
   EXPECT_TRUE(contains(other.output, "seed0: 0 stored, 7 requested")) << other.output;
   EXPECT_TRUE(contains(other.output, "evaluation: \"true\" stored, \"published\" requested")) << other.output;
@@ -191,7 +191,7 @@ TEST_F(EvalCommand, WritesASummary) {
     for (const char* key : {"method", "scenario", "laps", "ms_mean", "ms_ci", "collision_rate",
                             "collision_rate_ci", "success_rate", "solve_ms"})
       EXPECT_TRUE(result.contains(key)) << key;
-    EXPECT_LE(result.at("ms_ci").at(0), result.at("ms_mean"));
+    EXPECT_TRUE(result.at("ms_ci").is_null()) << "of fewer than five laps";
     EXPECT_LE(result.at("success_rate"), 1.0);
   }
   const std::string html = content(folder_ / "one/report.html");

@@ -15,7 +15,7 @@ class NavigateCommand : public testing::ProgramTest {};
 
 TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
   const auto run = program(
-      "navigate --scenario no-way --seeds 2 --threads 2 --json out.json --table out.md --pictures pictures");
+      "navigate --scenario no-way --seeds 2 --jobs 2 --json out.json --table out.md --pictures pictures");
   ASSERT_EQ(run.status, 0) << run.output;
   const auto results = nlohmann::json::parse(content(folder_ / "out.json"));
   ASSERT_EQ(results["results"].size(), 2u);
@@ -54,7 +54,7 @@ TEST_F(NavigateCommand, DrivesWithEveryMethod) {
     methods += name;
   }
   const auto run =
-      program("navigate --scenario no-way --seeds 1 --threads 2 --json out.json --methods " + methods);
+      program("navigate --scenario no-way --seeds 1 --jobs 2 --json out.json --methods " + methods);
   ASSERT_EQ(run.status, 0) << run.output;
   const auto results = nlohmann::json::parse(content(folder_ / "out.json"))["results"];
   ASSERT_EQ(results.size(), solver_names().size());

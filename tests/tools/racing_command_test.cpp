@@ -67,7 +67,7 @@ TEST_F(RacingCommand, AnyDriverDrivesEveryMap) {
 }
 
 TEST_F(RacingCommand, TheRacelineIsThatOfTheCar) {
-  std::ofstream(folder_ / "slow.yaml") << "top_speed: 2\n";
+  std::ofstream(folder_ / "slow.yaml") << "vehicle: {friction: 0.4, usable_grip: 0.12}\n";
   const auto slow = drive("--driver mppi --set mppi.samples=400 --car slow.yaml");
   EXPECT_EQ(slow["car"], "slow.yaml");
   for (const char* map : {"aut", "mco"})
@@ -75,7 +75,7 @@ TEST_F(RacingCommand, TheRacelineIsThatOfTheCar) {
 }
 
 TEST_F(RacingCommand, SaysWhatIsWrong) {
-  expect_refused("reproduce --benchmark racing --course maps --car tractor", {"tractor", "f1tenth"});
+  expect_refused("reproduce --benchmark racing --course maps --car tractor", {"--car: tractor", "default"});
   expect_refused("reproduce --car f1tenth --out x", {"--car", "--benchmark"});
   expect_refused("reproduce --benchmark rowing --course maps", {"--benchmark", "rowing", "racing"});
   expect_refused("reproduce --benchmark racing", {"--course", "folder"});

@@ -72,7 +72,7 @@ TEST_F(TrackCommand, WritesEveryFileAndASummary) {
   EXPECT_EQ(summary["command"],
             "slalom track --seed 5 --length 40 --width 2.2 --character balanced --out course");
   const auto course = vehicle::load_course(folder_ / "new/course");
-  EXPECT_NEAR(summary["raceline_length_m"].get<double>(), course.length, 0.2);
+  EXPECT_NEAR(summary["length_m"].get<double>(), course.length, 0.2);
   EXPECT_NEAR(summary["profile_lap_s"].get<double>(), vehicle::profile_time(course), 0.1);
 }
 

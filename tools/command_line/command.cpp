@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <deque>
+#include <initializer_list>
 #include <iostream>
 #include <limits>
 #include <new>
@@ -13,6 +14,8 @@
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/command_line/checks.hpp"
+#include "tools/command_line/help.hpp"
+#include "tools/command_line/words.hpp"
 
 namespace slalom::tools {
 
@@ -75,8 +78,11 @@ void Subcommand::summary(const std::string& text) {
   parser_.description(text);
 }
 
-void Subcommand::footer(const std::string& text) {
-  parser_.footer(text);
+void Subcommand::examples(std::initializer_list<const char*> commands, const std::string& text) {
+  std::string footer = text.empty() ? "" : text + "\n\n";
+  footer += "Examples:";
+  for (const char* command : commands) footer += std::string("\n  slalom ") + command;
+  parser_.footer(footer);
 }
 
 Option Subcommand::option(const std::string& name, std::string& value, const std::string& help) {
@@ -195,6 +201,7 @@ int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEn
       "Slalom: real-time sampling-based stochastic optimal control; drives, evaluates and shows 1/10-scale "
       "cars",
       "slalom"};
+  app.formatter(std::make_shared<HelpFormatter>(terminal_columns(stdout)));
   app.set_version_flag("--version", std::string("slalom ") + version());
   app.require_subcommand(1);
   std::deque<Subcommand> commands;

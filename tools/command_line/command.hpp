@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -76,8 +77,8 @@ class Subcommand {
 
   /// Sets the first line of the help.
   void summary(const std::string& text);
-  /// Sets the text below the options in the help.
-  void footer(const std::string& text);
+  /// Sets the end of the help: `text`, and command lines without the name of the program.
+  void examples(std::initializer_list<const char*> commands, const std::string& text = "");
 
   /// Declares an option whose value goes to `value`, which must live as long as the action. A name without
   /// dashes declares a positional argument. The help shows the present value as the default, unless it is

@@ -1,5 +1,7 @@
 #include "tools/command_line/words.hpp"
 
+#include <sys/ioctl.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdarg>
@@ -17,6 +19,11 @@ std::string formatted(const char* format, ...) {
   std::vsnprintf(text, sizeof text, format, values);
   va_end(values);
   return text;
+}
+
+int terminal_columns(std::FILE* stream) {
+  winsize size{};
+  return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 std::string short_number(double value) {

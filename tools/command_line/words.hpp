@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 /// Words of the commands: numbers, and parts of command lines that are written into files.
@@ -7,6 +8,9 @@ namespace slalom::tools {
 
 /// A text in printf's format.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
+/// Columns of the terminal behind a stream; 80 if there is none.
+int terminal_columns(std::FILE* stream);
 
 /// A number as short as six digits allow.
 std::string short_number(double value);

@@ -230,7 +230,8 @@ void declare_bench(Subcommand& command) {
   command.flag("--scaling", arguments->scaling,
                "Also measure over samples, horizon, threads and instruction sets");
   command.json(arguments->json, "the figures");
-  command.footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
+  command.examples({"bench", "bench --config race --methods svg_mppi,mppi --seconds 1"},
+                   "SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
   command.action([arguments] { return Bench(*arguments).run(); });
 }
 

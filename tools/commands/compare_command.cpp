@@ -127,7 +127,8 @@ void print(const std::vector<Match>& matches, std::FILE* out) {
   for (const Match& m : matches) {
     const ExperimentResult &a = m.results[0], &b = m.results[1];
     const auto ms = [](const ExperimentResult& r) {
-      return formatted("%.3f (%.3f-%.3f)", r.ms_mean, r.ms_ci.low, r.ms_ci.high);
+      return r.laps < fewest_laps ? formatted("%.3f", r.ms_mean)
+                                  : formatted("%.3f (%.3f-%.3f)", r.ms_mean, r.ms_ci.low, r.ms_ci.high);
     };
     std::fprintf(out, "%-*s %-3s %5d %5d %20s %20s %-10s %8d %8d %-10s %8.1f %8.1f %-10s %s\n",
                  static_cast<int>(width), title(m).c_str(), m.experiments[0].scenario.c_str(), a.laps, b.laps,
@@ -194,7 +195,7 @@ Json json_of(const Match& m) {
   const auto side = [](const ExperimentResult& r) {
     return Json{{"laps", r.laps},
                 {"ms_mean", r.ms_mean},
-                {"ms_ci", {r.ms_ci.low, r.ms_ci.high}},
+                {"ms_ci", r.laps < fewest_laps ? Json(nullptr) : Json{r.ms_ci.low, r.ms_ci.high}},
                 {"contacts", r.collisions},
                 {"success_rate", r.success_rate}};
   };
@@ -258,6 +259,7 @@ void declare_compare(Subcommand& command) {
               "compared")
       .required();
   command.json(arguments->json, "the comparison");
+  command.examples({"compare BEFORE AFTER", "compare BEFORE AFTER --json compared.json"});
   command.action([arguments] { return compare(*arguments); });
 }
 

@@ -33,7 +33,7 @@ struct CourseArguments {
 };
 
 RacingCar chosen_car(const CourseArguments& arguments) {
-  RacingCar car = for_option("--car", [&] { return vehicle::find_racing_car(arguments.car); });
+  RacingCar car = find_racing_car(arguments.car);
   if (arguments.friction) vehicle::set_friction(car, *arguments.friction);
   if (arguments.top_speed) car.limits.top_speed = *arguments.top_speed;
   if (arguments.margin) car.margin = *arguments.margin;
@@ -53,7 +53,7 @@ vehicle::GuideLine read_guide(const std::string& file) {
 RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
   vehicle::RaceCourseOptions options;
   options.reverse = arguments.reverse;
-  if (!arguments.start.empty()) options.start = parse_start(arguments.start);
+  if (!arguments.start.empty()) options.start = parse_pose("--start", arguments.start);
   if (!is_csv(arguments.input)) {
     std::vector<std::string> notes;
     const auto map = maps::load_ros_map(arguments.input, maps::MapRule::map_server, &notes);
@@ -111,9 +111,9 @@ Json summary_of(const RaceCourse& course, const RacingCar& car, const CourseArgu
                   {"folder", arguments.out},
                   {"car", car.name},
                   {"closed", course.corridor.closed},
-                  {"length_m", vehicle::length(course.corridor)},
+                  {"length_m", course.raceline.length},
+                  {"centre_line_length_m", vehicle::length(course.corridor)},
                   {"narrowest_m", narrowest},
-                  {"raceline_length_m", course.raceline.length},
                   {"profile_lap_s", course.raceline.time},
                   {"slowest_mps", slowest->speed},
                   {"fastest_mps", fastest->speed},
@@ -147,7 +147,7 @@ void course(CourseArguments arguments) {
   words << formatted(
       "%s: %.1f m long, %.2f m wide at least, %s %.2f s at %.1f to %.1f m/s, radius %.2f m at least, "
       "%.2f m from body to wall\n",
-      arguments.name.c_str(), vehicle::length(course.corridor), summary["narrowest_m"].get<double>(),
+      arguments.name.c_str(), course.raceline.length, summary["narrowest_m"].get<double>(),
       course.corridor.closed ? "lap" : "drive", course.raceline.time, summary["slowest_mps"].get<double>(),
       summary["fastest_mps"].get<double>(), 1 / std::max(summary["max_curvature_per_m"].get<double>(), 1e-9),
       summary["min_clearance_m"].get<double>());
@@ -168,7 +168,7 @@ void declare_course(Subcommand& command) {
   command.option(
       "--line", arguments->line,
       "Line to drive along: .csv with x and y, or a recorded drive; else the program finds a loop");
-  command.option("--car", arguments->car, "Car: f1tenth, passenger, or a YAML file (docs/courses.md)");
+  command.option("--car", arguments->car, car_help);
   command.option("--friction", arguments->friction,
                  "Friction coefficient: acceleration in every direction, in g", {0.01, 10});
   command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s", {0.1, 200});
@@ -182,6 +182,8 @@ void declare_course(Subcommand& command) {
   command.option("--description", arguments->description, "Description for course.yaml");
   command.json(arguments->json, "a summary");
   command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
+  command.examples({"course map.yaml --out my_course",
+                    "course map.yaml --car my_car.yaml --line lap.mcap --out my_course"});
   command.action([arguments] {
     course(*arguments);
     return 0;

@@ -25,7 +25,7 @@ struct DriveArguments {
   std::uint64_t seed = 0;
   int laps = 1;
   std::string json, record, plot;
-  bool record_times = false;
+  bool record_all = false, record_times = false;
 };
 
 /// A drive of several laps and its outputs.
@@ -49,16 +49,18 @@ class DriveJob {
                                                      .seed = arguments.seed,
                                                      .control_period = setup_.control_period(),
                                                      .settings = settings_,
+                                                     .everything = arguments.record_all,
                                                      .times = arguments.record_times});
   }
 
   /// The exit status.
   int run() {
     print_notes(words_, scenario_);
-    std::fprintf(words_, "%s on %s, configuration %s, evaluation %s, %d obstacles, seed %llu\n",
+    std::fprintf(words_, "%s on %s, configuration %s, evaluation %s, %d obstacle%s, seed %llu\n",
                  arguments_.method.c_str(), scenario_.environment->course.name.c_str(),
                  arguments_.scenario.config.c_str(), arguments_.scenario.evaluation.c_str(),
-                 scenario_.lap.obstacles, static_cast<unsigned long long>(arguments_.seed));
+                 scenario_.lap.obstacles, scenario_.lap.obstacles == 1 ? "" : "s",
+                 static_cast<unsigned long long>(arguments_.seed));
     try {
       const InterruptFlag interrupt;
       for (int lap = 0; lap < arguments_.laps && !interrupt.raised(); ++lap) drive(lap, interrupt.raised());
@@ -191,10 +193,16 @@ void declare_drive(Subcommand& command) {
       "--record", arguments->record,
       "Record every control step to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
   command
+      .flag("--record-all", arguments->record_all,
+            "Record all candidates, guides and the map of costs, of every control step; only in MCAP")
+      .needs(record);
+  command
       .flag("--record-times", arguments->record_times,
             "Also record wall-clock times, which differ from run to run; only in MCAP")
       .needs(record);
   command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG, SVG or PDF");
+  command.examples({"drive --course eel --obstacles 5 --laps 3 --plot lap.png",
+                    "drive --method mppi --set mppi.samples=2000 --record lap.mcap"});
   command.action([arguments] { return DriveJob(*arguments).run(); });
 }
 

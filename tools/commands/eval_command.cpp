@@ -104,6 +104,8 @@ void declare_eval(Subcommand& command) {
       .option("--again", arguments->again, "With --check: number of laps that are driven again", {0, 1000000})
       .needs(check);
   out.excludes(check);
+  command.examples({"eval --course eel --methods svg_mppi,mppi --laps 20 --out OUT --report",
+                    "eval --course eel --set temperature=1,3,10 --laps 5 --out OUT"});
   command.action([arguments] { return eval(*arguments); });
 }
 

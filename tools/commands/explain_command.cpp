@@ -147,6 +147,8 @@ void declare_explain(Subcommand& command) {
   command.option(
       "--figure", arguments->figure,
       "Write this figure of the SVG-MPPI paper, computed for the same problem, to --plot: 1, 3 or 4");
+  command.examples(
+      {"explain --method svg_mppi,mppi --plot explained.png", "explain --method mppi --set temperature=0.1"});
   command.action([arguments, &command] {
     if (!arguments->figure.empty()) {
       if (arguments->figure != "1" && arguments->figure != "3" && arguments->figure != "4")

@@ -127,8 +127,10 @@ Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> sampl
 }
 
 int identify(const IdentifyArguments& arguments) {
-  const auto samples = read_driven_samples(arguments.recording);
   std::FILE* const words = arguments.json == "-" ? stderr : stdout;
+  std::string topics;
+  const auto samples = read_driven_samples(arguments.recording, &topics);
+  if (!topics.empty()) std::fprintf(words, "%s\n", topics.c_str());
   const Json found = [&] {
     try {
       return arguments.tyres ? identify_tyres(words, samples, arguments)
@@ -147,7 +149,9 @@ void declare_identify(Subcommand& command) {
   command.summary(
       "Estimate steering, delay and wheelbase of a car, or its tyres and friction, from a recording");
   const auto arguments = std::make_shared<IdentifyArguments>();
-  command.option("recording", arguments->recording, "Recording of slalom drive --record in JSON lines")
+  command
+      .option("recording", arguments->recording,
+              "Recording of slalom drive --record, or a bag of rosbag2 (file or folder)")
       .required();
   const auto tyres =
       command.flag("--tyres", arguments->tyres,
@@ -160,6 +164,7 @@ void declare_identify(Subcommand& command) {
               "With --tyres: configuration with the lengths, mass and inertia of the car")
       .needs(tyres);
   command.json(arguments->json, "the estimates");
+  command.examples({"identify lap.mcap --wheelbase 0.33", "identify first --tyres --config my_car.yaml"});
   command.action([arguments] { return identify(*arguments); });
 }
 

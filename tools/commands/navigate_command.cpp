@@ -22,7 +22,7 @@ using evaluation::RoomScenario;
 struct NavigateArguments {
   std::string scenario = "all", json, table, pictures;
   std::vector<std::string> methods{"svg_mppi", "mppi"};
-  int seeds = 5, threads = 1;
+  int seeds = 5, jobs = 1;
   std::uint64_t first_seed = 1;
   bool without_detours = false;
 };
@@ -87,7 +87,7 @@ void write_results(const NavigateArguments& arguments, const std::vector<RoomSer
 void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers,
                std::uint64_t seed, std::vector<RoomSeries>& all) {
   std::vector<evaluation::RoomDrive> drives(all.size());
-  evaluation::for_each_in_threads(arguments.threads, static_cast<int>(all.size()), [&](int i) {
+  evaluation::for_each_in_threads(arguments.jobs, static_cast<int>(all.size()), [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     const RoomScenario& scenario = *all[k].scenario;
     drives[k] = drive_room(scenario, driver_of(drivers[k % drivers.size()], scenario), seed);
@@ -137,8 +137,8 @@ void declare_navigate(Subcommand& command) {
                "Also drive with each method without the search for detours");
   command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario",
                  {1, 100000});
-  command.option("--first-seed", arguments->first_seed, "Seed of the first drive");
-  command.option("--threads", arguments->threads, "Number of drives that run in parallel", {1, 1024});
+  command.option("--seed", arguments->first_seed, "Seed of the first drive");
+  command.option("--jobs", arguments->jobs, "Number of drives that run in parallel", {1, 1024});
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
   command.option("--table", arguments->table,
                  "Write a table in Markdown with 95 % intervals to this file, after each seed");
@@ -146,7 +146,9 @@ void declare_navigate(Subcommand& command) {
   std::string names = "Scenarios:\n";
   for (const RoomScenario& each : evaluation::room_scenarios())
     names += std::string("  ") + each.name + ": " + each.summary + "\n";
-  command.footer(names + "The exit status is 1 if a drive ended in a collision.");
+  command.examples({"navigate --scenario crowd-crossing --seeds 20 --pictures pictures",
+                    "navigate --methods svg_mppi --without-detours --table table.md"},
+                   names + "The exit status is 1 if a drive ended in a collision.");
   command.action([arguments] { return navigate(*arguments); });
 }
 

@@ -97,6 +97,7 @@ void declare_options(Subcommand& command) {
   command.flag("--yaml", arguments->yaml, "Print the complete configuration as YAML")
       .excludes(method)
       .excludes(json);
+  command.examples({"options --method svg_mppi", "options --config race --yaml"});
   command.action([arguments] {
     options(*arguments);
     return 0;

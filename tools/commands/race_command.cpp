@@ -72,9 +72,10 @@ class RaceJob {
   /// The exit status.
   int run() {
     print_notes(words_, scenario_);
-    std::fprintf(words_, "%s on %s, configuration %s, %.1f m, %d obstacles, seed %llu\n",
+    std::fprintf(words_, "%s on %s, configuration %s, %.1f m, %d obstacle%s, seed %llu\n",
                  arguments_.method.c_str(), scenario_.environment->course.name.c_str(),
                  arguments_.scenario.config.c_str(), race_.length, scenario_.lap.obstacles,
+                 scenario_.lap.obstacles == 1 ? "" : "s",
                  static_cast<unsigned long long>(arguments_.race.seed));
     print_lap_header(words_, race_.grip);
     if (scenario_.environment->course.closed) print_lap(words_, "profile", race_.profile, race_.grip);
@@ -289,6 +290,8 @@ void declare_race(Subcommand& command) {
   command.option("--plot", arguments->plot,
                  "Write a picture of the best lap to this PNG, SVG or PDF: speed and profile, time behind, "
                  "accelerations");
+  command.examples(
+      {"race --course fox --laps 10 --plot race.png", "race --course fox --cars 4 --against mppi"});
   command.action([&command, arguments] { return run_race(command, *arguments); });
 }
 

@@ -159,6 +159,7 @@ void declare_replay(Subcommand& command) {
       "--record", arguments->record,
       "Evaluation: record the lap to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
   for (Option served : {host, port}) served.excludes(html).excludes(record);
+  command.examples({"replay lap.mcap", "replay OUT --lap 3 --method svg_mppi --plot lap.png"});
   command.action([arguments, &command] { return replay(*arguments, command); });
 }
 

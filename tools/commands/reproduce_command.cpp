@@ -55,7 +55,9 @@ void print_table(const PaperTable& table, const Evaluated& evaluated,
         if (references[index].released)
           std::snprintf(released, sizeof released, "%.3g", references[index].released->ms_mean);
         std::fprintf(out, "%-32s %-2s %5d  %-26s %-26s %-9s %-22s %-22s %s\n", row.name.c_str(), scenario,
-                     r.laps, cell(r.ms_mean, r.ms_ci, 1, 3).c_str(),
+                     r.laps,
+                     r.laps < evaluation::fewest_laps ? formatted("%.3f", r.ms_mean).c_str()
+                                                      : cell(r.ms_mean, r.ms_ci, 1, 3).c_str(),
                      theirs ? cell(theirs->ms_mean, theirs->ms_ci, 1, 3).c_str() : "-", released,
                      r.collision_rate ? cell(*r.collision_rate, *r.collision_rate_ci, 100, 1).c_str() : "-",
                      theirs && theirs->collision_rate
@@ -144,7 +146,7 @@ int run_racing(ReproduceArguments arguments) {
     summary["margin_m"] = arguments.margin;
     summary["car"] = arguments.car;
   }
-  vehicle::RacingCar car = for_option("--car", [&] { return vehicle::find_racing_car(arguments.car); });
+  vehicle::RacingCar car = find_racing_car(arguments.car);
   car.margin = arguments.margin;
   std::fprintf(words, "%-4s %10s %10s %12s\n", "map", "mean, s", "completed", "beyond grip");
   for (const char* name : racing_maps) {
@@ -203,6 +205,8 @@ void declare_reproduce(Subcommand& command) {
   command.flag("--claims", arguments->claims,
                "Only test the paper's claims on the logs of --paper, without driving");
   command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();
+  command.examples({"reproduce --paper path/to/proj-svg_mppi --quick --out OUT",
+                    "reproduce --benchmark racing --course MAPS --json racing.json"});
   command.action([arguments, &command] {
     arguments->course_given = command.given("--course");
     arguments->config_given = command.given("--config");

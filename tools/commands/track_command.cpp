@@ -48,17 +48,15 @@ Json summary_of(const GeneratedTrack& track, const TrackArguments& arguments, co
     fastest = std::max(fastest, point.speed);
     sharpest = std::max(sharpest, std::abs(point.curvature));
   }
-  const auto& last = track.raceline.back();
-  const double step = last.arc_length / static_cast<double>(track.raceline.size() - 1);
   return {
       {"name", arguments.name},
       {"folder", arguments.out},
       {"command", command},
       {"seed", track.options.seed},
       {"character", arguments.character},
-      {"length_m", track.options.length},
+      {"length_m", vehicle::path_length(track)},
+      {"centre_line_length_m", track.options.length},
       {"width_m", track.options.width},
-      {"raceline_length_m", last.arc_length + step},
       {"raceline_least_radius_m", 1 / sharpest},
       {"slowest_mps", slowest},
       {"fastest_mps", fastest},
@@ -82,8 +80,8 @@ void track(TrackArguments arguments) {
 
   const auto summary = summary_of(track, arguments, command);
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
-  words << formatted("%s: %.0f m long, %.1f m wide, %.1f to %.1f m/s, profile lap %.1f s\n",
-                     arguments.name.c_str(), options.length, options.width,
+  words << formatted("%s: %.1f m long, %.1f m wide, %.1f to %.1f m/s, profile lap %.1f s\n",
+                     arguments.name.c_str(), vehicle::path_length(track), options.width,
                      summary["slowest_mps"].get<double>(), summary["fastest_mps"].get<double>(),
                      track.lap_time);
   words << "written to " << arguments.out << "\n";
@@ -98,7 +96,8 @@ void declare_track(Subcommand& command) {
   TrackGeneratorOptions& options = arguments->options;
   command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
   command.option("--seed", options.seed, "Seed; the same options and seed give the same files");
-  command.option("--length", options.length, "Length of the centre line, m", {20, 1000});
+  command.option("--length", options.length, "Length of the centre line, m; the line to drive is shorter",
+                 {20, 1000});
   command.option("--width", arguments->width, "Width from wall to wall, m [by character: 2.2, 2.6, 2.2, 1.5]",
                  {1.2, 10});
   command.option("--character", arguments->character, "balanced, fast, twisty or narrow");
@@ -108,6 +107,8 @@ void declare_track(Subcommand& command) {
   command.option("--description", arguments->description, "Description for course.yaml");
   command.json(arguments->json, "a summary");
   command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
+  command.examples({"track --seed 7 --length 60 --width 2.2 --out new_course",
+                    "track --seed 3 --character twisty --out new_course"});
   command.action([arguments] {
     track(*arguments);
     return 0;

@@ -48,6 +48,7 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
     a.course = names.course;
     a.config = names.config;
     a.obstacles = names.obstacles;
+    a.obstacle.resize(std::min(a.obstacle.size(), static_cast<std::size_t>(names.obstacles)));
     a.opponents = names.opponents;
     Scenario scenario = load_scenario(a, names.method);
     return view::LoadedScenario{scenario.environment, scenario.configuration, scenario.lap};
@@ -92,13 +93,16 @@ void declare_view(Subcommand& command) {
   command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
   command.option("--token", arguments->token,
                  "Token that the page must present; random if --host is not a loopback address");
-  command.footer(
-      "Without options of the scenario, the page opens with an introduction: svg_mppi and mppi side by side "
-      "on the "
-      "same seed, in slow motion before a parked car.");
+  command.examples(
+      {"view", "view --course fox --against mppi --obstacles 5"},
+      "Without options of the scenario, the page opens with an introduction: svg_mppi and mppi side by "
+      "side on the same seed, in slow motion before a parked car.");
   command.action([arguments, &command] {
     if (command.given_only({"--host", "--port", "--token", "--record-times", "--threads"}))
       set_introduction(*arguments);
+    ScenarioArguments& scenario = arguments->scenario;
+    if (!scenario.obstacle.empty() && !command.given("--obstacles"))
+      scenario.obstacles = static_cast<int>(scenario.obstacle.size());
     return view(*arguments);
   });
 }

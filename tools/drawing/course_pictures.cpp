@@ -116,7 +116,7 @@ void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& ca
   const std::string facts = formatted(
       "%s \xC2\xB7 %.1f m \xC2\xB7 %s %.2f s \xC2\xB7 %.2f m from body to wall (red) \xC2\xB7 radius %.2f m "
       "(violet), the car turns %.2f m",
-      car.name.c_str(), vehicle::length(corridor), corridor.closed ? "lap" : "drive", course.raceline.time,
+      car.name.c_str(), course.raceline.length, corridor.closed ? "lap" : "drive", course.raceline.time,
       course.distance[near] - 0.5 * car.width, 1 / std::max(std::abs(points[tight].curvature), 1e-9),
       1 / vehicle::max_curvature(car));
   picture.legend(title, facts, slowest, fastest);
@@ -137,9 +137,9 @@ void draw_track(const vehicle::GeneratedTrack& track, const std::string& title,
   picture.arrow({start.x, start.y, start.yaw}, 20, ink);
 
   const std::string facts =
-      formatted("%s, seed %llu \xC2\xB7 %.0f m long, %.1f m wide \xC2\xB7 profile lap %.1f s",
+      formatted("%s, seed %llu \xC2\xB7 %.1f m long, %.1f m wide \xC2\xB7 profile lap %.1f s",
                 vehicle::name(track.options.character), static_cast<unsigned long long>(track.options.seed),
-                track.options.length, track.options.width, track.lap_time);
+                vehicle::path_length(track), track.options.width, track.lap_time);
   picture.legend(title, facts, slowest, fastest);
   picture.save(file);
 }

@@ -107,6 +107,35 @@ void draw_panel(Pen& pen, const Panel& panel, double left, std::size_t rows) {
   }
 }
 
+/// Draws a name beside its row: in up to three lines, broken after a space or a sign, and smaller if need be.
+void draw_name(Pen& pen, const std::string& name, double middle) {
+  constexpr double width = names_width - 16, least = 6;
+  const auto lines_of = [&](double size) {
+    std::vector<std::string> lines = {""};
+    for (std::size_t begin = 0; begin < name.size();) {
+      const std::size_t end = std::min(name.find_first_of(" ,=._", begin), name.size() - 1) + 1;
+      const std::string part = name.substr(begin, end - begin);
+      if (!lines.back().empty() && pen.text_width(lines.back() + part, size) > width) lines.emplace_back();
+      lines.back() += part;
+      begin = end;
+    }
+    return lines;
+  };
+  double size = 14;
+  std::vector<std::string> lines = lines_of(size);
+  const auto fits = [&] {
+    return 1.2 * size * static_cast<double>(lines.size()) <= row_height - 3 &&
+           std::all_of(lines.begin(), lines.end(),
+                       [&](const std::string& line) { return pen.text_width(line, size) <= width; });
+  };
+  while (size > least && !fits()) lines = lines_of(--size);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    pen.text(margin,
+             middle + 0.36 * size +
+                 1.2 * size * (static_cast<double>(i) - 0.5 * static_cast<double>(lines.size() - 1)),
+             size, lines[i], ink);
+}
+
 void draw_key(Pen& pen, const RowChart& chart) {
   double x = margin;
   for (const auto& [words, fill, light] : {std::tuple(chart.our_key, ours_fill, ours_light),
@@ -129,7 +158,7 @@ Drawing draw_chart(const RowChart& chart) {
     for (std::size_t i = 0; i < rows; ++i) {
       const double y = top + row_height * static_cast<double>(i);
       if (i % 2 == 0) pen.box(margin / 2, y, width - margin, row_height, stripe, {}, 0, 4);
-      pen.text(margin, y + row_height / 2 + 5, 14, chart.names[i], ink);
+      draw_name(pen, chart.names[i], y + row_height / 2);
     }
     for (std::size_t p = 0; p < panels; ++p)
       draw_panel(pen, chart.panels[p],

@@ -121,7 +121,7 @@ std::string course_hash(const Environment& environment) {
 
 Option add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
   add_world_options(command, a.scenario);
-  command.option("--seed0", a.seed0, "Seed of lap 0; lap k has seed0 + k (obstacles + 5)");
+  command.option("--seed", a.seed0, "Seed of lap 0; lap k has SEED + k (obstacles + 5)");
   command.option("--jobs", a.jobs, "Number of laps driven in parallel; 0: one per processor core", {0, 1024});
   command.flag("--resume", a.resume, "Continue the evaluation in --out; finished laps are kept");
   command.flag("--any-build", a.any_build,
@@ -153,7 +153,7 @@ Json Evaluated::summary() const {
                  {"impassable", r.impassable},
                  {"began_in_contact", laps_begun_in_contact(r.experiment).size()},
                  {"ms_mean", r.ms_mean},
-                 {"ms_ci", interval_json(r.ms_ci)},
+                 {"ms_ci", interval_json(r.laps >= fewest_laps ? std::optional(r.ms_ci) : std::nullopt)},
                  {"state_cost_mean", r.state_cost_mean},
                  {"collision_cost_mean", r.collision_cost_mean},
                  {"collision_rate", rate_json(r.collision_rate)},
@@ -245,17 +245,24 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
   std::size_t width = 6;
   for (const Experiment& e : evaluated.evaluation.experiments) width = std::max(width, e.label().size());
   std::fprintf(out, "%-*s  %-3s %5s %9s %19s %9s %17s %8s %9s\n", static_cast<int>(width), "method", "",
-               "laps", "MS", "95 %", "collisions", "collision rate", "success", "solve ms");
+               "laps", "MS", "95 %", "collisions", "collision rate", "success", "solve p50");
   for (const ExperimentResult& r : evaluated.results) {
     const Experiment& e = evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
     const std::string rate = r.collision_rate
                                  ? formatted("%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,
                                              100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high)
                                  : "-";
-    std::fprintf(out, "%-*s  %-3s %5d %9.3f %8.3f - %8.3f %9d %17s %6.1f %% %9.3f\n", static_cast<int>(width),
-                 e.label().c_str(), e.scenario.c_str(), r.laps, r.ms_mean, r.ms_ci.low, r.ms_ci.high,
-                 r.collisions, rate.c_str(), 100 * r.success_rate, r.solve_ms_p50);
+    const std::string interval =
+        r.laps >= fewest_laps ? formatted("%8.3f - %8.3f", r.ms_ci.low, r.ms_ci.high) : "-";
+    std::fprintf(out, "%-*s  %-3s %5d %9.3f %19s %9d %17s %6.1f %% %9.3f\n", static_cast<int>(width),
+                 e.label().c_str(), e.scenario.c_str(), r.laps, r.ms_mean, interval.c_str(), r.collisions,
+                 rate.c_str(), 100 * r.success_rate, r.solve_ms_p50);
   }
+  std::fprintf(
+      out,
+      "MS: mean cost of the control sequences sent in a lap, lower is better. Intervals: 95 %%, from %d "
+      "laps on. Solve: median over a lap, ms.\n",
+      fewest_laps);
   for (const ExperimentResult& r : evaluated.results) {
     if (!r.tracking) continue;
     const TrackingFigures& t = *r.tracking;

@@ -22,7 +22,7 @@ struct EvaluationArguments {
   std::string json;  ///< a copy of the summary: a file, or - for standard output
 };
 
-/// Adds the options of add_world_options, and --seed0, --jobs, --resume, --any-build, --json and --out, which
+/// Adds the options of add_world_options, and --seed, --jobs, --resume, --any-build, --json and --out, which
 /// it returns.
 Option add_evaluation_options(Subcommand& command, EvaluationArguments& arguments);
 

@@ -21,7 +21,7 @@ constexpr double cell_width = axis_left + space_width + gap + density_width,
                  cell_height = caption + space_height + axis_below;
 constexpr int drawn_samples = 100;
 
-/// The colour of a sample, from cheap (deep green) over yellow to expensive (pale).
+/// The colour of a sample, from low cost (deep green) over yellow to high cost (pale).
 Colour cost_colour(double share, double opacity) {
   static constexpr Colour stops[] = {
       {0.02, 0.36, 0.36}, {0.12, 0.62, 0.44}, {0.68, 0.80, 0.36}, {0.93, 0.88, 0.58}};
@@ -47,7 +47,7 @@ struct Cell {
   }
 };
 
-/// The samples that collide first, then the others from dear to cheap; the heavier, the bolder.
+/// The samples that collide first, then the others from high to low cost; the larger the weight, the bolder.
 void draw_samples(Pen& pen, const Cell& cell) {
   std::vector<const ExplainedSample*> drawn;
   const auto& all = cell.e.samples;
@@ -210,7 +210,7 @@ void draw_key(Pen& pen, double left, double width) {
   };
   const auto box = [&](Colour fill, Colour rim) { pen.box(x, y - 6, 22, 12, fill, rim, 1.2); };
   entry("plan", 22, [&] { pen.line(x, y, x + 22, y, ink, 3); });
-  entry("samples, cheap to dear; bold: heavy", 44, [&] {
+  entry("samples, low to high cost; bold: large weight", 44, [&] {
     for (int i = 0; i < 44; ++i) pen.line(x + i, y, x + i + 1.2, y, cost_colour(i / 44.0, 1), 5);
   });
   entry("samples that hit", 22, [&] { pen.line(x, y, x + 22, y, bad_key, 2); });

@@ -86,6 +86,7 @@ std::string further_arguments(const ScenarioArguments& a) {
   if (a.evaluation != "true") words += " --evaluation " + a.evaluation;
   if (!a.start.empty()) words += " --start " + a.start;
   if (a.latency_ms > 0) words += " --latency-ms " + Json(a.latency_ms).dump();
+  for (const std::string& place : a.obstacle) words += " --obstacle " + place;
   for (const std::string& each : a.set) words += " --set '" + each + "'";
   return words;
 }

@@ -10,6 +10,8 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/recording/ros_bag.hpp"
+#include "view/recording/mcap_reader.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -22,8 +24,8 @@ constexpr double spacing = 0.1;                                // m between the 
 constexpr double meeting = 1.0;                                // m, within which a lap ends where it began
 constexpr double min_lap = 10;                                 // m
 
-std::ifstream open_recording(const std::string& file) {
-  if (fs::is_directory(file)) throw IoError(file, 0, "is a folder; a recording is a file");
+/// The first bytes of a recording, which tell its format. Throws IoError if it is too large or not a file.
+std::string first_bytes(const std::string& file) {
   if (!fs::is_regular_file(file)) throw IoError(file, 0, "cannot be read: it must be a regular file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw cannot_open(file);
@@ -31,7 +33,19 @@ std::ifstream open_recording(const std::string& file) {
     throw IoError(
         file, 0,
         "has " + std::to_string(size) + " bytes; at most " + std::to_string(max_bytes) + " are read");
-  return stream;
+  std::string bytes(16, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
+}
+
+/// The files of a bag: those of a folder that rosbag2 wrote, in the order of their names, or the file itself.
+std::vector<std::string> files_of(const std::string& recording) {
+  if (!fs::is_directory(recording)) return {recording};
+  std::vector<std::string> files;
+  for (const fs::path& file : list_folder(recording))
+    if (file.extension() == ".mcap" || file.extension() == ".db3") files.push_back(file.string());
+  if (files.empty()) throw IoError(recording, 0, "is a folder without files of rosbag2 (.mcap, .db3)");
+  return files;
 }
 
 /// An element of a tick's list, NaN where it is null.
@@ -42,21 +56,43 @@ double entry(const Json& tick, const char* key, std::size_t index) {
   return values[index].is_null() ? std::numeric_limits<double>::quiet_NaN() : values[index].get<double>();
 }
 
-}  // namespace
+/// The control step of a message of the topic /tick.
+vehicle::DrivenSample tick_sample(std::string_view message) {
+  const Json tick = parse_json(message);
+  const auto number = [&](const char* key) {
+    const Json& value = member(tick, key);
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  };
+  return {number("time"),         number("odometry_x"),     number("odometry_y"),
+          number("odometry_yaw"), number("odometry_speed"), number("command_steer")};
+}
 
-std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) {
-  std::ifstream stream = open_recording(file);
+/// Reads an MCAP file: adds the ticks of a recording to `samples`, and the messages of a bag to `bag`.
+void read_mcap(const std::string& file, std::vector<vehicle::DrivenSample>& samples, RosDrive& bag) {
+  std::string refused;
+  const auto add = [&](const view::mcap::MessageView& message) {
+    try {
+      if (message.encoding == "cdr")
+        bag.add(message.topic, message.schema, message.time, message.data);
+      else if (message.schema == "slalom.Tick")
+        samples.push_back(tick_sample(message.data));
+    } catch (const std::invalid_argument& error) {
+      refused = std::string(message.topic) + ": " + error.what();
+    }
+  };
+  view::mcap::read_records(file, true, {.message = add, .attachment = {}});
+  if (!refused.empty()) throw IoError(file, 0, "has a message that cannot be read: " + refused);
+}
+
+std::vector<vehicle::DrivenSample> read_json_lines(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw cannot_open(file);
   std::vector<vehicle::DrivenSample> samples;
   std::string buffer(max_line + 1, '\0');
   int number = 1;
   for (; stream.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++number) {
     const bool is_whole = !stream.eof();
     const std::string_view line(buffer.data(), static_cast<std::size_t>(stream.gcount()) - is_whole);
-    // The magic bytes of an MCAP file.
-    if (number == 1 && line.substr(0, 5) == "\x89MCAP")
-      throw IoError(file, 0,
-                    "is an MCAP recording; must be JSON lines, which slalom drive --record writes to a file "
-                    "whose name does not end in .mcap");
     try {
       const Json record = parse_json(line);
       const auto type = member<std::string>(record, "type");
@@ -75,6 +111,29 @@ std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) 
   if (!stream.eof())
     throw IoError(file, number, "is longer than " + std::to_string(max_line) + " bytes: it is not a record");
   return samples;
+}
+
+}  // namespace
+
+std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& recording, std::string* topics) {
+  RosDrive bag;
+  std::vector<vehicle::DrivenSample> samples;
+  for (const std::string& file : files_of(recording)) {
+    const std::string magic = first_bytes(file);
+    if (magic.starts_with("SQLite format 3"))
+      read_sqlite_bag(file, bag);
+    else if (magic.starts_with("\x89MCAP"))
+      read_mcap(file, samples, bag);
+    else
+      return read_json_lines(file);
+  }
+  if (!samples.empty()) return samples;
+  try {
+    std::string chosen;
+    return bag.samples(topics ? *topics : chosen);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(recording, 0, error.what());
+  }
 }
 
 vehicle::GuideLine driven_line(const std::string& file) {

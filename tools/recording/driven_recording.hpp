@@ -6,13 +6,15 @@
 #include "slalom/vehicle/model/identification.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
 
-/// Recordings in JSON lines (docs/recording.md) that are read back. All throw IoError with file and line:
-/// also if the file is not a regular one (a pipe could block for ever) or larger than 4 GiB, or has a line
+/// Recordings that are read back: JSON lines and MCAP of `slalom drive` (docs/recording.md), and bags of
+/// rosbag2 in MCAP or sqlite3, as a file or the folder that it writes. All throw IoError with file and line:
+/// also if a file is not a regular one (a pipe could block for ever) or larger than 4 GiB, or has a line
 /// longer than 4 MiB.
 namespace slalom::tools {
 
-/// Reads the control steps of a recording.
-std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file);
+/// Reads the control steps of a recording. Of a bag, `topics` receives which topics were used (RosDrive).
+std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& recording,
+                                                       std::string* topics = nullptr);
 
 /// Reads the line of a recorded drive: its first lap if it comes back to its beginning, else all of it, open.
 vehicle::GuideLine driven_line(const std::string& file);

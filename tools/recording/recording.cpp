@@ -128,6 +128,7 @@ view::RecorderOptions recorder_options(const RecordingFacts& facts) {
           .settings = {{"settings", json_text(facts.settings)}},
           .lidar_angle_min = world.lidar.angle_min(),
           .lidar_angle_increment = world.lidar.angle_increment(),
+          .everything = facts.everything,
           .wall_clock = facts.times};
 }
 
@@ -208,8 +209,9 @@ class McapRecording : public Recording {
 std::unique_ptr<Recording> make_recording(const std::string& file, const RecordingFacts& facts) {
   if (file.size() >= 5 && file.compare(file.size() - 5, 5, ".mcap") == 0)
     return std::make_unique<McapRecording>(file, facts);
-  if (facts.times)
-    throw CommandLineError("--record-times", "needs a recording in MCAP, whose name ends in .mcap");
+  if (facts.times || facts.everything)
+    throw CommandLineError(facts.times ? "--record-times" : "--record-all",
+                           "needs a recording in MCAP, whose name ends in .mcap");
   return std::make_unique<JsonRecording>(file, facts.settings);
 }
 

@@ -28,6 +28,7 @@ struct RecordingFacts {
   std::uint64_t seed = 0;
   double control_period = 0;               ///< s
   const nlohmann::ordered_json& settings;  ///< kept in the recording
+  bool everything = false;                 ///< RecorderOptions::everything, MCAP only
   bool times = false;                      ///< with figures of the wall clock, MCAP only
 };
 

@@ -57,7 +57,8 @@ std::string table(const Report& report, const std::string& section, const std::s
                  : std::pair<std::string, std::string>();
     const std::string why = words + (words.empty() || row.note.empty() ? "" : ". ") + row.note;
     rows += std::string(why.empty() ? "<tr>" : "<tr class=\"explained\">") + "<td>" + escaped(row.name) +
-            "</td><td>" + std::to_string(r.laps) + "</td><td>" + with_interval(r.ms_mean, r.ms_ci) + "</td>";
+            "</td><td>" + std::to_string(r.laps) + "</td><td>" +
+            (r.laps < fewest_laps ? number(r.ms_mean) : with_interval(r.ms_mean, r.ms_ci)) + "</td>";
     const Reference* reference = report.reference(row);
     const std::string none = "<td>\xE2\x80\x93</td>";
     if (compared)

@@ -124,8 +124,10 @@ std::string paired_table(const Report& report) {
             "</td><td>" + p_value(c.success_p) + "</td><td>" + p_value(c.collision_p) + "</td></tr>\n";
   }
   if (rows.empty()) return {};
-  return "<section><h2>Paired comparison</h2><p class=\"caption\">Both drive the same seeds and therefore "
-         "the same obstacles. MS and collisions by Wilcoxon's signed-rank test, success (finished without "
+  return "<section><h2>Paired comparison</h2><p class=\"caption\">MS is the mean cost of the control "
+         "sequences "
+         "sent in a lap, lower is better. Both drive the same seeds and therefore the same obstacles. MS and "
+         "collisions by Wilcoxon's signed-rank test, success (finished without "
          "collision) by McNemar's.</p><div class=\"scroll\"><table><thead><tr><th></th><th "
          "class=\"words\">compared with</th><th></th><th>laps</th><th>MS above it</th><th>p</th><th>only the "
          "other succeeds</th><th>only this one succeeds</th><th>p</th><th>collisions, p</th></tr></thead>"

@@ -1,5 +1,6 @@
 #include "tools/scenario/scenario.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -72,10 +73,10 @@ void apply_settings(const std::vector<std::string>& assignments, const std::stri
   }
 }
 
-/// The configuration as its file has it.
-vehicle::Configuration file_configuration(const std::string& config) {
+/// The configuration as its file has it; `option` names it on the command line.
+vehicle::Configuration file_configuration(const std::string& config, const char* option) {
   const auto roots = vehicle::configuration_roots(program_folder());
-  const fs::path file = for_option("--config", [&] { return vehicle::find_configuration(config, roots); });
+  const fs::path file = for_option(option, [&] { return vehicle::find_configuration(config, roots); });
   return vehicle::load_configuration(file, roots);
 }
 
@@ -89,7 +90,15 @@ void apply_setting(const std::string& key, const std::string& value, const std::
   });
 }
 
-maps::Pose parse_start(const std::string& text) {
+vehicle::RacingCar find_racing_car(const std::string& name) {
+  const auto names = vehicle::racing_car_names();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return vehicle::racing_car(name);
+  vehicle::RacingCar car = vehicle::racing_car(file_configuration(name, "--car"));
+  car.name = fs::path(name).stem().string();
+  return car;
+}
+
+maps::Pose parse_pose(const char* option, const std::string& text) {
   std::array<double, 3> values{};
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -97,7 +106,7 @@ maps::Pose parse_start(const std::string& text) {
     const auto [stopped, error] = std::from_chars(at, end, values[i]);
     const bool separated = i + 1 < values.size() ? stopped < end && *stopped == ',' : stopped == end;
     if (error != std::errc{} || !separated || !std::isfinite(values[i]))
-      throw CommandLineError("--start", text, "must be x,y,yaw: three finite numbers, in m, m, rad");
+      throw CommandLineError(option, text, "must be x,y,yaw: three finite numbers, in m, m, rad");
     at = stopped + 1;
   }
   return {values[0], values[1], values[2]};
@@ -131,6 +140,10 @@ void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
               "lists them)")
       .repeatable();
   command.option("--obstacles", a.obstacles, "Number of parked cars on the course", {0, 1000});
+  command
+      .option("--obstacle", a.obstacle,
+              "Place x,y,yaw of a parked car, m, m, rad; may be repeated; --obstacles adds others at random")
+      .repeatable();
   command.option(
       "--opponents", a.opponents,
       "Number of cars that drive along the course line at half its speed; only with --evaluation true",
@@ -152,7 +165,7 @@ void add_method_option(Subcommand& command, std::string& method) {
 
 vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method) {
   for_option("--method", [&] { return solver_options(method); });
-  vehicle::Configuration configuration = file_configuration(arguments.config);
+  vehicle::Configuration configuration = file_configuration(arguments.config, "--config");
   evaluation::LapSettings world;
   apply_settings(arguments.set, method, configuration, world);
   return configuration;
@@ -166,19 +179,27 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   const auto roots = vehicle::course_roots(program_folder());
   scenario.folder = for_option("--course", [&] { return vehicle::find_course(arguments.course, roots); });
   scenario.environment = evaluation::load_environment(scenario.folder, evaluation, roots);
-  scenario.lap.obstacles = arguments.obstacles;
+  const maps::Point& origin = scenario.environment->course.origin;
+  for (const std::string& place : arguments.obstacle) {
+    const maps::Pose pose = parse_pose("--obstacle", place);
+    scenario.lap.parked.push_back({pose.x - origin.x, pose.y - origin.y, pose.yaw});
+  }
+  scenario.lap.obstacles = std::max(arguments.obstacles, static_cast<int>(arguments.obstacle.size()));
   scenario.lap.opponents = arguments.opponents;
   scenario.lap.latency = 1e-3 * arguments.latency_ms;
   if (arguments.hardware) scenario.lap.hardware.emplace();
   scenario.lap.threads = arguments.threads;
   scenario.lap.saturating_tyres = arguments.saturating_tyres;
   apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
+  const auto sets_friction = [](const std::string& each) { return each.starts_with("world.friction="); };
+  if (scenario.lap.car == evaluation::CarKind::configured &&
+      std::none_of(arguments.set.begin(), arguments.set.end(), sets_friction))
+    scenario.lap.friction = scenario.configuration.vehicle.own_of<vehicle::SingleTrackOptions>().friction;
   if (scenario.lap.planning_opponents > 0)
-    scenario.lap.opponent_planner =
-        std::make_shared<const evaluation::Driver>(evaluation::Driver{file_configuration(arguments.config)});
-  const maps::Point& origin = scenario.environment->course.origin;
+    scenario.lap.opponent_planner = std::make_shared<const evaluation::Driver>(
+        evaluation::Driver{file_configuration(arguments.config, "--config")});
   if (!arguments.start.empty()) {
-    const maps::Pose start = parse_start(arguments.start);
+    const maps::Pose start = parse_pose("--start", arguments.start);
     scenario.lap.start = maps::Pose{start.x - origin.x, start.y - origin.y, start.yaw};
   }
   scenario.notes = notes_on(*scenario.environment, scenario.configuration);
@@ -217,7 +238,7 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
                 {"method", method},
                 {"config", arguments.config},
                 {"evaluation", arguments.evaluation},
-                {"obstacles", arguments.obstacles},
+                {"obstacles", scenario.lap.obstacles},
                 {"opponents", arguments.opponents},
                 {"start", {start.x + origin.x, start.y + origin.y, start.yaw}},
                 {"latency_ms", arguments.latency_ms},
@@ -228,6 +249,8 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
     settings["opponent_planner"] = {{"method", driver->method},
                                     {"options", options_json(driver->configuration, driver->method)}};
   if (origin.x != 0 || origin.y != 0) settings["origin"] = {origin.x, origin.y};
+  for (const maps::Pose& place : scenario.lap.parked)
+    settings["obstacle_places"].push_back({place.x + origin.x, place.y + origin.y, place.yaw});
   if (arguments.hardware) settings["hardware"] = true;
   if (const std::string folder = folder_without_name(scenario); !folder.empty())
     settings["course_folder"] = folder;

@@ -11,6 +11,7 @@
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "slalom/vehicle/racing/racing_car.hpp"
 #include "tools/command_line/command.hpp"
 
 /// The options shared by all commands that drive: course, configuration, evaluation, method.
@@ -24,16 +25,24 @@ inline constexpr const char* config_help =
 /// The folder of the running program.
 std::filesystem::path program_folder();
 
-/// The pose of `--start x,y,yaw` (m, m, rad). Throws CommandLineError.
-maps::Pose parse_start(const std::string& text);
+/// Help of --car.
+inline constexpr const char* car_help = "Car: f1tenth, passenger, or a configuration (name or file)";
+
+/// The car of a course: one of racing_car_names(), or that of a configuration. Throws CommandLineError,
+/// IoError.
+vehicle::RacingCar find_racing_car(const std::string& name);
+
+/// The pose `x,y,yaw` (m, m, rad) of an option. Throws CommandLineError.
+maps::Pose parse_pose(const char* option, const std::string& text);
 
 struct ScenarioArguments {
   std::string course = "fox";
   std::string config = "default";
   std::string evaluation = "true";
-  std::vector<std::string> set;  ///< key=value, in order
-  std::string start;             ///< x,y,yaw or empty
-  int obstacles = 0;
+  std::vector<std::string> set;       ///< key=value, in order
+  std::string start;                  ///< x,y,yaw or empty
+  int obstacles = 0;                  ///< at least as many as places are given
+  std::vector<std::string> obstacle;  ///< places x,y,yaw of the first of them
   int opponents = 0;
   double latency_ms = 0;
   bool hardware = false;          ///< the conditions of a real car

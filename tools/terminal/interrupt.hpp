@@ -16,4 +16,8 @@ class InterruptFlag {
   const std::atomic<bool>& raised() const noexcept;
 };
 
+/// Returns the exit status of the program: that of a shell for the signal, such as 130 for Ctrl-C, if a
+/// signal stopped a command before its end (`status` 1), else `status`.
+int exit_status(int status) noexcept;
+
 }  // namespace slalom::tools

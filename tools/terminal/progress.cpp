@@ -1,7 +1,6 @@
 #include "tools/terminal/progress.hpp"
 #include "tools/command_line/words.hpp"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,12 +24,6 @@ std::string time_text(double seconds) {
 
 std::string cut(const std::string& text, int columns) {
   return text.substr(0, static_cast<std::size_t>(std::max(0, columns)));
-}
-
-/// Columns of the terminal behind a stream; 80 if there is none.
-int terminal_columns(std::FILE* stream) {
-  winsize size{};
-  return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 /// Whether colour is wanted in a terminal: NO_COLOR is not set, and TERM is not dumb.

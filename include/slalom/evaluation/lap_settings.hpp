@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "slalom/core/options.hpp"
 #include "slalom/evaluation/hardware.hpp"
@@ -19,6 +20,17 @@ namespace slalom::evaluation {
 /// Most opponents of a lap that have a planner of their own.
 inline constexpr int most_planning_opponents = 4;
 
+/// The simulated cars.
+enum class CarKind {
+  f1tenth,        ///< the 1/10-scale car of f1tenth_gym
+  passenger_car,  ///< sim::CarParameters::full_scale(), with a LiDAR that sees 150 m
+  configured,     ///< that of the configuration
+};
+inline const char* const* enum_names(CarKind) {
+  static constexpr const char* const names[] = {"f1tenth", "passenger_car", "configured", nullptr};
+  return names;
+}
+
 /// Describes a driver with a planner.
 struct Driver {
   vehicle::Configuration configuration;  ///< options of planner, vehicle model and methods
@@ -30,6 +42,7 @@ struct Driver {
 /// fields.
 struct LapSettings {
   int obstacles = 0;                  ///< parked cars, 0 ... 1000
+  std::vector<maps::Pose> parked{};   ///< places of the first of them; the others are placed at random
   std::optional<maps::Pose> start{};  ///< pose of the centre of gravity; default: the environment's
   int threads = 1;                    ///< threads of the solver, 1 ... 1024; they do not change the result
   std::optional<HardwareConditions> hardware{};  ///< sensors of a real car; Protocol::true_physics only
@@ -52,7 +65,7 @@ struct LapSettings {
   double speed_scale = 1;
   double friction = 1.0489;
   bool saturating_tyres = false;
-  sim::CarKind car = sim::CarKind::f1tenth;
+  CarKind car = CarKind::f1tenth;
   double steering_gain = 1;
   double range_noise = 0.01;
   double dropout = 0;
@@ -83,7 +96,7 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.speed_scale, {"speed_scale", "", "factor of the course's speed profile", 0.1, 3});
   visit(o.friction, {"friction", "", "coefficient between tyre and road", 0.1, 3});
   visit(o.saturating_tyres, {"saturating_tyres", "", "limited tyre forces: the car can slide"});
-  visit(o.car, {"car", "", "the simulated cars and their LiDAR"});
+  visit(o.car, {"car", "", "the simulated cars and their LiDAR; configured: those of vehicle and planner"});
   visit(o.steering_gain, {"steering_gain", "", "angle of the wheels / commanded angle", 0.1, 10});
   visit(o.range_noise, {"range_noise", "m", "standard deviation of each range", 0, 1});
   visit(o.dropout, {"dropout", "", "fraction of beams without a return", 0, 1});
@@ -95,6 +108,10 @@ void visit_options(Options& o, Visit&& visit) {
          "pose with which other cars are tracked, for planner.predict_others and to measure the tracker"});
 }
 
+/// Returns the parameters of the simulated cars. A configured one has the lengths, mass, tyres, motor and
+/// steering of the configuration, without the lag of the servo; the middle of its body is its centre of
+/// gravity. The friction is that of the settings, since it is a property of the floor.
+sim::CarParameters car_of(const LapSettings& settings, const vehicle::Configuration& configuration);
 /// Whether opponent `index` (from 0, in the order in which they start ahead of the car) has a planner.
 bool has_planner(const LapSettings& settings, int index) noexcept;
 /// Returns the sensors and actuators of a real car, if the lap has them: `hardware`, or with `localised`

@@ -9,6 +9,10 @@
 
 namespace slalom::evaluation {
 
+/// Laps from which a bootstrap interval says something: that of fewer is too narrow, and that of one has no
+/// width.
+inline constexpr int fewest_laps = 5;
+
 /// Statistics of the laps of one experiment. Rates are fractions. Every lap counts, whether it finished or
 /// not; without laps all values are 0.
 struct ExperimentResult {
@@ -17,7 +21,7 @@ struct ExperimentResult {
   int collisions = 0;                                   ///< as the protocol counts them
   int impassable = 0;                                   ///< obstacles of all laps in impassable_obstacles
   double ms_mean = 0;                                   ///< MS: mean over laps of the mean sequence cost
-  Interval ms_ci;                                       ///< bootstrap over laps
+  Interval ms_ci;                                       ///< bootstrap over laps; see fewest_laps
   double state_cost_mean = 0, collision_cost_mean = 0;  ///< over laps
   std::optional<double> collision_rate;       ///< collisions / (obstacles x laps); none without obstacles
   std::optional<Interval> collision_rate_ci;  ///< Wilson

@@ -64,18 +64,6 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.width, {"width", "m", "width of a car's body", least, most});
 }
 
-/// The cars whose parameters and LiDAR are known by name.
-enum class CarKind {
-  f1tenth,        ///< the 1/10-scale car of f1tenth_gym
-  passenger_car,  ///< CarParameters::full_scale()
-};
-inline const char* const* enum_names(CarKind) {
-  static constexpr const char* const names[] = {"f1tenth", "passenger_car", nullptr};
-  return names;
-}
-/// The parameters of a car.
-CarParameters parameters_of(CarKind kind);
-
 /// The state of a car; its position is that of the centre of gravity.
 struct CarState {
   double x = 0;         ///< m

@@ -21,8 +21,4 @@ CarParameters CarParameters::full_scale() {
   return car;
 }
 
-CarParameters parameters_of(CarKind kind) {
-  return kind == CarKind::passenger_car ? CarParameters::full_scale() : CarParameters{};
-}
-
 }  // namespace slalom::sim

@@ -145,6 +145,11 @@ void validate(const TrackGeneratorOptions& options) {
   acceleration("braking", options.limits.braking);
 }
 
+double path_length(const GeneratedTrack& track) {
+  const double last = track.raceline.back().arc_length;
+  return last + last / static_cast<double>(track.raceline.size() - 1);
+}
+
 GeneratedTrack generate_track(const TrackGeneratorOptions& options) {
   validate(options);
   GeneratedTrack track;

@@ -92,17 +92,22 @@ RacingCar racing_car(const std::string& name) {
   throw std::invalid_argument("car: '" + name + "' must be one of " + names);
 }
 
-std::array<std::pair<const char*, double*>, 10> numbers_of(RacingCar& car) {
-  return {{{"width", &car.width},
-           {"margin", &car.margin},
-           {"wheelbase", &car.wheelbase},
-           {"max_steering", &car.max_steering},
-           {"max_steering_rate", &car.max_steering_rate},
-           {"top_speed", &car.limits.top_speed},
-           {"lateral_acceleration", &car.limits.lateral_acceleration},
-           {"acceleration", &car.limits.acceleration},
-           {"braking", &car.limits.braking},
-           {"power", &car.power}}};
+RacingCar racing_car(const Configuration& configuration) {
+  const VehicleOptions& vehicle = configuration.vehicle;
+  const auto& tyres = vehicle.own_of<SingleTrackOptions>();
+  constexpr double longest_model_car = 1;  // m, wheelbase
+  RacingCar car = vehicle.wheelbase() > longest_model_car ? passenger_car() : RacingCar{};
+  const double grip = tyres.friction * tyres.usable_grip * gravity;
+  car.name = "configured";
+  car.width = vehicle.body.width;
+  car.margin = 1.2 * vehicle.body.margin;
+  car.wheelbase = vehicle.wheelbase();
+  car.max_steering = configuration.planner.steer_limit;
+  car.max_steering_rate = tyres.steer_rate;
+  car.limits = {car.limits.top_speed, grip, std::min(vehicle.max_acceleration, grip),
+                std::min(vehicle.max_deceleration, grip)};
+  car.power = vehicle.max_acceleration * tyres.switch_speed;
+  return car;
 }
 
 void set_friction(RacingCar& car, double friction) {

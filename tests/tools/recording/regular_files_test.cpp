@@ -56,7 +56,6 @@ const FileReader readers[] = {
     // A course is searched for its waypoints among regular files.
     {"Waypoints", "raceline.csv", read_course, "waypoint file"},
     {"Configuration", "car.yaml", [](const fs::path& pipe) { vehicle::load_configuration(pipe); }},
-    {"RacingCar", "car.yaml", [](const fs::path& pipe) { vehicle::load_racing_car(pipe); }},
     {"CentreLine", "line.csv", [](const fs::path& pipe) { vehicle::read_centre_line(pipe); }},
     {"Network", "car.npz", [](const fs::path& pipe) { load_mlp(pipe); }},
     {"Laps", "laps.csv", [](const fs::path& pipe) { evaluation::read_rows(pipe, no_experiments, false, 0); }},

@@ -1,4 +1,4 @@
-// Cars: limits that depend on the speed, profiles, files.
+// Cars: limits that depend on the speed, profiles, configurations.
 #include "slalom/vehicle/racing/racing_car.hpp"
 
 #include <gtest/gtest.h>
@@ -7,14 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "slalom/core/error.hpp"
-#include "support/temporary_folder.hpp"
-#include "support/thrown_words.hpp"
-
 namespace slalom::vehicle {
 namespace {
-
-class RacingCarFile : public testing::TemporaryFolder {};
 
 TEST(RacingSpeeds, AreInsideTheEllipseThroughoutAndNearFeasibleSpeeds) {
   RacingCar car;
@@ -100,31 +94,32 @@ TEST(RacingCar, IsKnownByName) {
   EXPECT_THROW(set_friction(car, 0), std::invalid_argument);
 }
 
-TEST_F(RacingCarFile, SetsWhatItNames) {
-  const auto file =
-      write("kart.yaml", "base: passenger\nwidth: 1.4\npower: 60\nggv: [[0, 6, 8, 9], [30, 3, 8, 9.5]]\n");
-  const RacingCar car = load_racing_car(file);
-  EXPECT_EQ(car.name, "kart");
-  EXPECT_EQ(car.width, 1.4);
-  EXPECT_EQ(car.power, 60);
-  EXPECT_EQ(car.wheelbase, racing_car("passenger").wheelbase);
-  ASSERT_EQ(car.grip.size(), 2u);
-  EXPECT_EQ(car.grip[1].acceleration, 3);
-}
-
-TEST_F(RacingCarFile, SaysWhatIsWrongAndWhere) {
-  const std::pair<const char*, std::vector<const char*>> cases[] = {
-      {"width: 0.3\nwidht: 1\n", {"car.yaml:2", "widht", "unknown key", "wheelbase"}},
-      {"width: -1\n", {"car.yaml:1", "width", "'-1'", "above 0"}},
-      {"base: tank\n", {"car.yaml:1", "base", "tank", "f1tenth"}},
-      {"ggv: [[0, 1, 2]]\n", {"car.yaml:1", "ggv", "rows"}},
-      {"ggv: [[5, 8, 8, 8], [5, 8, 8, 8]]\n", {"car.yaml:1", "rising speed"}},
-      {"max_steering: 2\n", {"max_steering", "1.5"}},
-      {"- 1\n", {"car.yaml:1", "keys"}}};
-  for (const auto& [text, says] : cases) {
-    SCOPED_TRACE(text);
-    expect_error_with<IoError>(says, [&, text = text] { load_racing_car(write("car.yaml", text)); });
-  }
+TEST(RacingCar, OfAConfigurationHasItsSizesAndTheGripOfItsPlans) {
+  Configuration configuration;
+  const RacingCar same = racing_car(configuration), known;
+  EXPECT_EQ(same.width, known.width);
+  EXPECT_EQ(same.wheelbase, known.wheelbase);
+  EXPECT_EQ(same.max_steering_rate, known.max_steering_rate);
+  EXPECT_EQ(same.limits.top_speed, known.limits.top_speed);
+  auto& tyres = configuration.vehicle.own_of<SingleTrackOptions>();
+  tyres.friction = 0.5;
+  tyres.usable_grip = 0.8;
+  configuration.vehicle.front_length = 1.2;
+  configuration.vehicle.rear_length = 1.5;
+  configuration.vehicle.body.margin = 0.3;
+  configuration.vehicle.max_acceleration = 2;
+  configuration.vehicle.max_deceleration = 9;
+  configuration.planner.steer_limit = 0.5;
+  configuration.planner.max_speed = 1;
+  const RacingCar large = racing_car(configuration);
+  EXPECT_NO_THROW(validate(large));
+  EXPECT_DOUBLE_EQ(large.wheelbase, 2.7);
+  EXPECT_EQ(large.max_steering, 0.5);
+  EXPECT_DOUBLE_EQ(large.margin, 0.36);
+  EXPECT_DOUBLE_EQ(large.limits.lateral_acceleration, 0.4 * 9.81);
+  EXPECT_EQ(large.limits.acceleration, 2);
+  EXPECT_DOUBLE_EQ(large.limits.braking, 0.4 * 9.81);
+  EXPECT_EQ(large.limits.top_speed, racing_car("passenger").limits.top_speed) << "max_speed is for driving";
 }
 
 }  // namespace

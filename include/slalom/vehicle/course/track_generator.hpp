@@ -68,6 +68,9 @@ struct GeneratedTrack {
 /// std::invalid_argument for bad options, or where no track of the length and width is found.
 GeneratedTrack generate_track(const TrackGeneratorOptions& options);
 
+/// m, the length of the raceline.
+double path_length(const GeneratedTrack& track);
+
 /// The texts that save_track writes in addition to the geometry.
 struct TrackLabel {
   std::string name;         ///< the name

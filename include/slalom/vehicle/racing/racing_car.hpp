@@ -1,13 +1,11 @@
 #pragma once
 
-#include <array>
-#include <filesystem>
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/course/speed_profile.hpp"
 
 namespace slalom::vehicle {
@@ -46,21 +44,10 @@ std::vector<std::string> racing_car_names();
 /// `passenger` (a full-scale car on a dry road). Throws std::invalid_argument that lists the names.
 RacingCar racing_car(const std::string& name);
 
-/// The numbers of a car by their keys in files and in Python.
-std::array<std::pair<const char*, double*>, 10> numbers_of(RacingCar& car);
-
-/// Reads a car from a YAML file:
-///
-///     base: f1tenth        # optional: a car by its name; the default is f1tenth
-///     width: 0.31          # m; also margin, wheelbase (m), max_steering (rad), max_steering_rate (rad/s),
-///     top_speed: 8         # m/s; lateral_acceleration, acceleration, braking (m/s^2), power (W/kg)
-///     ggv: [[0, 8, 9, 9], [8, 6, 9, 9]]   # rows: speed, acceleration, braking, lateral acceleration
-///
-/// Throws IoError with file, line, key, value and rule.
-RacingCar load_racing_car(const std::filesystem::path& file);
-
-/// The car of a YAML file (load_racing_car) or, where no such file exists, of a name (racing_car).
-RacingCar find_racing_car(const std::string& name_or_file);
+/// The car of a configuration, with the grip that its plans may use (friction times usable_grip), and 1.2
+/// times their margin. The top speed is that of racing_car(), by the wheelbase: planner.max_speed is a limit
+/// for driving.
+RacingCar racing_car(const Configuration& configuration);
 
 /// Sets the accelerations to those of a friction coefficient, `friction` g in every direction, and removes
 /// the rows of `grip`. Throws std::invalid_argument unless `friction` is finite and above 0.

@@ -1,0 +1,217 @@
+// Drives in bags of rosbag2: which topics are used, and what a sample is.
+#include "tools/recording/ros_bag.hpp"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/model/identification.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_words.hpp"
+#include "tools/recording/driven_recording.hpp"
+#include "view/recording/mcap_writer.hpp"
+
+namespace slalom::tools {
+namespace {
+
+/// Writes a message in CDR.
+class CdrWriter {
+ public:
+  template <class T>
+  CdrWriter& put(T value) {
+    bytes_.resize(4 + (bytes_.size() - 4 + sizeof value - 1) / sizeof value * sizeof value, '\0');
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    return *this;
+  }
+  CdrWriter& text(const std::string& value) {
+    put(static_cast<std::uint32_t>(value.size() + 1));
+    bytes_ += value + '\0';
+    return *this;
+  }
+  CdrWriter& zeros(int count) {
+    for (int i = 0; i < count; ++i) put(0.0);
+    return *this;
+  }
+  CdrWriter& header(double time, const std::string& frame) {
+    const double second = std::floor(time);
+    put(static_cast<std::int32_t>(second))
+        .put(static_cast<std::uint32_t>(std::lround(1e9 * (time - second))));
+    return text(frame);
+  }
+  CdrWriter& pose(double x, double y, double yaw) {
+    put(x).put(y).zeros(3);
+    return put(std::sin(0.5 * yaw)).put(std::cos(0.5 * yaw));
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_{"\0\1\0\0", 4};
+};
+
+std::string odometry(double time, const std::string& frame, double x, double y, double yaw, double speed) {
+  return CdrWriter()
+      .header(time, frame)
+      .text("base_link")
+      .pose(x, y, yaw)
+      .zeros(36)
+      .put(speed)
+      .zeros(41)
+      .bytes();
+}
+std::string drive(double time, double steer) {
+  CdrWriter message;
+  message.header(time, "").put(static_cast<float>(steer));
+  for (int i = 0; i < 4; ++i) message.put(0.0f);
+  return message.bytes();
+}
+
+struct Message {
+  std::string topic, type;
+  double time = 0;  ///< s
+  std::string data;
+};
+
+constexpr const char* odometry_type = "nav_msgs/msg/Odometry";
+constexpr const char* drive_type = "ackermann_msgs/msg/AckermannDriveStamped";
+constexpr double start = 1700000000;  // s
+
+/// A minute of driving with a steering gain of 0.9, in the topics that a car with f1tenth_system has.
+std::vector<Message> drive_of_a_minute() {
+  std::vector<Message> all;
+  double x = 0, y = 0, yaw = 0;
+  for (int i = 0; i < 2400; ++i) {
+    const double time = start + 0.025 * i, steer = 0.3 * std::sin(0.05 * i), speed = 2;
+    all.push_back({"/pf/pose/odom", odometry_type, time + 0.01, odometry(time, "map", x, y, yaw, 0)});
+    all.push_back({"/odom", odometry_type, time, odometry(time - 0.005, "odom", 9, 9, 9, speed)});
+    all.push_back({"/drive", drive_type, time + 0.01, drive(time + 0.01, steer)});
+    all.push_back({"/scan", "sensor_msgs/msg/LaserScan", time, "unread"});
+    x += 0.025 * speed * std::cos(yaw);
+    y += 0.025 * speed * std::sin(yaw);
+    yaw += 0.025 * speed * std::tan(0.9 * steer) / 0.33;
+  }
+  return all;
+}
+
+std::uint64_t nanoseconds(double time) {
+  return static_cast<std::uint64_t>(std::llround(1e9 * time));
+}
+
+void write_mcap(const std::vector<Message>& messages, const std::filesystem::path& file) {
+  std::ofstream stream(file, std::ios::binary);
+  view::mcap::Writer writer(stream, "test", 1 << 16);
+  std::map<std::string, std::uint16_t> channels;
+  for (const Message& each : messages) {
+    if (!channels.contains(each.topic))
+      channels[each.topic] =
+          writer.add_channel(each.topic, "cdr", writer.add_schema(each.type, "ros2msg", ""));
+    writer.add_message(channels[each.topic], nanoseconds(each.time), each.data);
+  }
+  writer.finish();
+}
+
+void write_sqlite(const std::vector<Message>& messages, const std::filesystem::path& file) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  const auto run = [&](const char* text) {
+    ASSERT_EQ(sqlite3_exec(database, text, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+  };
+  run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
+      "serialization_format "
+      "TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, "
+      "data BLOB NOT NULL); BEGIN");
+  std::map<std::string, int> topics;
+  sqlite3_stmt* insert = nullptr;
+  sqlite3_prepare_v2(database, "INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)", -1,
+                     &insert, nullptr);
+  for (const Message& each : messages) {
+    int& topic = topics[each.topic];
+    if (topic == 0) {
+      topic = static_cast<int>(topics.size());
+      run(("INSERT INTO topics VALUES (" + std::to_string(topic) + ", '" + each.topic + "', '" + each.type +
+           "', 'cdr', '')")
+              .c_str());
+    }
+    sqlite3_bind_int(insert, 1, topic);
+    sqlite3_bind_int64(insert, 2, static_cast<std::int64_t>(nanoseconds(each.time)));
+    sqlite3_bind_blob(insert, 3, each.data.data(), static_cast<int>(each.data.size()), SQLITE_STATIC);
+    ASSERT_EQ(sqlite3_step(insert), SQLITE_DONE);
+    sqlite3_reset(insert);
+  }
+  sqlite3_finalize(insert);
+  run("COMMIT");
+  sqlite3_close(database);
+}
+
+class RosBag : public testing::TemporaryFolder {
+ protected:
+  static void expect_the_drive(const std::string& recording) {
+    std::string topics;
+    const auto samples = read_driven_samples(recording, &topics);
+    EXPECT_EQ(topics, "poses of /pf/pose/odom, speeds of /odom, commands of /drive");
+    ASSERT_EQ(samples.size(), 2400u);
+    EXPECT_NEAR(samples[1].time, 0.025, 1e-6);
+    EXPECT_NEAR(samples[2].steer_command, 0.3 * std::sin(0.1), 1e-6) << "the command that followed";
+    EXPECT_NEAR(samples[2].speed, 2, 1e-12);
+    EXPECT_TRUE(std::isnan(samples.back().speed)) << "after the last measured speed";
+    const vehicle::Identification found = vehicle::identify(samples, {.wheelbase = 0.33});
+    EXPECT_NEAR(found.steering_gain.value, 0.9, 0.01);
+    EXPECT_GT(found.explained, 0.99);
+  }
+};
+
+TEST_F(RosBag, IsReadFromMcapAndSqliteAsFileAndAsFolder) {
+  const auto messages = drive_of_a_minute();
+  write_mcap(messages, folder_ / "first_0.mcap");
+  expect_the_drive((folder_ / "first_0.mcap").string());
+  std::filesystem::create_directory(folder_ / "first");
+  const std::vector<Message> beginning(messages.begin(), messages.begin() + 4001),
+      end(messages.begin() + 4001, messages.end());
+  write_sqlite(beginning, folder_ / "first/first_0.db3");
+  write_sqlite(end, folder_ / "first/first_1.db3");
+  expect_the_drive((folder_ / "first").string());
+}
+
+TEST_F(RosBag, OneThatWasCutIsReadUpToTheLastWholeChunk) {
+  write_mcap(drive_of_a_minute(), folder_ / "cut.mcap");
+  std::filesystem::resize_file(folder_ / "cut.mcap", std::filesystem::file_size(folder_ / "cut.mcap") / 2);
+  const std::size_t read = read_driven_samples((folder_ / "cut.mcap").string()).size();
+  EXPECT_GT(read, 600u);
+  EXPECT_LT(read, 1800u);
+}
+
+TEST_F(RosBag, CommandsOfTheMultiplexerAreThoseThatTheCarGot) {
+  auto messages = drive_of_a_minute();
+  for (int i = 0; i < 2400; ++i)
+    messages.push_back(
+        {"/ackermann_cmd", drive_type, start + 0.025 * i, drive(start + 0.025 * i + 0.001, 0.25)});
+  RosDrive bag;
+  for (const Message& each : messages) bag.add(each.topic, each.type, nanoseconds(each.time), each.data);
+  std::string topics;
+  EXPECT_EQ(bag.samples(topics)[7].steer_command, 0.25);
+  EXPECT_NE(topics.find("commands of /ackermann_cmd"), std::string::npos) << topics;
+}
+
+TEST_F(RosBag, ErrorsSayWhatIsMissingAndWhatIsThere) {
+  std::vector<Message> messages = drive_of_a_minute();
+  std::erase_if(messages, [](const Message& each) { return each.topic == "/pf/pose/odom"; });
+  write_mcap(messages, folder_ / "odd.mcap");
+  const std::string file = (folder_ / "odd.mcap").string();
+  expect_error_with<IoError>({"odd.mcap: the bag has no poses in the frame map",
+                              "/odom (odometry in another frame)", "/drive (steering commands)"},
+                             [&] { read_driven_samples(file); });
+  write_mcap({{"/drive", drive_type, start, std::string("\0\1\0\0\7", 5)}}, folder_ / "odd.mcap");
+  expect_error_with<IoError>({"odd.mcap: has a message that cannot be read: /drive: it ends too soon"},
+                             [&] { read_driven_samples(file); });
+  std::ofstream(folder_ / "odd.mcap") << "SQLite format 3";
+  expect_error_with<IoError>({"odd.mcap: is not a bag of rosbag2"}, [&] { read_driven_samples(file); });
+  std::filesystem::create_directory(folder_ / "empty");
+  expect_error_with<IoError>({"empty: is a folder without files of rosbag2 (.mcap, .db3)"},
+                             [&] { read_driven_samples((folder_ / "empty").string()); });
+}
+
+}  // namespace
+}  // namespace slalom::tools
