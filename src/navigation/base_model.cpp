@@ -18,6 +18,7 @@ class BaseModelOf final : public BaseModel {
             NavigationProblem<Base>(options.base, options.costs, footprint, resolution, options.time_step),
             solver),
         plan_(static_cast<std::size_t>(controller_.solver().horizon()) + 1) {}
+  std::unique_ptr<BaseModel> clone() const override { return std::make_unique<BaseModelOf>(*this); }
 
   void solve(const NavigationMaps& maps, const maps::Pose& pose, const Velocity& velocity,
              double elapsed) noexcept override {

@@ -13,6 +13,7 @@ namespace slalom::navigation::detail {
 class BaseModel {
  public:
   virtual ~BaseModel() = default;
+  virtual std::unique_ptr<BaseModel> clone() const = 0;
   /// Solves from a pose (map frame) with the velocity of now; `elapsed` s after the last solve.
   virtual void solve(const NavigationMaps& maps, const maps::Pose& pose, const Velocity& velocity,
                      double elapsed) noexcept = 0;

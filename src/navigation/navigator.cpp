@@ -78,6 +78,7 @@ class Navigator::Implementation {
                           double elapsed, std::span<const maps::PredictedObstacle> others) noexcept;
   void reset(std::uint64_t seed) noexcept;
   const BaseOptions& base() const noexcept { return options_.base; }
+  std::unique_ptr<Implementation> clone() const { return std::make_unique<Implementation>(*this); }
 
  private:
   bool fits(const Costmap& costmap) const noexcept;
@@ -95,13 +96,13 @@ class Navigator::Implementation {
   NavigatorOptions options_;
   Footprint footprint_;
   maps::GridGeometry geometry_;
-  std::unique_ptr<detail::BaseModel> model_;
+  Polymorphic<detail::BaseModel> model_;
   detail::PathGuide guide_;
   PathPlanner planner_;
   detail::Others others_;
   NavigationMaps maps_;
-  std::vector<maps::Point> points_;  ///< points of a path that is being made
-  std::vector<maps::Pose> chosen_;   ///< the last detour, which later searches prefer
+  ReservedVector<maps::Point> points_;  ///< points of a path that is being made
+  ReservedVector<maps::Pose> chosen_;   ///< the last detour, which later searches prefer
   detail::ClosedPlaces closed_;
   double detour_left_ = std::numeric_limits<double>::infinity();  ///< m of path left where the detour ends
   double without_way_ = 0;    ///< s since the path is blocked and no way round was found
@@ -324,6 +325,8 @@ Navigator::Navigator(const Footprint& footprint, const NavigatorOptions& options
 Navigator::Navigator(const Footprint& footprint, const NavigatorOptions& options, const Costmap& costmap)
     : Navigator(footprint, options, svg_mppi_options(options.base), costmap) {}
 Navigator::~Navigator() = default;
+Navigator::Navigator(const Navigator&) = default;
+Navigator& Navigator::operator=(const Navigator&) = default;
 Navigator::Navigator(Navigator&&) noexcept = default;
 Navigator& Navigator::operator=(Navigator&&) noexcept = default;
 

@@ -48,12 +48,12 @@ class PathGuide {
  private:
   double reach_;
   maps::Pose goal_;
-  std::vector<maps::Pose> path_;
+  ReservedVector<maps::Pose> path_;
   double step_ = spacing;
   std::size_t nearest_ = 0;
   maps::ReferenceField field_;  ///< field of the window, with indices into it in the place of speeds
   maps::CellGrid<4> cells_;
-  std::vector<maps::ReferencePoint> window_;
+  ReservedVector<maps::ReferencePoint> window_;
 };
 
 }  // namespace slalom::navigation::detail

@@ -246,6 +246,22 @@ TEST(Navigator, UpdatesAllocateNothing) {
   EXPECT_TRUE(detour);
 }
 
+TEST(Navigator, ACopyDrivesOnLikeTheOriginalAndAllocatesNothing) {
+  Drive drive;
+  drive.block(3, -0.6, 4, 0.7);
+  drive.navigator->set_path(straight);
+  for (int i = 0; i < 10; ++i) drive.step();
+  Navigator copy = *drive.navigator;
+  const long before = testing::allocations();
+  for (int i = 0; i < 30; ++i) {
+    const Velocity of_copy = copy.update(drive.pose, drive.velocity, drive.costmap, period).command;
+    const Velocity of_original = drive.step().command;
+    ASSERT_EQ(of_copy.forward, of_original.forward) << i;
+    ASSERT_EQ(of_copy.turn, of_original.turn) << i;
+  }
+  EXPECT_EQ(testing::allocations(), before);
+}
+
 TEST(Navigator, TheSameSeedGivesTheSameCommandsOnAnyNumberOfThreads) {
   Drive one({}, 1), three({}, 3);
   for (Drive* drive : {&one, &three}) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string_view>
 
+#include "slalom/core/polymorphic.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/navigation/base.hpp"
 #include "slalom/navigation/cost_options.hpp"
@@ -120,7 +120,9 @@ class Navigator {
   /// Makes a navigator with `svg_mppi`.
   Navigator(const Footprint& footprint, const NavigatorOptions& options, const Costmap& costmap);
   ~Navigator();
-  Navigator(Navigator&&) noexcept;  ///< the navigator moved from may only be destroyed or assigned to
+  Navigator(const Navigator&);             ///< the copy drives on bit for bit like the original
+  Navigator& operator=(const Navigator&);  ///< copies
+  Navigator(Navigator&&) noexcept;         ///< the navigator moved from may only be destroyed or assigned to
   Navigator& operator=(Navigator&&) noexcept;  ///< moves
 
   /// The path to follow, in the map frame: positions from near the robot to the goal. The yaw of the last
@@ -139,7 +141,7 @@ class Navigator {
 
  private:
   class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  Polymorphic<Implementation> implementation_;
 };
 
 }  // namespace slalom::navigation
