@@ -25,17 +25,17 @@ bool World::collides(const Box& car, const Fixed& body) const noexcept {
 }
 
 void World::find_fixed_partners() noexcept {
+  const auto touch = [&](const Fixed& a, const Fixed& b) {
+    if (!(a.disc_radius > 0)) return collides(a.box, b);
+    if (!(b.disc_radius > 0)) return collides(b.box, a);
+    return signed_gap(a.box, b.box) <= 0;  // the squares around two discs, which is sufficient here
+  };
   for (Fixed& body : fixed_) body.last_partner = -1;
   for (std::size_t i = 0; i < fixed_.size(); ++i)
     for (std::size_t j = i + 1; j < fixed_.size(); ++j) {
-      // For two discs the enclosing squares are compared, which is sufficient for fixed bodies.
-      const bool collide = fixed_[j].disc_radius > 0 && fixed_[i].disc_radius > 0
-                               ? signed_gap(fixed_[i].box, fixed_[j].box) <= 0
-                           : fixed_[i].disc_radius > 0 ? collides(fixed_[j].box, fixed_[i])
-                                                       : collides(fixed_[i].box, fixed_[j]);
-      if (!collide) continue;
-      fixed_[i].last_partner = std::max(fixed_[i].last_partner, static_cast<int>(cars_.size() + j));
-      fixed_[j].last_partner = std::max(fixed_[j].last_partner, static_cast<int>(cars_.size() + i));
+      if (!touch(fixed_[i], fixed_[j])) continue;
+      fixed_[i].last_partner = static_cast<int>(cars_.size() + j);  // partners are found in rising order
+      fixed_[j].last_partner = static_cast<int>(cars_.size() + i);
     }
 }
 
@@ -112,15 +112,15 @@ bool World::is_free(std::size_t car, const maps::Pose& pose) const noexcept {
   return std::none_of(fixed_.begin(), fixed_.end(), [&](const Fixed& body) { return collides(box, body); });
 }
 
+/// Keeps the part of the car's motion that leads along the obstacle: tries directions, beginning with the
+/// least turn from the motion, until the car is free there. This needs no normal of the obstacle.
 void World::slide(std::size_t car, const CarState& tried, CarState& state) const noexcept {
-  // Tries directions, beginning with the least turn, until one is free, and keeps the motion along it. This
-  // needs no normal of the obstacle.
   const double dx = tried.x - state.x, dy = tried.y - state.y;
   for (const double yaw : {tried.yaw, state.yaw})
     for (int degrees = 0; degrees <= 80; degrees += 10)
       for (const int side : {1, -1}) {
-        const double turn = side * degrees * (3.141592653589793 / 180), c = std::cos(turn),
-                     s = std::sin(turn);
+        const double turn = side * degrees * (3.141592653589793 / 180);
+        const double c = std::cos(turn), s = std::sin(turn);
         const maps::Pose pose{state.x + c * (c * dx - s * dy), state.y + c * (s * dx + c * dy), yaw};
         if (!is_free(car, pose)) continue;
         state.x = pose.x;

@@ -57,6 +57,8 @@ void World::scan_all() noexcept {
   }
 }
 
+/// The order of f1tenth_gym: all cars scan the walls; a car that its scan shows to be at a wall stops; the
+/// others enter its scan.
 void World::gym_scan_and_collisions() noexcept {
   for (Car& car : cars_) {
     car.wall = false;
@@ -65,19 +67,20 @@ void World::gym_scan_and_collisions() noexcept {
     add_noise(car);
   }
   find_collisions();
+  // Other cars still see a car that stops where it drove to. It sees them from its new yaw.
+  const auto stop_at_wall = [&](std::size_t i) {
+    cars_[i].wall = true;
+    flags_[i] = 1;
+    const Box moved = boxes_[i];
+    respond(i);
+    boxes_[i] = moved;
+    const CarState& s = cars_[i].plant.state();
+    cars_[i].sensor = lidar_.sensor_pose({s.x, s.y, s.yaw});
+  };
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     Car& car = cars_[i];
     if (!car.scans || car.away) continue;
-    car.wall = time_to_collision_.first_hit(car.gym_ranges, car.plant.state().speed) >= 0;
-    if (car.wall) {
-      flags_[i] = 1;
-      // Other cars still see the car where it drove to. The car sees them from its new yaw.
-      const Box moved = boxes_[i];
-      respond(i);
-      boxes_[i] = moved;
-      const CarState& s = car.plant.state();
-      car.sensor = lidar_.sensor_pose({s.x, s.y, s.yaw});
-    }
+    if (time_to_collision_.first_hit(car.gym_ranges, car.plant.state().speed) >= 0) stop_at_wall(i);
     cast_bodies(i);
     publish(car);
   }

@@ -31,31 +31,36 @@ inline void fit_weights(const double* density, int count, double* square, double
 /// change z2 by a tenth.
 inline GaussianFit fit_gaussian(const double* x, const double* square, const double* logarithm, int count,
                                 double error) {
-  constexpr double rounding = std::numeric_limits<float>::epsilon();
-  const auto sum = [&](auto&& value) {
+  const auto squared = [](double d) { return d * d; };
+  const auto sum = [&](auto&& value) {  // over all points, with their weights
     double total = 0;
     for (int k = 0; k < count; ++k) total += square[k] * value(k);
     return total;
   };
+
   // All values are relative to the densest point: its weight may exceed that of the others by 20 orders of
   // magnitude.
-  int densest = 0;
-  for (int k = 1; k < count; ++k)
-    if (square[k] > square[densest]) densest = k;
+  const auto densest = std::max_element(square, square + count) - square;
   const auto from_densest = [&](int k) { return x[k] - x[densest]; };
   const auto log_ratio = [&](int k) { return logarithm[k] - logarithm[densest]; };
+
+  // The abscissas t, of mean 0 and variance 1.
   const double weight = sum([](int) { return 1.0; });
   const double mean = sum(from_densest) / weight;
-  const auto squared = [](double d) { return d * d; };
   const double variance = sum([&](int k) { return squared(from_densest(k) - mean); }) / weight;
   if (!(variance > 0)) return {};
-  const double scale = std::sqrt(variance), inverse = 1 / scale;
+  const double inverse = 1 / std::sqrt(variance);
   const auto t = [&](int k) { return (from_densest(k) - mean) * inverse; };
+
+  // The coefficient of p in the logarithms.
   const double skewness = sum([&](int k) { return t(k) * t(k) * t(k); }) / weight;
-  const double slope = sum([&](int k) { return t(k) * log_ratio(k); }) / weight;
   const auto p = [&](int k) { return t(k) * t(k) - skewness * t(k) - 1; };
   const double norm = sum([&](int k) { return squared(p(k)); });
   const double bend = sum([&](int k) { return p(k) * log_ratio(k); });
+
+  // The errors of logarithms and abscissas may determine it.
+  constexpr double rounding = std::numeric_limits<float>::epsilon();
+  const double slope = sum([&](int k) { return t(k) * log_ratio(k); }) / weight;
   const double bend_error = sum([&](int k) {
     const double derivative = slope + (2 * t(k) - skewness) * bend / norm;
     return std::abs(p(k)) * (error + std::abs(derivative * inverse * x[k]) * rounding);

@@ -78,22 +78,13 @@ class FeasibleSpeeds {
     for (std::size_t i = 0; i < speed_.size(); ++i)
       speed_[i] =
           std::min(own_[i], std::sqrt(limits.grip * share_[i] / std::max(std::abs(curvature_[i]), 1e-6)));
-    // The tyres' force is shared between turning and accelerating.
-    const auto left = [&](std::size_t i) {
-      const double turning = speed_[i] * speed_[i] * curvature_[i], grip = limits.grip * share_[i];
-      return std::sqrt(std::max(grip * grip - turning * turning, 0.0));
-    };
-    const auto reach = [&](std::size_t from, std::size_t to, double gap, double strength, double share) {
-      const double a = std::min(strength, share * left(from));
-      speed_[to] = std::min(speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * a * gap));
-    };
     const auto speed_up = [&](std::size_t from, std::size_t to, double gap) {
       const double power =
           limits.acceleration * std::min(1.0, limits.switch_speed / std::max(speed_[from], 0.1));
-      reach(from, to, gap, power, 1);
+      limit(to, from, gap, std::min(power, grip_left(from, limits.grip)));
     };
     const auto brake = [&](std::size_t from, std::size_t to, double gap) {
-      reach(from, to, gap, limits.braking, limits.braking_share);
+      limit(to, from, gap, std::min(limits.braking, limits.braking_share * grip_left(from, limits.grip)));
     };
     for_each_piece(speed_, gap_, length() > 0, speed_up, brake);
     anticipate(limits.delay);
@@ -112,6 +103,18 @@ class FeasibleSpeeds {
 
  private:
   static constexpr double whole = 1;
+
+  /// The acceleration (m/s^2) that is left to the tyres at a point: they share their force between turning
+  /// and accelerating.
+  double grip_left(std::size_t i, double full_grip) const noexcept {
+    const double turning = speed_[i] * speed_[i] * curvature_[i], grip = full_grip * share_[i];
+    return std::sqrt(std::max(grip * grip - turning * turning, 0.0));
+  }
+
+  /// Limits the speed at `to` to that after `gap` (m) from `from` with this change of speed (m/s^2).
+  void limit(std::size_t to, std::size_t from, double gap, double change) noexcept {
+    speed_[to] = std::min(speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * change * gap));
+  }
 
   /// Lowers each speed to the least one on the way that the car drives within its delay, so that a car that
   /// follows late sees a limit earlier.

@@ -65,29 +65,29 @@ class Recovery {
   }
   /// Watches a car that drives forwards, and decides whether it must reverse.
   void watch(double arc, double length, double speed_now, double period) noexcept {
-    const double ahead = way(furthest_, arc, length);
-    const bool was_moved = std::abs(ahead) > 10;  // the car was put somewhere else
-    if (was_moved) leaving_ = trying_again_ = confined_ = false;
-    since_progress_ += period;
-    if (was_moved || ahead > progress) {
-      furthest_ = arc;
-      since_progress_ = was_moved ? period : 0;
-    }
+    note_progress(way(furthest_, arc, length), arc, period);
+    forget_trouble(arc, length);
     standing_for_ = std::abs(speed_now) < standing && period > 0 ? standing_for_ + period : 0;
-
-    // Past the places of trouble, everything is as usual again.
-    if (leaving_ && way(stuck_, arc, length) > relief) {
-      leaving_ = confined_ = false;
-      distance_ = shortest;
-    }
-    if (way(reversed_at_, arc, length) > relief) trying_again_ = false;
-
     const bool no_progress = since_progress_ >= patience;
     if (crawling_for_ >= hesitation || no_progress) {
       if (!leaving_ || way(stuck_, arc, length) > 0) stuck_ = arc;
       leaving_ = true;
     }
     if (no_progress || standing_for_ >= stand_still) begin_reversing(arc, length);
+  }
+  void note_progress(double ahead, double arc, double period) noexcept {
+    const bool was_moved = std::abs(ahead) > 10;  // the car was put somewhere else
+    if (was_moved) leaving_ = trying_again_ = confined_ = false;
+    since_progress_ = was_moved ? period : ahead > progress ? 0 : since_progress_ + period;
+    if (was_moved || ahead > progress) furthest_ = arc;
+  }
+  /// Past the places of trouble, everything is as usual again.
+  void forget_trouble(double arc, double length) noexcept {
+    if (leaving_ && way(stuck_, arc, length) > relief) {
+      leaving_ = confined_ = false;
+      distance_ = shortest;
+    }
+    if (way(reversed_at_, arc, length) > relief) trying_again_ = false;
   }
   void begin_reversing(double arc, double length) noexcept {
     if (!trying_again_ || way(reversed_at_, arc, length) > 0) reversed_at_ = arc;

@@ -171,21 +171,18 @@ void SequenceChoice::for_each_known(std::span<const float> last, Use&& use) cons
 /// Sets `candidate_` to inputs that brake for `braking_steps` steps and then accelerate. At each place the
 /// wheels have the same angle as in `path_`.
 void SequenceChoice::follow_slower(int braking_steps) noexcept {
-  const double dt = traits_.time_step;
+  const double dt = traits_.time_step, change = traits_.max_deceleration;
   const std::size_t steps = path_.size() - 1;
-  double speed = std::max(path_[0].speed, 0.0), ahead = 0;  // m/s, m beyond the state `at`
-  std::size_t at = 0;
+  std::size_t at = 0;                                       // the state of `path_` that was passed last
+  double speed = std::max(path_[0].speed, 0.0), ahead = 0;  // m/s, m beyond that state
+  const auto way = [&] { return std::abs(path_[at].speed) * dt; };  // m to the next state
   for (std::size_t k = 0; k < steps; ++k) {
     const bool brakes = static_cast<int>(k) < braking_steps;
-    const double before = speed;
-    speed =
-        std::max(speed + (brakes ? -braking_share : accelerating_share) * traits_.max_deceleration * dt, 0.0);
-    speed = brakes ? speed : std::min(speed, std::max(path_[at].speed, before));
+    const double before = speed, fastest = std::max(path_[at].speed, before);
+    speed = brakes ? std::max(before - braking_share * change * dt, 0.0)
+                   : std::min(before + accelerating_share * change * dt, fastest);
     ahead += 0.5 * (before + speed) * dt;
-    for (double way = std::abs(path_[at].speed) * dt; at + 1 < steps && ahead >= way && way > 0;) {
-      ahead -= way;
-      way = std::abs(path_[++at].speed) * dt;
-    }
+    for (; at + 1 < steps && way() > 0 && ahead >= way(); ++at) ahead -= way();
     const double slowness = speed / traits_.half_steer_speed;
     candidate_[k * inputs_] = static_cast<float>(path_[at + 1].steer * (1 + slowness * slowness));
     candidate_[k * inputs_ + 1] = brakes ? -max_deceleration_ : max_deceleration_;

@@ -83,6 +83,16 @@ class WaysAround {
       ahead_x = std::cos(yaw);
       ahead_y = std::sin(yaw);
     }
+    /// Drives for `dt` (s), with half of the turn before the way and half after it.
+    void drive(double acceleration, double steer_tangent, double wheelbase, double dt) noexcept {
+      const double driven = std::max(speed + 0.5 * acceleration * dt, 0.0) * dt;
+      const double half_turn = 0.5 * driven * steer_tangent / wheelbase;
+      turn(half_turn);
+      x += driven * ahead_x;
+      y += driven * ahead_y;
+      turn(half_turn);
+      speed = std::max(speed + acceleration * dt, 0.0);
+    }
   };
   /// A point of the path.
   struct Place {
@@ -96,23 +106,16 @@ class WaysAround {
     const double fastest = top_speeds[way % speeds], dt = traits_.time_step;
     for (int k = 0; k < batch_.steps(); ++k) {
       look_ahead(car);
-      const double slope = steering_to(car, offset),
-                   most =
-                       std::min(grip / std::max(car.speed * car.speed, 1e-3) * traits_.wheelbase, steepest_);
-      const double tangent = std::clamp(slope, -most, most);
+      const double most =
+          std::min(grip / std::max(car.speed * car.speed, 1e-3) * traits_.wheelbase, steepest_);
+      const double tangent = std::clamp(steering_to(car, offset), -most, most);
       const double wanted = (std::min(path_speeds[car.at], fastest) - car.speed) / dt;
       const double acceleration =
           std::clamp(wanted, -braking * traits_.max_deceleration, accelerating * traits_.max_acceleration);
       const double share = car.speed / traits_.half_steer_speed;
       batch_.at(k, 0, way) = static_cast<float>(std::atan(tangent) * (1 + share * share));
       batch_.at(k, 1, way) = static_cast<float>(acceleration);
-      const double driven = std::max(car.speed + 0.5 * acceleration * dt, 0.0) * dt;
-      const double half_turn = 0.5 * driven * tangent / traits_.wheelbase;
-      car.turn(half_turn);
-      car.x += driven * car.ahead_x;
-      car.y += driven * car.ahead_y;
-      car.turn(half_turn);
-      car.speed = std::max(car.speed + acceleration * dt, 0.0);
+      car.drive(acceleration, tangent, traits_.wheelbase, dt);
     }
   }
 
