@@ -1,10 +1,10 @@
-#include "slalom/evaluation/lap.hpp"
+#include "evaluation/lap_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "evaluation/driver/car_driver.hpp"
+#include "evaluation/hardware_model.hpp"
 #include "evaluation/lap_rules.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/vehicle/course/course_check.hpp"

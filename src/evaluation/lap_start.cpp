@@ -1,10 +1,11 @@
-// The start of a lap: its world, the positions of obstacles and opponents, and the drivers.
+#include "evaluation/lap_start.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "evaluation/driver/car_driver.hpp"
+#include "evaluation/lap_setup.hpp"
 
 namespace slalom::evaluation {
 namespace {

@@ -21,13 +21,6 @@ bool cross(const Point& a, const Point& b, const Point& c, const Point& d) {
   return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
 }
 
-double distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
-  const double share =
-      squared > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0;
-  return std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
-}
-
 void check_vertices(std::span<const Point> vertices) {
   const std::size_t count = vertices.size();
   if (count < 3 || count > Footprint::max_vertices)
@@ -48,6 +41,13 @@ void check_vertices(std::span<const Point> vertices) {
 }
 
 }  // namespace
+
+double distance_to_segment(const Point& point, const Point& a, const Point& b) noexcept {
+  const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+  const double share =
+      squared > 0 ? std::clamp(((point.x - a.x) * dx + (point.y - a.y) * dy) / squared, 0.0, 1.0) : 0;
+  return std::hypot(a.x + share * dx - point.x, a.y + share * dy - point.y);
+}
 
 Footprint::Footprint(std::span<const Point> vertices) : vertices_(vertices.begin(), vertices.end()) {
   check_vertices(vertices);

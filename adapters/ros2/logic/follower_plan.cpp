@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "slalom/navigation/footprint.hpp"
+
 namespace slalom::nodes {
 namespace {
 
@@ -16,14 +18,6 @@ constexpr double search_ahead = 3;   ///< m of the plan in which the pose neares
 
 Point point_of(const maps::Pose& pose) {
   return {pose.x, pose.y};
-}
-
-double distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y;
-  const double squared = dx * dx + dy * dy;
-  const double along = squared > 0 ? ((p.x - a.x) * dx + (p.y - a.y) * dy) / squared : 0;
-  const double t = std::fmin(std::fmax(along, 0), 1);
-  return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
 
 }  // namespace
@@ -50,7 +44,8 @@ bool FollowerPlan::leads_along(const std::vector<maps::Pose>& plan) const {
   std::size_t segment = 0;
   for (const maps::Pose& pose : plan) {
     const auto is_on = [&](std::size_t i) {
-      return distance_to_segment(point_of(pose), point_of(poses_[i]), point_of(poses_[i + 1])) <= same_path;
+      return navigation::distance_to_segment(point_of(pose), point_of(poses_[i]), point_of(poses_[i + 1])) <=
+             same_path;
     };
     while (segment + 1 < poses_.size() && !is_on(segment)) ++segment;
     if (segment + 1 >= poses_.size()) return false;

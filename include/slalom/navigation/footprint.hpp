@@ -8,6 +8,9 @@
 
 namespace slalom::navigation {
 
+/// The distance (m) of a point from the line between `a` and `b`.
+double distance_to_segment(const maps::Point& point, const maps::Point& a, const maps::Point& b) noexcept;
+
 /// The outline of a robot, with bounds that decide most collision checks without it. All in the robot's frame
 /// (m): x forward, y to the left, origin where the robot's pose is.
 class Footprint {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "evaluation/lap_setup.hpp"
+
 namespace slalom::evaluation {
 namespace {
 

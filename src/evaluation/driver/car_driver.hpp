@@ -97,24 +97,4 @@ class CarDriver {
 /// The drive of a lap or race.
 using CarDrive = Drive<sim::World, CarDriver>;
 
-/// The options of the world in which a lap is driven.
-sim::WorldOptions world_options(const LapSetup& setup);
-/// Number of steps of such a world per command.
-long long steps_per_command(const LapSetup& setup, const sim::WorldOptions& world) noexcept;
-/// The path of the environment with the speeds of the lap's settings.
-std::vector<maps::ReferencePoint> path_of(const LapSetup& setup);
-/// Makes the planner that `setup.driver` describes.
-vehicle::Planner make_planner(const LapSetup& setup);
-/// Whether the finish of a lap is the end of an open path.
-bool ends_with_path(const LapSetup& setup) noexcept;
-/// Checks what LapSetup::validate checks, except for the options of drivers. Throws std::invalid_argument.
-void check_settings(const LapSetup& setup);
-/// Returns the setup with which opponent `index` drives; it must have a planner. Throws std::invalid_argument
-/// if the opponent is too slow for its configuration.
-LapSetup setup_of_opponent(const LapSetup& setup, int index);
-
-/// Makes the drive of a lap: places the obstacles, whose poses are returned in `obstacles`, and puts the cars
-/// at their starts.
-CarDrive start_lap(const LapSetup& setup, std::uint64_t seed, std::vector<maps::Pose>& obstacles);
-
 }  // namespace slalom::evaluation

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "evaluation/driver/car_driver.hpp"
+#include "evaluation/lap_setup.hpp"
 #include "evaluation/racing/race_watch.hpp"
 #include "slalom/core/options.hpp"
 
