@@ -42,6 +42,23 @@ void tell(std::FILE* out, Json& json, std::initializer_list<Estimate> estimates)
   }
 }
 
+/// Prints the estimates of the steering and adds them to the JSON.
+void tell_steering(std::FILE* out, Json& json, const auto& found) {
+  tell(out, json,
+       {{"steering gain", "steering_gain", found.steering_gain, ""},
+        {"steering offset", "steering_offset", found.steering_offset, "rad"},
+        {"delay", "delay", found.delay, "s"},
+        {"time constant", "time_constant", found.time_constant, "s"}});
+}
+
+/// Prints the lines on the steering for a configuration file.
+void advise_steering(std::FILE* out, const auto& found) {
+  std::fprintf(out,
+               "For a configuration file (correct gain and offset in the servo driver):\n"
+               "vehicle:\n  steer_time_constant: %.3f\n  dead_time: %.3f\n",
+               found.time_constant.value, found.delay.value);
+}
+
 /// Prints the lines for a configuration file.
 void advise(std::FILE* out, const Identification& found) {
   const double ratio = found.steering_gain.value / found.wheelbase.value;
@@ -52,10 +69,7 @@ void advise(std::FILE* out, const Identification& found) {
                  "wheelbase and give "
                  "it with --wheelbase.\n\n",
                  ratio);
-  std::fprintf(out,
-               "For a configuration file (correct gain and offset in the servo driver):\n"
-               "vehicle:\n  steer_time_constant: %.3f\n  dead_time: %.3f\n",
-               found.time_constant.value, found.delay.value);
+  advise_steering(out, found);
   if (wheelbase_known)
     std::fprintf(out, "  front_length: %.4f\n  rear_length: %.4f\n", 0.4808 * found.wheelbase.value,
                  0.5192 * found.wheelbase.value);
@@ -69,12 +83,9 @@ Json identify_steering(std::FILE* out, std::span<const vehicle::DrivenSample> sa
   std::fprintf(out, "%d of %zu samples; %.1f %% of the yaw rate explained, residual %.3f rad/s\n\n",
                found.samples, samples.size(), 100 * found.explained, found.residual);
   Json json{{"samples", found.samples}, {"explained", found.explained}, {"residual", found.residual}};
+  tell_steering(out, json, found);
   tell(out, json,
-       {{"steering gain", "steering_gain", found.steering_gain, ""},
-        {"steering offset", "steering_offset", found.steering_offset, "rad"},
-        {"delay", "delay", found.delay, "s"},
-        {"time constant", "time_constant", found.time_constant, "s"},
-        {"wheelbase", "wheelbase", found.wheelbase, "m"},
+       {{"wheelbase", "wheelbase", found.wheelbase, "m"},
         {"understeer", "understeer", found.understeer, "s^2/m"}});
   std::fprintf(out, "%-20s %9.4f        (distance from the poses / distance from the speed)\n\n",
                "speed scale", found.speed_scale);
@@ -104,25 +115,20 @@ Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> sampl
   tell(out, json,
        {{"friction", "friction", found.friction, ""},
         {"cornering, front", "cornering_front", found.cornering_front, "1/rad"},
-        {"cornering, rear", "cornering_rear", found.cornering_rear, "1/rad"},
-        {"steering gain", "steering_gain", found.steering_gain, ""},
-        {"steering offset", "steering_offset", found.steering_offset, "rad"},
-        {"delay", "delay", found.delay, "s"},
-        {"time constant", "time_constant", found.time_constant, "s"}});
-  if (found.friction.deviation > 0.05 * found.friction.value)
-    std::fprintf(
-        out,
-        "\nThis drive determines only friction times cornering stiffness: %.2f 1/rad in front, %.2f 1/rad "
-        "behind. Drive curves closer to the limit of grip.\n",
-        found.friction.value * found.cornering_front.value,
-        found.friction.value * found.cornering_rear.value);
-  else
+        {"cornering, rear", "cornering_rear", found.cornering_rear, "1/rad"}});
+  tell_steering(out, json, found);
+  std::fputs("\n", out);
+  const double front = found.cornering_front.value, rear = found.cornering_rear.value;
+  if (found.friction.deviation > 0.05 * found.friction.value) {
     std::fprintf(out,
-                 "\nFor a configuration file (correct gain and offset in the servo driver):\n"
-                 "vehicle:\n  friction: %.3f\n  cornering_front: %.2f\n  cornering_rear: %.2f\n"
-                 "  steer_time_constant: %.3f\n  dead_time: %.3f\n",
-                 found.friction.value, found.cornering_front.value, found.cornering_rear.value,
-                 found.time_constant.value, found.delay.value);
+                 "This drive determines only friction times cornering stiffness: %.2f 1/rad in front, %.2f "
+                 "1/rad behind. Drive curves closer to the limit of grip.\n",
+                 found.friction.value * front, found.friction.value * rear);
+    return json;
+  }
+  advise_steering(out, found);
+  std::fprintf(out, "  friction: %.3f\n  cornering_front: %.2f\n  cornering_rear: %.2f\n",
+               found.friction.value, front, rear);
   return json;
 }
 

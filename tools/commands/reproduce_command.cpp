@@ -38,10 +38,8 @@ void print_table(const PaperTable& table, const Evaluated& evaluated,
   std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-9s %-22s %-22s %s\n", table.title, "", "", "laps",
                "MS (95 %)", "published MS", "released", "collision rate, %", "published", "verdict");
   const auto cell = [](double value, const evaluation::Interval& i, double scale, int digits) {
-    char text[80];
-    std::snprintf(text, sizeof text, "%.*f (%.*f - %.*f)", digits, scale * value, digits, scale * i.low,
-                  digits, scale * i.high);
-    return std::string(text);
+    return formatted("%.*f (%.*f - %.*f)", digits, scale * value, digits, scale * i.low, digits,
+                     scale * i.high);
   };
   for (const char* scenario : {"pt", "oa"}) {
     for (const PaperRow& row : paper_rows()) {
@@ -50,15 +48,13 @@ void print_table(const PaperTable& table, const Evaluated& evaluated,
         const auto index = static_cast<std::size_t>(r.experiment);
         const auto& e = evaluated.evaluation.experiments[index];
         if (e.scenario != scenario || !drives(e, row)) continue;
-        const auto& theirs = references[index].published;
-        char released[16] = "-";
-        if (references[index].released)
-          std::snprintf(released, sizeof released, "%.3g", references[index].released->ms_mean);
+        const auto &theirs = references[index].published, &released = references[index].released;
         std::fprintf(out, "%-32s %-2s %5d  %-26s %-26s %-9s %-22s %-22s %s\n", row.name.c_str(), scenario,
                      r.laps,
                      r.laps < evaluation::fewest_laps ? formatted("%.3f", r.ms_mean).c_str()
                                                       : cell(r.ms_mean, r.ms_ci, 1, 3).c_str(),
-                     theirs ? cell(theirs->ms_mean, theirs->ms_ci, 1, 3).c_str() : "-", released,
+                     theirs ? cell(theirs->ms_mean, theirs->ms_ci, 1, 3).c_str() : "-",
+                     released ? formatted("%.3g", released->ms_mean).c_str() : "-",
                      r.collision_rate ? cell(*r.collision_rate, *r.collision_rate_ci, 100, 1).c_str() : "-",
                      theirs && theirs->collision_rate
                          ? cell(*theirs->collision_rate, *theirs->collision_rate_ci, 100, 1).c_str()

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "tools/command_line/words.hpp"
 #include "tools/drawing/axis.hpp"
 
 namespace slalom::tools {
@@ -14,12 +14,6 @@ constexpr Colour stripe{0.972, 0.976, 0.984, 1}, ours_fill{0.12, 0.42, 0.78, 1},
     theirs_light{0.55, 0.58, 0.64, 0.25};
 constexpr double row_height = 42, names_width = 250, panel_gap = 48, top = 62, bottom = 46, margin = 18,
                  panel_width = 300, thick = 13;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
 
 double quantile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
@@ -96,7 +90,7 @@ void draw_panel(Pen& pen, const Panel& panel, double left, std::size_t rows) {
   pen.text(left, top - 16, 15, panel.title, ink, 0, true);
   for (const double tick : axis.ticks) {
     pen.line(axis(tick), top, axis(tick), end, rule, 1);
-    pen.text(axis(tick), end + 17, 12, number(tick), faint_ink, 0.5);
+    pen.text(axis(tick), end + 17, 12, short_number(tick), faint_ink, 0.5);
   }
   pen.text(left + panel_width / 2, end + 36, 12.5, panel.axis, faint_ink, 0.5);
   for (std::size_t i = 0; i < rows; ++i) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -52,11 +53,9 @@ Json test_json(const Claim& claim, const std::optional<LapLog>& better, const st
 std::string test_text(const Json& test, bool collisions) {
   if (test.is_null()) return "-";
   const double scale = collisions ? 100 : 1, p = test["p"].get<double>();
-  char text[120];
-  std::snprintf(text, sizeof text, p < 1e-3 ? "%.3g, %.3g, p %.0e, %s" : "%.3g, %.3g, p %.3f, %s",
-                scale * test["better"].get<double>(), scale * test["worse"].get<double>(), p,
-                test["verdict"].get<std::string>().c_str());
-  return text;
+  return formatted(p < 1e-3 ? "%.3g, %.3g, p %.0e, %s" : "%.3g, %.3g, p %.3f, %s",
+                   scale * test["better"].get<double>(), scale * test["worse"].get<double>(), p,
+                   test["verdict"].get<std::string>().c_str());
 }
 
 }  // namespace

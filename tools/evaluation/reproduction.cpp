@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "slalom/core/error.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/evaluation/paper_program.hpp"
 
 namespace slalom::tools {
@@ -19,20 +19,14 @@ using namespace evaluation;
 constexpr const char* authors = "https://github.com/kohonda/proj-svg_mppi";
 constexpr const char* logs_course = "berlin";
 
-std::string format(const char* pattern, double value) {
-  char text[80];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
 /// A p value in its usual notation.
 std::string p_text(double p) {
-  return p < 0.001 ? "p < 0.001" : format("p = %.3f", p);
+  return p < 0.001 ? "p < 0.001" : formatted("p = %.3f", p);
 }
 
 std::string ratio_text(double ratio) {
-  if (ratio > 2 || ratio < 0.5) return format("MS %.2f times that of the log", ratio);
-  return format(ratio > 1 ? "MS %.1f %% higher" : "MS %.1f %% lower", 100 * std::abs(ratio - 1));
+  if (ratio > 2 || ratio < 0.5) return formatted("MS %.2f times that of the log", ratio);
+  return formatted(ratio > 1 ? "MS %.1f %% higher" : "MS %.1f %% lower", 100 * std::abs(ratio - 1));
 }
 
 /// Describes the difference between measured laps and a log, in the figures that decide their agreement.
@@ -40,27 +34,27 @@ std::string difference_text(const LogComparison& c, double our_rate) {
   const bool outside = c.agreement() == Agreement::outside;
   std::string text;
   if (c.ms_agreement() == c.agreement())
-    text = ratio_text(c.ms_ratio) + (outside ? " (" + p_text(c.ms_p) + ")"
-                                             : format(" (95 %%: %.2f to ", c.ms_ratio_ci.low) +
-                                                   format("%.2f times)", c.ms_ratio_ci.high));
+    text = ratio_text(c.ms_ratio) +
+           (outside ? " (" + p_text(c.ms_p) + ")"
+                    : formatted(" (95 %%: %.2f to %.2f times)", c.ms_ratio_ci.low, c.ms_ratio_ci.high));
   if (c.collision_p && c.collision_agreement() == c.agreement()) {
     const double points = 100 * (our_rate - *c.collision_rate);
     text += text.empty() ? "" : ", ";
-    text += format(points >= 0 ? "collision rate %.1f points higher" : "collision rate %.1f points lower",
-                   std::abs(points));
+    text += formatted(points >= 0 ? "collision rate %.1f points higher" : "collision rate %.1f points lower",
+                      std::abs(points));
     text += outside ? " (" + p_text(*c.collision_p) + ")"
-                    : format(" (95 %%: %.1f to ", 100 * c.rate_difference_ci->low) +
-                          format("%.1f points)", 100 * c.rate_difference_ci->high);
+                    : formatted(" (95 %%: %.1f to %.1f points)", 100 * c.rate_difference_ci->low,
+                                100 * c.rate_difference_ci->high);
   }
   return text;
 }
 
 /// Figures of laps of the paper's program.
 std::string released_text(const LogComparison& c) {
-  std::string text = "MS " + format("%.3g", c.ms_mean) + " in " + std::to_string(c.laps) +
+  std::string text = "MS " + formatted("%.3g", c.ms_mean) + " in " + std::to_string(c.laps) +
                      (c.laps == 1 ? " lap, " : " laps, ") + p_text(c.ms_p);
   if (c.collision_rate)
-    text += format(", collision rate %.1f %%, ", 100 * *c.collision_rate) + p_text(*c.collision_p);
+    text += formatted(", collision rate %.1f %%, ", 100 * *c.collision_rate) + p_text(*c.collision_p);
   return text;
 }
 
@@ -128,8 +122,10 @@ const std::vector<PaperRow>& paper_rows() {
                  "contributions that the threads of the paper's program lose in a race damp this "
                  "(docs/logbook/evaluation.md). One thread of it has the figure of Slalom."},
         "sv_mpc.csv");
-    const PaperRow svg{.table = "table1", .name = "SVG-MPPI", .method = "svg_mppi", .released = "svg_mppi"};
-    add(svg, "svg_mppi.csv");
+    const auto svg_mppi = [&](const char* table, const char* name) {
+      add({.table = table, .name = name, .method = "svg_mppi", .released = "svg_mppi"}, "svg_mppi.csv");
+    };
+    svg_mppi("table1", "SVG-MPPI");
 
     mppi("table2", "MPPI", "0.075");
     const auto fixed = [&](const char* table, const std::string& name, const std::string& variance) {
@@ -156,15 +152,11 @@ const std::vector<PaperRow>& paper_rows() {
                     .released = "ac",
                     .note = "The paper prints PT 18.18, OA 7.08; the seeds and collisions in the logs show "
                             "that the two are swapped. The comparison uses what was driven."});
-    made.push_back(made[6]);
-    made.back().table = "table2";
-    made.back().name = "MPPI + NS + AC (SVG-MPPI)";
+    svg_mppi("table2", "MPPI + NS + AC (SVG-MPPI)");
     for (const char* variance :
          {"0.001", "0.005", "0.01", "0.015", "0.02", "0.025", "0.03", "0.05", "0.075", "0.1"})
       fixed("covariances", std::string("fixed ") + variance, variance);
-    made.push_back(made[6]);
-    made.back().table = "covariances";
-    made.back().name = "adaptive";
+    svg_mppi("covariances", "adaptive");
     return made;
   }();
   return rows;

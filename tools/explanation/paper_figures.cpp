@@ -4,6 +4,7 @@
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/drawing/axis.hpp"
 #include "tools/explanation/explain_picture.hpp"
 
@@ -45,9 +46,7 @@ Drawing draw_plot(const std::string& title, const std::string& label, const std:
     }
     for (const double at : across.ticks) {
       pen.line(across(at), top, across(at), top + plot_height, rule, 1);
-      char text[32];
-      std::snprintf(text, sizeof text, "%g", at);
-      pen.text(across(at), top + plot_height + 16, 11, text, faint_ink, 0.5);
+      pen.text(across(at), top + plot_height + 16, 11, short_number(at), faint_ink, 0.5);
     }
     for (const Curve& curve : curves) {
       Pen::Points points;

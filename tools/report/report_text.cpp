@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -88,13 +88,7 @@ std::string escaped(const std::string& text) {
 
 std::string number(double value, int digits) {
   if (!std::isfinite(value)) return "\xE2\x80\x93";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f",
-                value >= 100  ? 1
-                : value >= 10 ? std::min(digits, 2)
-                              : digits,
-                value);
-  return text;
+  return formatted("%.*f", value >= 100 ? 1 : value >= 10 ? std::min(digits, 2) : digits, value);
 }
 
 std::string p_value(double p) {
