@@ -77,14 +77,11 @@ inline std::vector<OptionSet> option_sets() {
       {"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}},
       {"mppi_knots", MppiOptions{.noise = {.knots = 5}}},
       {"mppi_target_ess_fraction", MppiOptions{.weighting = {.target_ess_fraction = 0.03}}},
-      {"mppi_smoothed", MppiOptions{.smoothing = {.half_width = 3, .degree = 2}}},
-      {"svg_mppi_all_parts", SvgMppiOptions{.noise = {.exponent = 1},
-                                            .weighting = {.target_ess_fraction = 0.03},
-                                            .smoothing = {.half_width = 2}}},
+      {"svg_mppi_all_parts",
+       SvgMppiOptions{.noise = {.exponent = 1}, .weighting = {.target_ess_fraction = 0.03}}},
       {"icem_mean", IcemOptions{.send_best = false}},
-      {"dial_mpc_all_parts", DialMpcOptions{.noise = {.exponent = 1},
-                                            .weighting = {.target_ess_fraction = 0.03},
-                                            .smoothing = {.half_width = 2}}},
+      {"dial_mpc_all_parts",
+       DialMpcOptions{.noise = {.exponent = 1}, .weighting = {.target_ess_fraction = 0.03}}},
       {"svg_mppi_knots", SvgMppiOptions{.noise = {.knots = 5}}},
       {"cem_coloured", CemOptions{.noise = {.exponent = 2}}}};
   sets.insert(sets.end(), std::begin(variants), std::end(variants));

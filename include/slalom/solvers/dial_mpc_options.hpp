@@ -30,7 +30,6 @@ struct DialMpcOptions {
 
   NoiseOptions noise{};          ///< shape of the noise; white and normal
   WeightingOptions weighting{};  ///< how costs become weights; exponentially
-  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none
   double zero_mean_share = 0;
   bool shift_warm_start = true;
   std::uint64_t seed = 0;
@@ -52,7 +51,6 @@ void visit_options(Options& o, Visit&& visit) {
          1e-3, 1});
   detail::visit_noise_options(o.noise, visit);
   detail::visit_weighting_options(o.weighting, visit);
-  detail::visit_smoothing_options(o.smoothing, visit);
   visit_run_options(o, visit);
 }
 

@@ -23,7 +23,6 @@ struct MppiOptions {
   PerInput input_max = std::numeric_limits<double>::infinity();
   NoiseOptions noise{};          ///< shape of the noise; white and normal
   WeightingOptions weighting{};  ///< how costs become weights; exponentially
-  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none
   double control_cost_discount = 0;
   double zero_mean_share = 0;
   bool shift_warm_start = true;
@@ -38,7 +37,6 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
   detail::visit_noise_options(o.noise, visit);
   detail::visit_weighting_options(o.weighting, visit);
-  detail::visit_smoothing_options(o.smoothing, visit);
   detail::visit_control_cost_options(o, visit);
   visit_run_options(o, visit);
   visit_options(o.published, visit);

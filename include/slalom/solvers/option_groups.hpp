@@ -21,13 +21,6 @@ struct WeightingOptions {
   double target_ess_fraction = 0;
 };
 
-/// Savitzky-Golay smoothing of the solution along the steps.
-/// `visit_smoothing_options` below describes the fields.
-struct SmoothingOptions {
-  int half_width = 0;
-  int degree = 3;
-};
-
 }  // namespace slalom
 
 namespace slalom::detail {
@@ -75,13 +68,6 @@ void visit_weighting_options(Options& o, Visit&& visit) {
       o.target_ess_fraction,
       {"target_ess_fraction", "",
        "effective sample size, as a fraction of the samples, to which the temperature adapts; 0: off", 0, 1});
-}
-
-template <class Options, class Visit>
-void visit_smoothing_options(Options& o, Visit&& visit) {
-  visit(o.half_width, {"smoothing_half_width", "steps",
-                       "steps to each side of the solution's Savitzky-Golay smoothing; 0: none", 0, 1000});
-  visit(o.degree, {"smoothing_degree", "", "degree of the fitted polynomials", 0, 9});
 }
 
 template <class Options, class Visit>

@@ -71,7 +71,6 @@ struct SvgMppiOptions {
 
   NoiseOptions noise{};          ///< shape of the noise; by default white and normal
   WeightingOptions weighting{};  ///< how costs become weights
-  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none by default
   double control_cost_discount = 0;
   double zero_mean_share = 0;
   bool shift_warm_start = true;  ///< the guides are shifted, too
@@ -128,7 +127,6 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_variance_options(o, visit);
   detail::visit_noise_options(o.noise, visit);
   detail::visit_weighting_options(o.weighting, visit);
-  detail::visit_smoothing_options(o.smoothing, visit);
   detail::visit_control_cost_options(o, visit);
   visit_run_options(o, visit);
   visit_options(o.published, visit);

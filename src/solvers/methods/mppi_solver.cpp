@@ -132,7 +132,6 @@ std::unique_ptr<Solver> make_solver(const DialMpcOptions& o, int inputs, std::sh
                             .input_max = o.input_max,
                             .noise = o.noise,
                             .weighting = o.weighting,
-                            .smoothing = o.smoothing,
                             .control_cost_discount = 1,  // no control term
                             .zero_mean_share = o.zero_mean_share,
                             .shift_warm_start = o.shift_warm_start,

@@ -108,7 +108,6 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
     const double normaliser = 1.0 / (sums.weight + normaliser_offset_);
     samples_.weighted_sums(zero_.data(), sums_.data(), pool, normaliser);
     std::copy(sums_.begin(), sums_.end(), mean);
-    if (smoother_.active()) smoother_.apply(mean);
     for (std::size_t r = 0; r < rows; ++r) mean[r] = std::clamp(mean[r], low[r], high[r]);
   } else {
     std::fill(samples_.weights().begin(), samples_.weights().end(), 0.0f);

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "solvers/sampling/sample_set.hpp"
-#include "solvers/sampling/smoother.hpp"
 
 namespace slalom::detail {
 
@@ -51,7 +50,7 @@ class Weighting {
 ///     w_k = exp(-(J_k - min J) / lambda) / sum,   u <- sum_k w_k v_k
 ///
 /// u is the last solution, n the nominal sequence, S the cost of a rollout; alpha = 0 in the papers. The
-/// noise (NoiseShape), the weights and lambda (Weighting) can be replaced, and u can be smoothed (Smoother).
+/// noise (NoiseShape) and the weights and lambda (Weighting) can be replaced.
 class MppiUpdate {
  public:
   /// Takes the options of `mppi` or `svg_mppi`.
@@ -63,9 +62,6 @@ class MppiUpdate {
         zero_mean_share_(o.zero_mean_share),
         samples_(o.horizon, inputs, o.samples, NoiseShape(o.noise, o.horizon, inputs)),
         weighting_(o.temperature, o.weighting.target_ess_fraction),
-        smoother_(o.smoothing.half_width > 0
-                      ? Smoother(o.horizon, inputs, o.smoothing.half_width, o.smoothing.degree)
-                      : Smoother()),
         deviation_(samples_.rows()),
         linear_(deviation_.size()),
         zero_(deviation_.size()),
@@ -92,7 +88,6 @@ class MppiUpdate {
   double zero_mean_share_;          ///< fraction of the samples that are drawn around zero
   SampleSet samples_;
   Weighting weighting_;
-  Smoother smoother_;
   std::vector<float> deviation_, linear_, zero_;  ///< [row]
   std::vector<double> sums_;                      ///< [row]
 };
