@@ -9,6 +9,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "slalom/core/files/write_file.hpp"
+
 namespace slalom {
 
 std::string read_file(const std::filesystem::path& file, std::uint64_t most) {
@@ -30,6 +32,23 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t most) {
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
     throw IoError(file.string(), 0, "does not exist or cannot be read");
   return bytes;
+}
+
+void write_file(const std::filesystem::path& file, std::string_view bytes) {
+  errno = 0;
+  std::ofstream stream(file, std::ios::binary);
+  const bool opened = stream.is_open();
+  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  stream.close();
+  if (stream) return;
+  const IoError error = cannot_write(file);
+  std::error_code ignored;
+  if (opened && std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);
+  throw error;
+}
+
+IoError cannot_write(const std::filesystem::path& file) {
+  return {file.string(), 0, "cannot be written: " + std::generic_category().message(errno ? errno : EIO)};
 }
 
 IoError cannot_open(const std::filesystem::path& file) {

@@ -38,7 +38,7 @@ ClearanceMap::ClearanceMap(const ClearanceMapOptions& options)
     : options_(options),
       geometry_(geometry_of(options)),
       cells_(geometry_.rows, geometry_.columns),
-      kernel_reach_(static_cast<int>(std::ceil(options.reach / options.resolution))) {
+      kernel_reach_(saturate_cast<int>(std::ceil(options.reach / options.resolution))) {
   const int width = 2 * kernel_reach_ + 1;
   kernel_width_ = padded(width);
   kernel_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(kernel_width_),
@@ -78,7 +78,7 @@ void ClearanceMap::stamp(double x, double y) noexcept {
   const int n = kernel_reach_;
   // Also false for values that are not finite.
   if (!(u > -n && u < geometry_.rows + n && v > -n && v < geometry_.columns + n)) return;
-  const int row = static_cast<int>(std::floor(u)), column = static_cast<int>(std::floor(v));
+  const int row = saturate_cast<int>(std::floor(u)), column = saturate_cast<int>(std::floor(v));
   const bool inside = row >= 0 && column >= 0 && row < geometry_.rows && column < geometry_.columns;
   if (inside && *cells_.at(row, column) == 0) return;  // neighbouring beams often hit the same cell
   const int begin = std::max(column - n, 0), end = std::min(column + n + 1, geometry_.columns);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -31,10 +32,21 @@ void check_grid(const OccupancyGrid& grid) {
                                 " cells must be width x height, " + std::to_string(grid.width) + " x " +
                                 std::to_string(grid.height) + ", at least one");
   if (!(grid.resolution > 0) || !std::isfinite(grid.resolution))
-    throw std::invalid_argument("map: resolution " + to_text(OptionValue(grid.resolution)) +
+    throw std::invalid_argument("map: resolution " + to_text(grid.resolution) +
                                 " must be finite and above 0");
-  if (!std::isfinite(grid.origin.x) || !std::isfinite(grid.origin.y) || !std::isfinite(grid.origin.yaw))
-    throw std::invalid_argument("map: the origin must be finite");
+  check_pose("map: origin", grid.origin);
+}
+
+void check_pose(const std::string& what, const Pose& pose) {
+  if (!is_plausible(pose))
+    throw std::invalid_argument(what + " (" + to_text(pose.x) + ", " + to_text(pose.y) + ", " +
+                                to_text(pose.yaw) + "): " + PoseLimits::rule);
+}
+
+void check_points(const std::string& what, std::span<const Point> points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!is_plausible(points[i]))
+      check_pose(what + ": point " + std::to_string(i), {points[i].x, points[i].y, 0});
 }
 
 DistanceTransform::DistanceTransform(int width, int height) : width_(width), height_(height) {

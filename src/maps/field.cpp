@@ -9,6 +9,7 @@
 #include "maps/validation.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/maps/distance_field.hpp"
+#include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -66,8 +67,7 @@ void Field::check(const FieldGeometry& geometry) {
                   "at most 2^26; use a coarser resolution");
   detail::require(geometry.resolution > 0 && std::isfinite(geometry.resolution), "field.resolution",
                   geometry.resolution, "finite and above 0");
-  for (const double value : {geometry.origin.x, geometry.origin.y, geometry.origin.yaw})
-    detail::require(std::isfinite(value), "field.origin", value, "finite");
+  check_pose("field.origin", geometry.origin);
 }
 
 Field::Field() : Field(FieldGeometry{}, std::vector<double>{0.0}) {}

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::maps {
 
 namespace {
@@ -36,7 +38,7 @@ int GridSearch::cell_at(const Point& point) const noexcept {
   const double column = std::floor((point.x - corner_.x) / cell_size_),
                row = std::floor((point.y - corner_.y) / cell_size_);
   if (!(column >= 0 && column < columns_ && row >= 0 && row < rows_)) return -1;
-  return static_cast<int>(row) * columns_ + static_cast<int>(column);
+  return saturate_cast<int>(row) * columns_ + saturate_cast<int>(column);
 }
 
 bool GridSearch::reached(int cell) const noexcept {
@@ -76,7 +78,7 @@ void GridSearch::spread(int from) noexcept {
 bool GridSearch::is_clear(int from, int to) const noexcept {
   const Point a = centre_of(from), b = centre_of(to);
   const float most = std::max(prices_[static_cast<std::size_t>(from)], prices_[static_cast<std::size_t>(to)]);
-  const int steps = static_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (0.5 * cell_size_)));
+  const int steps = saturate_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (0.5 * cell_size_)));
   for (int i = 1; i < steps; ++i) {
     const double share = static_cast<double>(i) / steps;
     const int cell = cell_at({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
@@ -96,7 +98,7 @@ std::span<const Point> GridSearch::path_to(int goal, double spacing) noexcept {
     while (next + 1 < corners_.size() && is_clear(corners_[at], corners_[next + 1])) ++next;
     const Point a = centre_of(corners_[at]), b = centre_of(corners_[next]);
     const double length = std::hypot(b.x - a.x, b.y - a.y);
-    const int parts = std::max(1, static_cast<int>(std::round(length / spacing)));
+    const int parts = std::max(1, saturate_cast<int>(std::round(length / spacing)));
     for (int i = 0; i < parts && path_.size() < max_points_; ++i) {
       const double share = static_cast<double>(i) / parts;
       path_.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});

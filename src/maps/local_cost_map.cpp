@@ -21,7 +21,7 @@ GridGeometry geometry_of(const LocalCostMapOptions& options) {
 /// truncates downwards.
 int clamped_floor(double cell, int low, int high) {
   if (!(cell > low)) return low;
-  return static_cast<int>(std::min(cell, static_cast<double>(high)) - low) + low;
+  return saturate_cast<int>(std::min(cell, static_cast<double>(high)) - low) + low;
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ void LocalCostMapOptions::validate() const {
 LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
     : options_(options), geometry_(geometry_of(options)), cells_(geometry_.rows, geometry_.columns) {
   const auto whole_cells = [&](double reach) {
-    return static_cast<int>(std::ceil((reach + options.margin) / options.resolution));
+    return saturate_cast<int>(std::ceil((reach + options.margin) / options.resolution));
   };
   // Row 0 lies at the largest x: a car ahead of a point collides with it with its rear.
   cells_ahead_ = whole_cells(options.footprint.rear);

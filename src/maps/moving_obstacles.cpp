@@ -7,6 +7,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/maps/pose_limits.hpp"
+
 namespace slalom::maps {
 namespace {
 
@@ -26,8 +29,7 @@ bool usable(const PredictedObstacle& obstacle) noexcept {
                 obstacle.poses.size() % static_cast<std::size_t>(obstacle.hypotheses) == 0;
   for (const double weight : obstacle.weights) finite = finite && std::isfinite(weight);
   for (const PredictedPose& each : obstacle.poses) {
-    finite = finite && std::isfinite(each.pose.x) && std::isfinite(each.pose.y) &&
-             std::isfinite(each.pose.yaw) && std::isfinite(each.along_deviation) &&
+    finite = finite && is_plausible(each.pose) && std::isfinite(each.along_deviation) &&
              std::isfinite(each.across_deviation);
   }
   return finite;
@@ -45,7 +47,7 @@ PredictedPose PredictedObstacle::at(int hypothesis, double time) const noexcept 
       poses.subspan(static_cast<std::size_t>(hypothesis) * count, count);
   if (count == 1) return own.front();
   const double place = std::max(time / interval, 0.0);
-  const std::size_t before = std::min(static_cast<std::size_t>(std::min(place, 1e6)), count - 2);
+  const std::size_t before = std::min(saturate_cast<std::size_t>(std::min(place, 1e6)), count - 2);
   return between(own[before], own[before + 1], place - static_cast<double>(before));
 }
 
@@ -172,7 +174,7 @@ void drop_readings_of(const PredictedObstacle& obstacle, double margin, const Po
     const double end =
         std::min(begin + 2 * reach / scan.angle_increment + 1, static_cast<double>(ranges.size()));
     for (double beam = std::max(std::floor(begin), 0.0); beam < end; ++beam) {
-      float& range = ranges[static_cast<std::size_t>(beam)];
+      float& range = ranges[saturate_cast<std::size_t>(beam)];
       const double angle = sensor.yaw + scan.angle_min + beam * scan.angle_increment;
       const Point point = inverse_transform(box, {sensor.x + static_cast<double>(range) * std::cos(angle),
                                                   sensor.y + static_cast<double>(range) * std::sin(angle)});

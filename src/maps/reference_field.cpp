@@ -5,6 +5,7 @@
 #include <string>
 
 #include "maps/validation.hpp"
+#include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -31,9 +32,8 @@ void check_reference_path(std::span<const ReferencePoint> path) {
         detail::require(false, ("reference path: point " + std::to_string(i) + ": " + field).c_str(), value,
                         rule);
     };
-    check("x", path[i].x, std::abs(path[i].x) <= 1e7, "finite, within 1e7 m");
-    check("y", path[i].y, std::abs(path[i].y) <= 1e7, "finite, within 1e7 m");
-    check("yaw", path[i].yaw, std::isfinite(path[i].yaw), "finite");
+    if (const Pose pose{path[i].x, path[i].y, path[i].yaw}; !is_plausible(pose))
+      check_pose("reference path: point " + std::to_string(i), pose);
     check("speed", path[i].speed, std::isfinite(path[i].speed) && path[i].speed >= 0,
           "finite and not negative");
   }
@@ -98,7 +98,7 @@ bool ReferenceField::update(const Point& robot, double reach, double seconds) no
     reach_ = std::max(reach_, 1 + seconds * speed);
   }
   const double cells = std::clamp(reach_ / geometry_.resolution, 0.0, 1e6);
-  const int half = static_cast<int>(cells) + 2;
+  const int half = saturate_cast<int>(cells) + 2;
   make_cells(geometry_.rows / 2 - half, geometry_.rows / 2 + half, geometry_.columns / 2 - half,
              geometry_.columns / 2 + half);
   return true;
@@ -109,7 +109,7 @@ bool ReferenceField::update(const Point& robot, const Point& low, const Point& h
   reach_ = 0;
   // Rows and columns run against x and y. One more on each side covers rounding.
   const auto index = [&](double from, double to) {
-    return static_cast<int>(std::clamp((from - to) / geometry_.resolution, -1e6, 1e6));
+    return saturate_cast<int>(std::clamp((from - to) / geometry_.resolution, -1e6, 1e6));
   };
   const double first_x = geometry_.cell_x(0), first_y = geometry_.cell_y(0);
   make_cells(index(first_x, high.x) - 1, index(first_x, low.x) + 3, index(first_y, high.y) - 1,
@@ -258,7 +258,7 @@ void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexc
     const Site& site = *envelope_[static_cast<std::size_t>(k)].site;
     const double stop = k + 1 < parabolas ? envelope_[static_cast<std::size_t>(k + 1)].start : end;
     if (!(stop >= column)) continue;
-    const int last = stop >= end ? end : static_cast<int>(stop) + 1;
+    const int last = stop >= end ? end : saturate_cast<int>(stop) + 1;
     const int first = column;
     const double dx = x - site.x;
     const auto dx2 = static_cast<float>(dx * dx);

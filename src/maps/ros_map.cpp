@@ -6,13 +6,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 #include "slalom/maps/image.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/yaml_text.hpp"
 
 namespace slalom::maps {
@@ -111,17 +112,20 @@ Header read_header(const std::filesystem::path& path, MapRule rule) {
   const Reader reader(path);
   Header header;
 
-  constexpr const char* positive = "a finite number above 0, at most 1000 (m per pixel)";
+  constexpr const char* positive = "a number within 1e-4 to 1000 (m per pixel)";
   const YAML::Node resolution = reader.need("resolution");
   header.resolution = reader.number("resolution", resolution, positive, resolution);
-  if (!(header.resolution > 0) || header.resolution > 1000) reader.fail("resolution", resolution, positive);
+  if (!(header.resolution >= 1e-4) || header.resolution > 1000)
+    reader.fail("resolution", resolution, positive);
 
-  constexpr const char* triple = "[x, y, yaw], three finite numbers (m, m, rad)";
+  constexpr const char* triple =
+      "[x, y, yaw] (m, m, rad), each coordinate within 1e7 m of 0, yaw within 1e6 rad";
   const YAML::Node origin = reader.need("origin");
   if (!origin.IsSequence() || origin.size() != 3) reader.fail("origin", origin, triple);
   std::array<double, 3> values{};
   for (std::size_t i = 0; i < 3; ++i) values[i] = reader.number("origin", origin[i], triple, origin);
   header.origin = {values[0], values[1], values[2]};
+  if (!is_plausible(header.origin)) reader.fail("origin", origin, triple);
 
   const YAML::Node image = reader.need("image");
   if (!image.IsScalar() || image.Scalar().empty()) reader.fail("image", image, "a file name");
@@ -226,10 +230,7 @@ void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_f
   yaml << YAML::Key << "negate" << YAML::Value << 0;
   yaml << YAML::Key << "occupied_thresh" << YAML::Value << "0.65";
   yaml << YAML::Key << "free_thresh" << YAML::Value << "0.196" << YAML::EndMap;
-  std::ofstream stream(yaml_file);
-  stream << yaml.c_str() << '\n';
-  stream.flush();
-  if (!stream) throw IoError(yaml_file.string(), 0, "the map's YAML file cannot be written");
+  write_file(yaml_file, yaml.c_str() + std::string("\n"));
 }
 
 }  // namespace slalom::maps

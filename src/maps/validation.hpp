@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::maps::detail {
 
 /// Throws std::invalid_argument that names field, value and rule unless `holds`.
@@ -20,7 +22,7 @@ void require(bool holds, const char* field, const T& value, const char* rule) {
 inline int cell_count(const char* field, double length, double resolution) {
   const double count = std::round(length / resolution);
   require(count >= 1 && count <= 20000, field, length, "1 to 20000 cells long");
-  return static_cast<int>(count);
+  return saturate_cast<int>(count);
 }
 
 }  // namespace slalom::maps::detail

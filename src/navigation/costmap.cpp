@@ -7,6 +7,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/maps/pose_limits.hpp"
+
 namespace slalom::navigation {
 
 namespace {
@@ -60,7 +63,7 @@ bool Costmap::update(const maps::OccupancyGrid& grid) noexcept {
   if (grid.width != geometry_.rows || grid.height != geometry_.columns ||
       grid.resolution != geometry_.resolution || grid.cells.size() != transformed_.size())
     return false;
-  if (!std::isfinite(grid.origin.x) || !std::isfinite(grid.origin.y) || grid.origin.yaw != 0) return false;
+  if (!maps::is_plausible(grid.origin) || grid.origin.yaw != 0) return false;
   geometry_.center_x = grid.origin.x + 0.5 * geometry_.length_x();
   geometry_.center_y = grid.origin.y + 0.5 * geometry_.length_y();
   transform_.compute(grid.cells, unknown_ == UnknownCells::obstacle, grid.resolution, transformed_);
@@ -87,34 +90,67 @@ double Costmap::distance(double x, double y) const noexcept {
   return static_cast<double>(*distances_.at(geometry_.row(x), geometry_.column(y)));
 }
 
-bool Costmap::collides(const Footprint& footprint, const maps::Pose& pose) const noexcept {
-  const double slack = 2 * half_diagonal * geometry_.resolution;  // error of the positions in both cells
-  if (distance(pose.x, pose.y) >= footprint.circumscribed_radius() + slack) return false;
-  std::array<maps::Point, Footprint::max_vertices> corners;
+/// Whether the body overlaps an obstacle cell at `to`, or a vertex enters one on its straight way from there
+/// where the body is at `from`.
+bool Costmap::touches(const Footprint& footprint, const maps::Pose& from,
+                      const maps::Pose& to) const noexcept {
+  struct Segment {
+    maps::Point begin, end;
+  };
+  std::array<Segment, 2 * Footprint::max_vertices> segments;
   const std::span<const maps::Point> vertices = footprint.vertices();
+  const std::size_t n = vertices.size();
   maps::Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   maps::Point high{-low.x, -low.y};
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    corners[i] = maps::transform(pose, vertices[i]);
-    low = {std::min(low.x, corners[i].x), std::min(low.y, corners[i].y)};
-    high = {std::max(high.x, corners[i].x), std::max(high.y, corners[i].y)};
+  for (std::size_t i = 0; i < n; ++i) {
+    const maps::Point before = maps::transform(from, vertices[i]), here = maps::transform(to, vertices[i]);
+    segments[i].begin = segments[(i + n - 1) % n].end = here;
+    segments[n + i] = {before, here};
+    low = {std::min({low.x, here.x, before.x}), std::min({low.y, here.y, before.y})};
+    high = {std::max({high.x, here.x, before.x}), std::max({high.y, here.y, before.y})};
   }
-  const auto index = [&](double first, double position) {
-    return static_cast<int>(std::floor((first - position) / geometry_.resolution + 0.5));
-  };
+  // Space off the grid is an obstacle, or free.
   const double first_x = geometry_.cell_x(0), first_y = geometry_.cell_y(0);
-  const int row_begin = index(first_x, high.x), row_end = index(first_x, low.x) + 1;
-  const int column_begin = index(first_y, high.y), column_end = index(first_y, low.y) + 1;
-  for (int row = row_begin; row < row_end; ++row)
-    for (int column = column_begin; column < column_end; ++column) {
-      const bool inside = row >= 0 && column >= 0 && row < geometry_.rows && column < geometry_.columns;
-      if (inside ? !is_obstacle(row, column) : unknown_ != UnknownCells::obstacle) continue;
+  const auto cells = [&](double first, double position) {
+    return (first - position) / geometry_.resolution + 0.5;
+  };
+  const int row_begin = saturate_cast<int>(std::floor(cells(first_x, high.x))),
+            row_last = saturate_cast<int>(std::ceil(cells(first_x, low.x)) - 1),
+            column_begin = saturate_cast<int>(std::floor(cells(first_y, high.y))),
+            column_last = saturate_cast<int>(std::ceil(cells(first_y, low.y)) - 1);
+  if (unknown_ == UnknownCells::obstacle &&
+      (row_begin < 0 || column_begin < 0 || row_last >= geometry_.rows || column_last >= geometry_.columns))
+    return true;
+  for (int row = std::max(row_begin, 0); row <= std::min(row_last, geometry_.rows - 1); ++row)
+    for (int column = std::max(column_begin, 0); column <= std::min(column_last, geometry_.columns - 1);
+         ++column) {
+      if (!is_obstacle(row, column)) continue;
       const maps::Point middle{geometry_.cell_x(row), geometry_.cell_y(column)};
-      for (std::size_t i = 0; i < vertices.size(); ++i)
-        if (enters_square(corners[i], corners[(i + 1) % vertices.size()], middle, geometry_.resolution / 2))
-          return true;
-      if (footprint.contains(maps::inverse_transform(pose, middle))) return true;
+      for (std::size_t i = 0; i < 2 * n; ++i)
+        if (enters_square(segments[i].begin, segments[i].end, middle, geometry_.resolution / 2)) return true;
+      if (footprint.contains(maps::inverse_transform(to, middle))) return true;
     }
+  return false;
+}
+
+bool Costmap::collides(const Footprint& footprint, const maps::Pose& from,
+                       const maps::Pose& to) const noexcept {
+  if (!maps::is_plausible(from) || !maps::is_plausible(to)) return true;
+  const double slack = 2 * half_diagonal * geometry_.resolution;  // error of the positions in both cells
+  const double turn = maps::wrap_angle(to.yaw - from.yaw), way = std::hypot(to.x - from.x, to.y - from.y);
+  const maps::Point middle{0.5 * (from.x + to.x), 0.5 * (from.y + to.y)};
+  if (distance(middle.x, middle.y) >= footprint.circumscribed_radius() + 0.5 * way + slack) return false;
+  // In each part a vertex moves by at most a cell.
+  const double longest = way + footprint.circumscribed_radius() * std::abs(turn);
+  const int parts = std::max(saturate_cast<int>(std::ceil(longest / geometry_.resolution)), 1);
+  maps::Pose before = from;
+  for (int k = 1; k <= parts; ++k) {
+    const double share = static_cast<double>(k) / parts;
+    const maps::Pose here{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y),
+                          from.yaw + share * turn};
+    if (touches(footprint, before, here)) return true;
+    before = here;
+  }
   return false;
 }
 

@@ -12,13 +12,15 @@
 #include "navigation/others.hpp"
 #include "navigation/path_ahead.hpp"
 #include "navigation/path_guide.hpp"
+#include "slalom/core/numbers/count.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "slalom/navigation/path_planner.hpp"
 
 namespace slalom::navigation {
 
 namespace {
 
-constexpr double largest = 1e6;        // m from the origin, of positions
+constexpr double longest_path = 1e6;   // steps of a path
 constexpr double search_period = 0.1;  // s between searches while there is no way
 constexpr double nearest_unseen =
     0.5;  // m before a closed place, beside those of braking, at which its end is seen
@@ -30,10 +32,6 @@ constexpr double retry_after = 10;      // s without a way after which ways that
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
 constexpr double max_period = 0.2;      // s for which the robot brakes in one command
 constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
-
-bool finite(const maps::Pose& pose) {
-  return std::abs(pose.x) <= largest && std::abs(pose.y) <= largest && std::abs(pose.yaw) <= largest;
-}
 
 bool plausible(const Velocity& v) {
   return std::abs(v.forward) <= Velocity::largest && std::abs(v.left) <= Velocity::largest &&
@@ -117,9 +115,7 @@ void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
   if (path.empty()) throw std::invalid_argument("path: no poses, must have at least one");
   double length = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    if (!finite(path[i]))
-      throw std::invalid_argument("path: pose " + std::to_string(i) +
-                                  " must be finite and within 1e6 m of the origin");
+    if (!maps::is_plausible(path[i])) maps::check_pose("path: pose " + std::to_string(i), path[i]);
     if (i > 0) length += distance(position(path[i]), position(path[i - 1]));
   }
   if (guide_.empty() ||
@@ -129,8 +125,8 @@ void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
   }
   // A detour is at most as long as a path of the search, and goes on along the path.
   const double longest = length + 2 * static_cast<double>(PathPlanner::max_points) * PathPlanner::spacing;
-  guide_.reserve(longest);
-  const std::size_t most = guide_.points_for(longest) + path.size();
+  const std::size_t most = count(longest, detail::PathGuide::spacing, longest_path, "path") + path.size() + 8;
+  guide_.reserve(most);
   points_.reserve(most);
   chosen_.reserve(most);
   points_.clear();
@@ -260,12 +256,12 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   const std::span<const maps::Pose> plan = model_->plan();
   const double speed = std::hypot(velocity.forward, velocity.left);
   const double braking = speed / (options_.base.max_acceleration * options_.time_step);
-  const std::size_t last =
-      std::min(plan.size() - 1, static_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
+  const std::size_t last = std::min(
+      plan.size() - 1, saturate_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
   if (others_.meet(plan, last)) return true;
   if (costmap.collides(footprint_, plan.front())) return false;
   for (std::size_t i = 1; i <= last; ++i)
-    if (costmap.collides(footprint_, plan[i])) return true;
+    if (costmap.collides(footprint_, plan[i - 1], plan[i])) return true;
   return false;
 }
 
@@ -289,7 +285,8 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
 NavigationResult Navigator::Implementation::update(const maps::Pose& pose, const Velocity& velocity,
                                                    const Costmap& costmap, double elapsed,
                                                    std::span<const maps::PredictedObstacle> others) noexcept {
-  if (!finite(pose) || !plausible(velocity) || !(elapsed >= 0) || !std::isfinite(elapsed) || !fits(costmap))
+  if (!maps::is_plausible(pose) || !plausible(velocity) || !(elapsed >= 0) || !std::isfinite(elapsed) ||
+      !fits(costmap))
     return stand(NavigationStatus::bad_input, velocity, std::isfinite(elapsed) ? elapsed : 0);
   since_solve_ += elapsed;
   if (guide_.empty() || costmap.geometry().row(pose.x) < 0 || costmap.geometry().column(pose.y) < 0)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::navigation::detail {
 
 namespace {
@@ -68,7 +70,7 @@ bool Others::are_near(const maps::Point& robot) const noexcept {
 std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, double step) const noexcept {
   std::optional<ClosedPlace> first;
   std::size_t last =
-      std::min(path.size(), static_cast<std::size_t>(foresight * speed_ / std::max(step, 1e-3)));
+      std::min(path.size(), saturate_cast<std::size_t>(foresight * speed_ / std::max(step, 1e-3)));
   for (const maps::PredictedObstacle* const other : obstacles_.taken()) {
     const int likeliest = other->likeliest();
     const auto pose_at = [&](std::size_t i) {

@@ -40,7 +40,7 @@ void PathGuide::set(std::span<const maps::Point> points, const maps::Pose& goal)
   const auto at = [&](std::size_t i) { return i < points.size() ? points[i] : end; };
   double length = 0;
   for (std::size_t i = 0; i < points.size(); ++i) length += distance(at(i), at(i + 1));
-  const auto parts = static_cast<std::size_t>(std::max(2.0, std::ceil(length / spacing)));
+  const auto parts = saturate_cast<std::size_t>(std::max(2.0, std::ceil(length / spacing)));
   goal_ = goal;
   step_ = length / static_cast<double>(parts);
   nearest_ = 0;
@@ -67,7 +67,8 @@ void PathGuide::set(std::span<const maps::Point> points, const maps::Pose& goal)
 
 void PathGuide::advance(const maps::Point& robot) noexcept {
   const double step = std::max(step_, 1e-3);
-  const auto back = static_cast<std::size_t>(behind / step), forth = static_cast<std::size_t>(ahead / step);
+  const auto back = saturate_cast<std::size_t>(behind / step),
+             forth = saturate_cast<std::size_t>(ahead / step);
   const std::size_t first = nearest_ > back ? nearest_ - back : 0,
                     last = std::min(nearest_ + forth, path_.size() - 1);
   double least = distance(robot, {path_[nearest_].x, path_[nearest_].y});
@@ -82,9 +83,9 @@ void PathGuide::advance(const maps::Point& robot) noexcept {
 void PathGuide::write(const maps::Point& robot, NavigationMaps& maps) noexcept {
   // A window that ends where plans cannot come; each of its points holds its index.
   const double step = std::max(step_, 1e-3);
-  const auto back = static_cast<std::size_t>(behind / step);
+  const auto back = saturate_cast<std::size_t>(behind / step);
   const std::size_t first = nearest_ > back ? nearest_ - back : 0;
-  const auto wanted = static_cast<std::size_t>((reach_ + margin + behind) / step) + 3;
+  const auto wanted = saturate_cast<std::size_t>((reach_ + margin + behind) / step) + 3;
   const std::size_t available = std::min(wanted, path_.size() - first);
   const std::size_t stride = (available + max_points - 1) / max_points;
   window_.clear();
@@ -102,7 +103,7 @@ void PathGuide::write(const maps::Point& robot, NavigationMaps& maps) noexcept {
     const float* from = field_.cells().at(row, 0);
     float* to = cells_.at(row, 0);
     for (int column = 0; column < geometry.columns; ++column, from += 4, to += 4) {
-      const auto index = static_cast<std::size_t>(from[2]);
+      const auto index = saturate_cast<std::size_t>(from[2]);
       to[0] = static_cast<float>(window_[index].x - robot.x);
       to[1] = static_cast<float>(window_[index].y - robot.y);
       to[2] = from[1];

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/navigation/navigation_problem.hpp"
@@ -21,8 +22,8 @@ class PathGuide {
   /// Takes a path through these points, with points at a constant distance, which ends at `goal`. There must
   /// be at least one point; more points than `reserve` was called for allocate.
   void set(std::span<const maps::Point> points, const maps::Pose& goal) noexcept;
-  /// Makes room for paths of this length (m).
-  void reserve(double length) { path_.reserve(static_cast<std::size_t>(length / spacing) + 8); }
+  /// Makes room for paths of so many points.
+  void reserve(std::size_t count) { path_.reserve(count); }
   void clear() noexcept { path_.clear(); }
   bool empty() const noexcept { return path_.empty(); }
   /// The goal and the direction at each point; the last point is the goal.
@@ -35,7 +36,7 @@ class PathGuide {
   double step() const noexcept { return step_; }             ///< m, between points
   /// The number of points that a length (m) of path takes, rounded up.
   std::size_t points_for(double length) const noexcept {
-    return static_cast<std::size_t>(length / std::max(step_, 1e-3)) + 1;
+    return saturate_cast<std::size_t>(length / std::max(step_, 1e-3)) + 1;
   }
   /// Length of the path from the nearest point on, m.
   double remaining() const noexcept {

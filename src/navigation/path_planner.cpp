@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::navigation {
 
 namespace {
@@ -25,7 +27,7 @@ void visit_around(const maps::GridGeometry& geometry, const maps::Point& point, 
                   Visit&& visit) {
   const maps::Point corner = corner_of(geometry);
   const auto index = [&](double offset, int most) {
-    return static_cast<int>(std::clamp(std::floor(offset / geometry.resolution), 0.0, most - 1.0));
+    return saturate_cast<int>(std::clamp(std::floor(offset / geometry.resolution), 0.0, most - 1.0));
   };
   const int first_column = index(point.x - radius - corner.x, geometry.rows),
             last_column = index(point.x + radius - corner.x, geometry.rows),

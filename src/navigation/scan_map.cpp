@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/laser_scan.hpp"
 
 namespace slalom::navigation {
@@ -16,7 +17,7 @@ void visit_cell(const maps::OccupancyGrid& grid, const maps::Point& at, Visit&& 
   const double column = std::floor((at.x - grid.origin.x) / grid.resolution),
                row = std::floor((at.y - grid.origin.y) / grid.resolution);
   if (column >= 0 && column < grid.width && row >= 0 && row < grid.height)
-    visit(static_cast<int>(column), static_cast<int>(row));
+    visit(saturate_cast<int>(column), saturate_cast<int>(row));
 }
 
 }  // namespace
@@ -45,7 +46,7 @@ void ScanMap::add(const RangeScan& scan) noexcept {
 /// Sets the cells along a beam free, or occupied where the map has a wall.
 void ScanMap::clear(const maps::Point& from, double cosine, double sine, double range) noexcept {
   const double step = 0.5 * known_.resolution;
-  const int steps = static_cast<int>(std::floor(std::fmin(range / step, 1e6)));
+  const int steps = saturate_cast<int>(std::floor(std::fmin(range / step, 1e6)));
   for (int k = 0; k <= steps; ++k)
     visit_cell(seen_, {from.x + k * step * cosine, from.y + k * step * sine}, [&](int column, int row) {
       const bool is_wall = known_.at(column, row) == maps::Occupancy::occupied;

@@ -5,10 +5,13 @@
 #include <cstddef>
 #include <limits>
 
+#include "slalom/core/numbers/count.hpp"
+
 namespace slalom::tracking {
 namespace {
 
 constexpr double spacing = 0.1;        // m, about
+constexpr double most_steps = 1e6;     // steps of a course
 constexpr double curvature_arm = 0.5;  // m, over which yaws are compared
 
 double distance(const maps::ReferencePoint& a, const maps::ReferencePoint& b) {
@@ -27,7 +30,7 @@ CourseLine::CourseLine(std::span<const maps::ReferencePoint> points) {
   for (std::size_t i = 0; i + 1 < n + closed_; ++i)
     arcs.push_back(arcs.back() + distance(points[i], points[(i + 1) % n]));
   length_ = arcs.back();
-  const auto count = static_cast<std::size_t>(std::max(std::ceil(length_ / spacing), 3.0));
+  const std::size_t count = std::max<std::size_t>(slalom::count(length_, spacing, most_steps, "course"), 3);
   step_ = length_ / static_cast<double>(closed_ ? count : count - 1);
   std::size_t i = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -39,7 +42,7 @@ CourseLine::CourseLine(std::span<const maps::ReferencePoint> points) {
         {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0, 0, a.speed + t * (b.speed - a.speed)});
   }
   // Yaws and curvatures from the points themselves: the yaws of a path may be anything.
-  const auto arm = static_cast<std::size_t>(std::clamp(curvature_arm / step_, 1.0, 1e3));
+  const auto arm = saturate_cast<std::size_t>(std::clamp(curvature_arm / step_, 1.0, 1e3));
   const auto neighbour = [&](std::size_t k, std::size_t ahead, bool backwards) {
     if (closed_) return backwards ? (k + count - ahead % count) % count : (k + ahead) % count;
     return backwards ? k - std::min(k, ahead) : std::min(k + ahead, count - 1);
@@ -64,7 +67,7 @@ CourseLine::Point CourseLine::at(double arc) const noexcept {
   } else {
     place = std::clamp(place, 0.0, static_cast<double>(count - 1));
   }
-  const std::size_t i = std::min(static_cast<std::size_t>(place), count - 1);
+  const std::size_t i = std::min(saturate_cast<std::size_t>(place), count - 1);
   const Point &a = points_[i], &b = points_[closed_ ? (i + 1) % count : std::min(i + 1, count - 1)];
   const double t = place - static_cast<double>(i);
   const auto mix = [t](double from, double to) { return from + t * (to - from); };

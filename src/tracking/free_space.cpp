@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::tracking {
 namespace {
 
@@ -24,7 +26,7 @@ Sight sight(const Readings& scan, const maps::Point& place, double margin) noexc
   const maps::Point at = maps::inverse_transform(scan.sensor(), place);
   const double distance = std::hypot(at.x, at.y), slack = margin + margin_angle * distance;
   const int beam = scan.beam_at(std::atan2(at.y, at.x));
-  const int about = static_cast<int>(
+  const int about = saturate_cast<int>(
       std::clamp(std::ceil(margin / (std::max(distance, margin) * scan.increment())), 1.0, max_window));
   if (beam < about || beam + about >= scan.beams()) return {};
   Sight seen;

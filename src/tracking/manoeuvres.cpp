@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::tracking {
 namespace {
 
@@ -33,7 +35,7 @@ Motion motion_of(const TrackedObject& object, const CourseLine& course,
 }
 
 void Way::advance(double duration) noexcept {
-  const int pieces = std::max(static_cast<int>(std::ceil(duration / max_piece - 1e-9)), 1);
+  const int pieces = std::max(saturate_cast<int>(std::ceil(duration / max_piece - 1e-9)), 1);
   const double piece = duration / pieces;
   for (int i = 0; i < pieces; ++i) {
     if (now_.on_course) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/distance_field.hpp"
 
 namespace slalom::tracking {
@@ -68,7 +69,7 @@ MapBackground::Slope MapBackground::slope(const maps::Point& point) const noexce
   const double x = (cosine_ * dx + sine_ * dy) / resolution_ - 0.5,
                y = (-sine_ * dx + cosine_ * dy) / resolution_ - 0.5;  // in cells, from the first centre
   if (!(x >= 0 && y >= 0 && x < width_ - 1 && y < height_ - 1)) return {0, 0, 0};
-  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const int column = saturate_cast<int>(x), row = saturate_cast<int>(y);
   const double u = x - column, v = y - row;
   const double d00 = cell(column, row), d10 = cell(column + 1, row), d01 = cell(column, row + 1),
                d11 = cell(column + 1, row + 1);

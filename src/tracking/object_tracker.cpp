@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "tracking/association.hpp"
 #include "tracking/free_space.hpp"
 #include "tracking/map_background.hpp"
@@ -25,10 +27,6 @@ constexpr double min_gap = 2.5;  // gap, over the distance of neighbouring beams
 constexpr double largest_object = 1.3;  // size over the largest diameter: a larger cluster is not an object
 constexpr int max_scans_at_rest = 12;   // scans without a sign of motion, without a map
 constexpr int max_splits = 4;           // times that a cluster is halved
-
-bool is_finite(const maps::Pose& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
-}
 
 }  // namespace
 
@@ -165,7 +163,7 @@ bool ObjectTracker::Implementation::seen_through(const Tracked& object) const no
   const double distance = std::hypot(middle.x, middle.y), radius = 0.5 * object.width();
   if (distance <= radius) return false;
   const double bearing = std::atan2(middle.y, middle.x), half = std::asin(radius / distance);
-  const int beams = std::max(1, static_cast<int>(2 * half / readings.increment()));
+  const int beams = std::clamp(saturate_cast<int>(2 * half / readings.increment()), 1, readings.beams());
   const double behind = distance + 0.5 * object.length();
   int through = 0, stopped = 0;
   for (int i = 0; i <= beams; ++i) {
@@ -305,7 +303,8 @@ const TrackerOutput& ObjectTracker::update(const TrackerInput& input) noexcept {
     return self.output;
   };
   self.output.clusters = 0;
-  if (!is_finite(input.sensor) || !std::isfinite(input.stamp)) return finish(TrackerStatus::bad_pose);
+  if (!maps::is_plausible(input.sensor) || !std::isfinite(input.stamp))
+    return finish(TrackerStatus::bad_pose);
   double elapsed = self.started ? input.stamp - self.stamp : 0;
   if (self.started && elapsed <= 0 && elapsed > -max_pause) return finish(TrackerStatus::stale);
   const double moved = std::hypot(input.sensor.x - self.last_sensor.x, input.sensor.y - self.last_sensor.y);

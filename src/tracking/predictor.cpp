@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "slalom/core/math.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "tracking/manoeuvres.hpp"
 
 namespace slalom::tracking {
@@ -15,15 +17,14 @@ constexpr double arc_error = 0.15, offset_error = 0.06, speed_error = 0.5;  // m
 constexpr double rise_memory = 0.15;                        // s, time constant of the rise of speed ratios
 constexpr double clear_rise = 0.4, clear_acceleration = 2;  // 1/s, m/s^2, of a car that gets up to speed
 constexpr double longest_gap = 10;  // s between comparisons, after which an object counts as unknown
-constexpr double furthest = 1e7, fastest = 200, largest = 1e3;  // m, m/s, m: of objects
-constexpr double fastest_turn = 1e3, max_variance = 1e6;        // rad/s; of any component
+constexpr double fastest = 200, largest = 1e3;            // m/s, m: of objects
+constexpr double fastest_turn = 1e3, max_variance = 1e6;  // rad/s; of any component
 
 using Weights = std::array<double, manoeuvres>;
 
 /// Whether an object is one that a tracker can report.
 bool plausible(const TrackedObject& object) noexcept {
-  bool holds = std::abs(object.pose.x) <= furthest && std::abs(object.pose.y) <= furthest &&
-               std::abs(object.pose.yaw) <= furthest && std::abs(object.speed) <= fastest &&
+  bool holds = maps::is_plausible(object.pose) && std::abs(object.speed) <= fastest &&
                std::abs(object.yaw_rate) <= fastest_turn && object.length >= 0 && object.length <= largest &&
                object.width >= 0 && object.width <= largest;
   for (const auto& row : object.covariance)
@@ -73,7 +74,7 @@ struct Predictor::Implementation {
   Implementation(const PredictorOptions& o, CourseLine line) : options(o), course(std::move(line)) {
     options.validate();
     const auto most = static_cast<std::size_t>(o.max_objects);
-    times = static_cast<std::size_t>(std::ceil(o.horizon / o.interval - 1e-9)) + 1;
+    times = saturate_cast<std::size_t>(std::ceil(o.horizon / o.interval - 1e-9)) + 1;
     remembered.reserve(most);
     poses.resize(most * maps::PredictedObstacle::max_hypotheses * times);
     predicted.reserve(most);

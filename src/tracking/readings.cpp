@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::tracking {
 namespace {
 
@@ -66,7 +68,7 @@ int Readings::beam_at(double bearing) const noexcept {
   double from_first = std::fmod(bearing - angle_min_, 2 * std::numbers::pi);
   if (from_first < -0.5 * increment_) from_first += 2 * std::numbers::pi;
   const double beam = std::round(from_first / increment_);
-  return beam >= 0 && beam < beams_ ? static_cast<int>(beam) : -1;
+  return beam >= 0 && beam < beams_ ? saturate_cast<int>(beam) : -1;
 }
 
 bool Readings::ends_at(int beam, int step, double min_incidence, double deviation) const noexcept {

@@ -1,8 +1,10 @@
-// Controllers and planners as state machines: bytes choose a model, a method and options, then the calls.
+// Controllers, planners, navigators and trackers as state machines: bytes choose options, then the calls.
 #include "fuzz/target.hpp"
+#include "navigation/navigator_calls.hpp"
 #include "solvers/controller_calls.hpp"
 #include "solvers/solver_contract.hpp"
 #include "support/random_bytes.hpp"
+#include "tracking/tracker_calls.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
 namespace slalom::fuzz {
@@ -25,6 +27,27 @@ const Target planner_target(
       testing::Adversary adversary(bytes);
       testing::PlannerTally tally;
       testing::call_planner(adversary, 40, tally);
+      return tally.updates > 0;
+    });
+
+const Target navigator_target(
+    "navigator", 4096, []() -> Seeds { return random_bytes(20, 1500); },
+    [](std::string_view bytes) {
+      testing::Adversary adversary(bytes);
+      navigation::NavigatorTally tally;
+      const navigation::Hall hall(adversary);
+      const double front = adversary.within(0.05, 1), width = adversary.within(0.05, 2);
+      const auto footprint = navigation::Footprint::rectangle(front, adversary.within(0.05, 1), width);
+      navigation::call_navigator(adversary, hall, tally, footprint);
+      return tally.updates > 0;
+    });
+
+const Target tracker_target(
+    "tracker", 4096, []() -> Seeds { return random_bytes(20, 1500); },
+    [](std::string_view bytes) {
+      testing::Adversary adversary(bytes);
+      tracking::TrackerTally tally;
+      tracking::call_tracker(adversary, tally);
       return tally.updates > 0;
     });
 

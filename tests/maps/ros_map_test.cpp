@@ -53,6 +53,19 @@ TEST_F(RosMap, RowZeroIsTheBottomOfTheImage) {
   EXPECT_EQ(grid.cells, (std::vector<Occupancy>{f, f, o, o, u, f}));
 }
 
+TEST_F(RosMap, TheOriginAndTheSizeOfACellHaveLimits) {
+  write("map.pgm", pgm);
+  for (const char* origin : {"[1e16, 0, 0]", "[0, -1e300, 0]", "[1.1e7, 0, 0]", "[0, 0, 2e6]"})
+    expect_error(map("image: map.pgm\nresolution: 0.05\norigin: " + std::string(origin) + "\n" + thresholds),
+                 3,
+                 std::string("origin: ") + origin +
+                     "`: must be [x, y, yaw] (m, m, rad), each coordinate within 1e7 m");
+  for (const char* size : {"1e-9", "1e-300", "1001"})
+    expect_error(
+        map("image: map.pgm\nresolution: " + std::string(size) + "\norigin: [0, 0, 0]\n" + thresholds), 2,
+        "within 1e-4 to 1000");
+}
+
 TEST_F(RosMap, NegateSwapsBlackAndWhite) {
   write("map.pgm", pgm);
   const OccupancyGrid grid =

@@ -90,6 +90,36 @@ TEST(Costmap, CollisionsAreExact) {
   EXPECT_LT(collisions, 130);
 }
 
+TEST(Costmap, CollidesWhereNoPoseCanBe) {
+  const Footprint body = Footprint::rectangle(0.3, 0.2, 0.36);
+  const double nan = std::nan("");
+  for (const UnknownCells unknown : {UnknownCells::obstacle, UnknownCells::priced}) {
+    const Costmap costmap = costmap_of(free_grid(0, 0, 4, 3), unknown);
+    EXPECT_FALSE(costmap.collides(body, {2, 1.5, 0}));
+    for (const Pose& pose :
+         {Pose{2, 1.5, nan}, {nan, 1.5, 0}, {1e9, 1.5, 0}, {2, -1.3e8, 0}, {2, 1.5, 1e300}})
+      EXPECT_TRUE(costmap.collides(body, pose)) << pose.x << ", " << pose.y << ", " << pose.yaw;
+    EXPECT_EQ(costmap.collides(body, {9e6, 1.5, 0}), unknown == UnknownCells::obstacle);
+  }
+}
+
+TEST(Costmap, SeesWhatABodyTouchesBetweenTwoPoses) {
+  maps::OccupancyGrid grid = free_grid(0, 0, 4, 4);
+  fill(grid, 2, 1, 2.04, 1.04);  // one cell
+  const Costmap costmap = costmap_of(grid);
+  const Footprint body = Footprint::rectangle(0.3, 0.2, 0.36);
+  const Pose before{1, 1, 0}, behind{3, 1, 0}, beside{1, 1.5, 0}, far{3, 1.5, 0};
+  EXPECT_FALSE(costmap.collides(body, before) || costmap.collides(body, behind));
+  EXPECT_TRUE(costmap.collides(body, before, behind));
+  EXPECT_FALSE(costmap.collides(body, beside, far));
+  // A corner sweeps over the cell while the body turns, past half a turn too.
+  const Pose turning{1.65, 1.02, 0.5}, turned{1.65, 1.02, -0.5};
+  const Footprint narrow = Footprint::rectangle(0.36, 0.2, 0.1);
+  EXPECT_FALSE(costmap.collides(narrow, turning) || costmap.collides(narrow, turned));
+  EXPECT_TRUE(costmap.collides(narrow, turning, turned));
+  EXPECT_TRUE(costmap.collides(narrow, turning, {1.65, 1.02, -0.5 + 6.283185307}));
+}
+
 TEST(Costmap, RolloutsMissNoCollisionDeeperThanHalfACell) {
   maps::OccupancyGrid grid = free_grid(-2, 10, 5, 4);
   RandomStream places({5, 0});

@@ -13,6 +13,7 @@
 #include "slalom/core/random.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "support/allocations.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -230,6 +231,9 @@ TEST(Navigator, RejectsInvalidOptionsAndPaths) {
   EXPECT_THROW(navigator.set_path({}), std::invalid_argument);
   const maps::Pose path[] = {{0, 0, 0}, {std::numeric_limits<double>::infinity(), 0, 0}};
   EXPECT_THROW(navigator.set_path(path), std::invalid_argument);
+  const maps::Pose apart[] = {{0, 0, 0}, {1e6, 0, 0}};
+  EXPECT_EQ(message_of([&] { navigator.set_path(apart); }),
+            "path: 1000400 m in steps of 0.05 m must be at most 50000 m, 1e+06 steps");
 }
 
 TEST(Navigator, UpdatesAllocateNothing) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/allocations.hpp"
+#include "support/thrown_words.hpp"
 #include "tracking/course_line.hpp"
 #include "tracking/manoeuvres.hpp"
 
@@ -235,6 +236,9 @@ TEST(Predictor, AllocatesNothingAndKeepsToItsCapacity) {
 TEST(Predictor, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(Predictor(PredictorOptions{.interval = 0}), std::invalid_argument);
   EXPECT_THROW(Predictor(std::vector<maps::ReferencePoint>(2)), std::invalid_argument);
+  const std::vector<maps::ReferencePoint> far{
+      {1e6, 0, 0, 1}, {0, 1e6, 0, 1}, {-1e6, 0, 0, 1}, {0, -1e6, 0, 1}};
+  EXPECT_EQ(message_of([&] { Predictor{far}; }).substr(0, 8), "course: ");
 }
 
 }  // namespace

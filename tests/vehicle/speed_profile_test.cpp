@@ -38,6 +38,7 @@ TEST(SpeedProfile, RejectsLimitsThatAreNotPositive) {
   EXPECT_THROW(speed_profile(curvature, 0.1, {5, 4, std::nan(""), 3}), std::invalid_argument);
   EXPECT_THROW(speed_profile(curvature, 0.1, {5, 4, 2, INFINITY}), std::invalid_argument);
   EXPECT_THROW(speed_profile(curvature, 0, {5, 4, 2, 3}), std::invalid_argument);
+  EXPECT_THROW(speed_profile({0.1, std::nan(""), 0.1}, 0.1, {5, 4, 2, 3}), std::invalid_argument);
 }
 
 }  // namespace

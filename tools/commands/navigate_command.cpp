@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
-#include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "src/evaluation/json.hpp"
@@ -72,10 +71,7 @@ std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
 
 /// Writes the results so far to the files, and at the end to standard output where that is wanted.
 void write_results(const NavigateArguments& arguments, const std::vector<RoomSeries>& all, bool is_last) {
-  if (!arguments.table.empty()) {
-    std::ofstream file(arguments.table);
-    if (!(file << markdown_table(all) << std::flush)) throw IoError(arguments.table, 0, "cannot be written");
-  }
+  if (!arguments.table.empty()) write_file(arguments.table, markdown_table(all));
   if (arguments.json.empty() || (arguments.json == "-" && !is_last)) return;
   Json rows = Json::array();
   for (const RoomSeries& series : all) rows.push_back(summary_of(series));

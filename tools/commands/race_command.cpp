@@ -103,10 +103,17 @@ class RaceJob {
       const std::string label = std::to_string(race_.laps.size()) + (lap.standing ? " standing" : " flying");
       print_lap(words_, label, lap, race_.grip);
     };
-    if (arguments_.learn) return drive_and_learn(on_step, on_lap, interrupt.raised());
-    evaluation::drive_race(
-        setup_, {.laps = arguments_.race.laps, .seed = arguments_.race.seed, .standing = arguments_.standing},
-        {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
+    if (arguments_.learn) {
+      drive_and_learn(on_step, on_lap, interrupt.raised());
+    } else {
+      evaluation::drive_race(
+          setup_,
+          {.laps = arguments_.race.laps, .seed = arguments_.race.seed, .standing = arguments_.standing},
+          {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
+    }
+    if (!interrupt.raised()) return;
+    progress.clear();
+    std::fprintf(words_, "interrupted after %zu of %d laps\n", race_.laps.size(), arguments_.race.laps);
   }
 
   /// Throws CommandLineError where this configuration cannot learn.

@@ -2,11 +2,10 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <span>
 
-#include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
@@ -112,10 +111,7 @@ int replay_recording(const ReplayArguments& arguments) {
     std::fprintf(stderr, "note: %s was cut: its last %llu bytes cannot be read\n", arguments.source.c_str(),
                  static_cast<unsigned long long>(lost));
   if (!arguments.html.empty()) {
-    std::ofstream stream(arguments.html, std::ios::binary);
-    stream << page;
-    stream.close();
-    if (!stream) throw IoError(arguments.html, 0, "cannot be written");
+    write_file(arguments.html, page);
     std::printf("replay: %s, opens in any browser\n", arguments.html.c_str());
     return 0;
   }

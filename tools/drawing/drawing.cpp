@@ -4,9 +4,9 @@
 #include <cairo-svg.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -77,9 +77,7 @@ void save(const Drawing& drawing, const std::filesystem::path& file, double scal
                             : ending == ".pdf"
                                 ? document(drawing, file.string(), cairo_pdf_surface_create_for_stream)
                                 : to_png(drawing, file.string(), scale);
-  std::ofstream stream(file, std::ios::binary);
-  stream << bytes;
-  if (!stream.flush()) throw IoError(file.string(), 0, "cannot be written");
+  write_file(file, bytes);
 }
 
 }  // namespace slalom::tools

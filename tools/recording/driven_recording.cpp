@@ -9,7 +9,9 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
 #include "tools/recording/ros_bag.hpp"
 #include "view/recording/mcap_reader.hpp"
 
@@ -139,16 +141,20 @@ std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& record
 vehicle::GuideLine driven_line(const std::string& file) {
   vehicle::GuideLine line;
   line.closed = false;
+  std::vector<double> times;  // s, of the points
   double driven = 0, nearest = meeting;
   std::size_t lap = 0;  // points of the first lap, if one was driven
   for (const vehicle::DrivenSample& sample : read_driven_samples(file)) {
-    if (!std::isfinite(sample.x) || !std::isfinite(sample.y)) continue;
+    if (std::isnan(sample.x) || std::isnan(sample.y)) continue;
+    if (!maps::is_plausible(maps::Point{sample.x, sample.y}))
+      throw IoError(file, 0, formatted("at %.2f s: the pose: ", sample.time) + maps::PoseLimits::rule);
     if (!line.points.empty()) {
       const double way = std::hypot(sample.x - line.points.back().x, sample.y - line.points.back().y);
       if (way < spacing) continue;
       driven += way;
     }
     line.points.push_back({sample.x, sample.y});
+    times.push_back(sample.time);
     const maps::Point& first = line.points.front();
     const double apart = std::hypot(sample.x - first.x, sample.y - first.y);
     if (driven < min_lap) continue;
@@ -163,6 +169,9 @@ vehicle::GuideLine driven_line(const std::string& file) {
     line.closed = true;
     line.points.resize(lap - (nearest < spacing ? 1 : 0));
   }
+  if (const std::size_t jump = vehicle::find_jump(line.points); jump > 0)
+    throw IoError(
+        file, 0, "at " + formatted("%.2f s, the pose ", times[jump]) + vehicle::jump_text(line.points, jump));
   if (line.points.size() < 4) throw IoError(file, 0, "must be the recording of a drive of at least 0.4 m");
   return line;
 }

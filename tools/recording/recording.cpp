@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 #include "slalom/core/version.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/live_view/view_setup.hpp"
@@ -19,7 +20,7 @@ namespace {
 /// Closes the file of a recording. Throws IoError if anything could not be written.
 void close_file(std::ofstream& stream, const std::string& file) {
   stream.close();
-  if (!stream) throw IoError(file, 0, "cannot be written completely; the disk may be full");
+  if (!stream) throw cannot_write(file);
 }
 
 /// JSON lines: settings, then for each lap its start, the inputs and outputs of every control step, and its
@@ -29,7 +30,7 @@ class JsonRecording : public Recording {
   /// Throws IoError.
   JsonRecording(const std::string& file, const Json& settings)
       : file_(file), stream_(file, std::ios::binary) {
-    if (!stream_) throw IoError(file, 0, "cannot be written");
+    if (!stream_) throw cannot_write(file);
     write({{"type", "recording"}, {"version", 1}, {"program", version()}, {"settings", settings}});
   }
 
@@ -151,7 +152,7 @@ class McapRecording : public Recording {
         control_period_(facts.control_period),
         stream_(file, std::ios::binary),
         recorder_(stream_, recorder_options(facts)) {
-    if (!stream_) throw IoError(file, 0, "cannot be written");
+    if (!stream_) throw cannot_write(file);
     recorder_.add_text(view::hello_message(*environment_, choices_, 0, control_period_));
     recorder_.add_course(view::encode_scene(*environment_));
     recorder_.add_text(view::options_message({.names = state_.names,

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 #include "slalom/core/version.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/report/report_text.hpp"
@@ -132,10 +132,7 @@ void write_report(const Report& report, const fs::path& folder) {
   fs::create_directories(pictures, error);
   if (error) throw IoError(pictures.string(), 0, "cannot be created: " + error.message());
   const auto figures = report_charts(report, pictures);
-  const fs::path file = folder / "report.html";
-  std::ofstream stream(file, std::ios::binary);
-  stream << page(report, figures);
-  if (!stream.flush()) throw IoError(file.string(), 0, "cannot be written");
+  write_file(folder / "report.html", page(report, figures));
 }
 
 }  // namespace slalom::tools

@@ -9,6 +9,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/version.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "slalom/vehicle/course/course_check.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
@@ -105,11 +106,13 @@ maps::Pose parse_pose(const char* option, const std::string& text) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto [stopped, error] = std::from_chars(at, end, values[i]);
     const bool separated = i + 1 < values.size() ? stopped < end && *stopped == ',' : stopped == end;
-    if (error != std::errc{} || !separated || !std::isfinite(values[i]))
-      throw CommandLineError(option, text, "must be x,y,yaw: three finite numbers, in m, m, rad");
+    if (error != std::errc{} || !separated)
+      throw CommandLineError(option, text, "must be x,y,yaw: three numbers, in m, m, rad");
     at = stopped + 1;
   }
-  return {values[0], values[1], values[2]};
+  const maps::Pose pose{values[0], values[1], values[2]};
+  if (!maps::is_plausible(pose)) throw CommandLineError(option, text, maps::PoseLimits::rule);
+  return pose;
 }
 
 fs::path program_folder() {

@@ -1,9 +1,8 @@
 #include "tools/terminal/json_output.hpp"
 
-#include <fstream>
 #include <iostream>
 
-#include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 #include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
@@ -14,10 +13,7 @@ void write_json(const Json& result, const std::string& file) {
     std::cout << text << std::flush;
     return;
   }
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw IoError(file, 0, "cannot be written");
+  write_file(file, text);
 }
 
 }  // namespace slalom::tools

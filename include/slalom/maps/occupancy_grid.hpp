@@ -30,7 +30,7 @@ struct OccupancyGrid {
 };
 
 /// Throws std::invalid_argument unless a grid has width x height cells, at least one, a resolution that is
-/// finite and above 0, and a finite origin.
+/// finite and above 0, and an origin within PoseLimits.
 void check_grid(const OccupancyGrid& grid);
 
 }  // namespace slalom::maps

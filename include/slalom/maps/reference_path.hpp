@@ -23,7 +23,7 @@ struct ReferenceCell {
 static_assert(sizeof(ReferenceCell) == 16);
 
 /// Throws std::invalid_argument, naming the point, unless there are 3 to 10 million points, all within
-/// 1e7 m of the origin along each axis, with a finite yaw and a finite speed >= 0.
+/// PoseLimits, with a finite speed >= 0.
 void check_reference_path(std::span<const ReferencePoint> path);
 
 }  // namespace slalom::maps

@@ -30,15 +30,20 @@ class Costmap {
   Costmap(int width, int height, double resolution, UnknownCells unknown = UnknownCells::obstacle);
 
   /// Takes the cells of `grid`. Returns false and changes nothing if its size or resolution is another, its
-  /// origin is not finite, or it is turned (the yaw of its origin is not 0).
+  /// origin is beyond maps::PoseLimits, or it is turned (the yaw of its origin is not 0).
   bool update(const maps::OccupancyGrid& grid) noexcept;
 
   /// The distance (m) from the middle of the cell at a position (m) to that of the nearest obstacle cell: 0
   /// on an obstacle, at most `reach`.
   double distance(double x, double y) const noexcept;
   /// Whether the body at this pose (map frame) overlaps an obstacle cell: exact but for rounding. One look-up
-  /// of the distance decides for most poses.
-  bool collides(const Footprint& footprint, const maps::Pose& pose) const noexcept;
+  /// of the distance decides for most poses. A pose beyond maps::PoseLimits collides.
+  bool collides(const Footprint& footprint, const maps::Pose& pose) const noexcept {
+    return collides(footprint, pose, pose);
+  }
+  /// Whether the body overlaps an obstacle cell at `to`, or on a straight way there from `from` on which it
+  /// turns evenly, the shorter way round.
+  bool collides(const Footprint& footprint, const maps::Pose& from, const maps::Pose& to) const noexcept;
 
   /// The distances of all cells, for rollouts in the map frame.
   GridView<1> distances() const noexcept { return distances_.view(geometry_); }
@@ -50,6 +55,7 @@ class Costmap {
   static constexpr float reach = 100;  ///< m, the largest distance told
 
  private:
+  bool touches(const Footprint& footprint, const maps::Pose& from, const maps::Pose& to) const noexcept;
   bool is_obstacle(int row, int column) const noexcept { return *distances_.at(row, column) == 0; }
 
   UnknownCells unknown_;

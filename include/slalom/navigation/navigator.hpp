@@ -127,7 +127,7 @@ class Navigator {
 
   /// The path to follow, in the map frame: positions from near the robot to the goal. The yaw of the last
   /// pose is the heading at the goal; that of the others is not used. Throws std::invalid_argument unless
-  /// there is at least one pose, and all are finite and within 1e6 m of the origin.
+  /// there is at least one pose, all are within maps::PoseLimits, and the path is at most 49 km long.
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time

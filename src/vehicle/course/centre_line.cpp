@@ -35,7 +35,7 @@ class Draw {
 /// [0, 1] moves the result towards a circle.
 Curve draw_polygon(Draw& draw, const Style& style, double length, double calm) {
   const double wanted = length / style.corner_spacing * draw.uniform(0.8, 1.2) * (1 - 0.5 * calm);
-  const int corners = std::clamp(static_cast<int>(std::lround(wanted)), 4, 60);
+  const int corners = std::clamp(saturate_cast<int>(std::round(wanted)), 4, 60);
   const double depth = style.depth * (1 - calm);
   const double stretch = 1 + draw.uniform(0.0, style.stretch - 1) * (1 - calm);
   const double swirl = draw.uniform(-style.swirl, style.swirl) * (1 - calm);
@@ -67,7 +67,7 @@ double round_corner(Curve& path, maps::Point a, maps::Point b, maps::Point c, do
   const maps::Point begin = b - tangent * u;
   const double side = turn > 0 ? 1.0 : -1.0;
   const maps::Point centre = begin + (side * fitted) * maps::Point{-u.y, u.x};
-  const int pieces = std::max(2, static_cast<int>(std::ceil(std::abs(turn) / 0.1)));
+  const int pieces = std::max(2, saturate_cast<int>(std::ceil(std::abs(turn) / 0.1)));
   for (int k = 0; k <= pieces; ++k) {
     const double angle = turn * k / pieces, s = std::sin(angle), cs = std::cos(angle);
     const maps::Point arm = begin - centre;
@@ -105,7 +105,7 @@ Curve rounded(const Curve& polygon, const std::vector<double>& radii, const Trac
     }
     scale *= options.length / detail::length(path);
   }
-  const int count = static_cast<int>(std::lround(options.length / step));
+  const int count = saturate_cast<int>(std::round(options.length / step));
   Curve curve = resampled(smoothed(evenly(path, 2 * count), smoothing), count);
   const double stretch = options.length / detail::length(curve);
   for (maps::Point& point : curve) point = stretch * point;

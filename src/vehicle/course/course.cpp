@@ -4,8 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "slalom/core/error.hpp"
+#include "slalom/core/numbers/count.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "vehicle/course/course_csv.hpp"
 #include "vehicle/course/course_yaml.hpp"
@@ -120,9 +121,8 @@ void check_on_map(const Course& course, const std::vector<int>& lines, const fs:
   for (std::size_t i = 0; i < course.waypoints.size(); ++i) {
     const Waypoint& point = course.waypoints[i];
     if (on_map(course.map, in_cells(course.map, {point.x, point.y}))) continue;
-    throw IoError(
-        file.string(), lines[i],
-        "waypoint (" + std::to_string(point.x) + ", " + std::to_string(point.y) + ") must be on the map");
+    throw IoError(file.string(), lines[i],
+                  "waypoint (" + to_text(point.x) + ", " + to_text(point.y) + ") must be on the map");
   }
 }
 
@@ -217,7 +217,7 @@ void move_to_local_origin(Course& course) {
 
 void cap_speed(Course& course, double max_speed) {
   if (!(max_speed > 0))
-    throw std::invalid_argument("max_speed: " + std::to_string(max_speed) + " must be above 0 m/s");
+    throw std::invalid_argument("max_speed: " + to_text(max_speed) + " must be above 0 m/s");
   for (Waypoint& point : course.waypoints) point.speed = std::min(point.speed, max_speed);
 }
 
@@ -238,23 +238,22 @@ bool starts_at_first_waypoint(const Course& course) noexcept {
 }
 
 void check_start(const Course& course, const maps::Pose& start, double clearance) {
+  maps::check_pose("start", start);
   const auto refuse = [&](const std::string& rule) {
-    throw std::invalid_argument("start (" + std::to_string(start.x) + ", " + std::to_string(start.y) + ", " +
-                                std::to_string(start.yaw) + ") " + rule);
+    throw std::invalid_argument("start (" + to_text(start.x) + ", " + to_text(start.y) + ", " +
+                                to_text(start.yaw) + ") " + rule);
   };
-  if (!std::isfinite(start.x) || !std::isfinite(start.y) || !std::isfinite(start.yaw))
-    refuse("must be finite");
   const auto& map = course.map;
   const auto [column, row] = in_cells(map, {start.x, start.y});
   if (!on_map(map, {column, row})) refuse("must be on the map");
-  const int reach = static_cast<int>(std::ceil(clearance / map.resolution));
+  const int reach = static_cast<int>(count(clearance, map.resolution, 1e4, "start: clearance"));
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx) {
-      const int x = static_cast<int>(column) + dx, y = static_cast<int>(row) + dy;
+      const int x = saturate_cast<int>(column) + dx, y = saturate_cast<int>(row) + dy;
       const double apart = std::hypot(x + 0.5 - column, y + 0.5 - row) * map.resolution;
       if ((apart <= clearance || (dx == 0 && dy == 0)) && map.contains(x, y) &&
           map.at(x, y) == maps::Occupancy::occupied)
-        refuse("must have a distance to every wall of at least " + std::to_string(clearance) + " m");
+        refuse("must have a distance to every wall of at least " + to_text(clearance) + " m");
     }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::vehicle {
 namespace {
 
@@ -27,8 +29,8 @@ void lower_speeds(Path& path, const PathGeometry& geometry, const SpeedLimits& l
 double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point, double reach) {
   const maps::Point at = maps::inverse_transform(map.origin, point);
   const double column = at.x / map.resolution, row = at.y / map.resolution;
-  const int cells = static_cast<int>(std::ceil(reach / map.resolution)) + 1;
-  const int x0 = static_cast<int>(std::floor(column)), y0 = static_cast<int>(std::floor(row));
+  const int cells = saturate_cast<int>(std::ceil(reach / map.resolution)) + 1;
+  const int x0 = saturate_cast<int>(std::floor(column)), y0 = saturate_cast<int>(std::floor(row));
   double nearest = reach;
   for (int y = y0 - cells; y <= y0 + cells; ++y)
     for (int x = x0 - cells; x <= x0 + cells; ++x) {
@@ -83,7 +85,7 @@ void check_walls(const Course& course, const PathGeometry& path, const CourseChe
   double begin = 0;
   for (std::size_t i = 0; i < segments; ++i) {
     const Waypoint &a = course.waypoints[i], &b = course.waypoints[(i + 1) % n];
-    const int parts = std::max(1, static_cast<int>(std::ceil(path.step[i] / course.map.resolution)));
+    const int parts = std::max(1, saturate_cast<int>(std::ceil(path.step[i] / course.map.resolution)));
     for (int k = 0; k < parts; ++k) {
       const double share = (k + 0.5) / parts, part = path.step[i] / parts;
       const maps::Point place{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};

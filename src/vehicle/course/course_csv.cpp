@@ -7,6 +7,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/yaml_text.hpp"
 
 namespace slalom::vehicle::detail {
@@ -72,6 +73,15 @@ struct Row {
                     "column " + std::string(column_name) + ": '" + std::string(cells[column]) +
                         "' must be a finite number");
     return *value;
+  }
+
+  maps::Point point(std::size_t x, const char* x_name, std::size_t y, const char* y_name) const {
+    const maps::Point point{number(x, x_name), number(y, y_name)};
+    if (!maps::is_plausible(point))
+      throw IoError(file.string(), line.number,
+                    std::string("columns ") + x_name + " and " + y_name + ": '" + std::string(cells[x]) +
+                        "', '" + std::string(cells[y]) + "' must be within 1e7 m of 0");
+    return point;
   }
 };
 
@@ -139,10 +149,8 @@ std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm 
                     std::to_string(cells.size()) + " columns; every row must have " +
                         std::to_string(columns.count) + ", separated by '" + columns.separator + "'");
     const Row row{file, line, cells};
-    Waypoint waypoint;
-    waypoint.x = row.number(columns.x, columns.x_name);
-    waypoint.y = row.number(columns.y, columns.y_name);
-    waypoint.speed = row.number(columns.speed, columns.speed_name);
+    const auto [x, y] = row.point(columns.x, columns.x_name, columns.y, columns.y_name);
+    const Waypoint waypoint{.x = x, .y = y, .speed = row.number(columns.speed, columns.speed_name)};
     if (waypoint.speed < 0)
       throw IoError(file.string(), line.number,
                     "column " + std::string(columns.speed_name) + ": " + std::string(cells[columns.speed]) +
@@ -186,11 +194,12 @@ std::vector<CentreLineRow> read_centre_line_rows(const std::filesystem::path& fi
     widths = cells.size() >= 4;
     first = false;
     const Row row{file, line, cells};
-    CentreLineRow read{row.number(0, "x"), row.number(1, "y"), 0, 0};
+    const auto [x, y] = row.point(0, "x", 1, "y");
+    CentreLineRow read{line.number, x, y, 0, 0};
     if (widths) {
       const double third = row.number(2, "3 (width)"), fourth = row.number(3, "4 (width)");
-      if (third < 0 || fourth < 0)
-        throw IoError(file.string(), line.number, "columns 3 and 4 (widths): must be at least 0");
+      if (third < 0 || fourth < 0 || std::max(third, fourth) > maps::PoseLimits::position)
+        throw IoError(file.string(), line.number, "columns 3 and 4 (widths): must be within 0 to 1e7 m");
       read.left = left_first ? third : fourth;
       read.right = left_first ? fourth : third;
     }
@@ -207,7 +216,7 @@ std::vector<maps::Point> read_points(const std::filesystem::path& file) {
       throw IoError(file.string(), line.number,
                     "1 column; every row must have x and y first, separated by ','");
     const Row row{file, line, cells};
-    points.push_back({row.number(0, "0 (x)"), row.number(1, "1 (y)")});
+    points.push_back(row.point(0, "0 (x)", 1, "1 (y)"));
   }
   if (points.empty()) throw IoError(file.string(), 0, "must have at least one point");
   return points;

@@ -25,6 +25,7 @@ std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm 
 
 /// A row of a centre line.
 struct CentreLineRow {
+  int number = 0;              ///< line of the file
   double x = 0, y = 0;         ///< m
   double right = 0, left = 0;  ///< m, from the line to the walls; 0 if the file has points only
 };

@@ -1,6 +1,7 @@
 #include "vehicle/course/course_yaml.hpp"
 
 #include "slalom/core/error.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/yaml_text.hpp"
 #include "vehicle/yaml_file.hpp"
 
@@ -45,7 +46,9 @@ class Value {
       if (name != "x" && name != "y" && name != "yaw")
         Value(file_, key_ + "." + name, entry.first).reject("unknown key; must be x, y or yaw");
     }
-    return {member("x").number(), member("y").number(), member("yaw").number()};
+    const maps::Pose pose{member("x").number(), member("y").number(), member("yaw").number()};
+    if (!maps::is_plausible(pose)) reject(maps::PoseLimits::rule);
+    return pose;
   }
 
   Value member(const std::string& name) const {

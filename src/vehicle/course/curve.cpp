@@ -48,7 +48,7 @@ Resampling divided(const Curve& curve, bool closed, std::size_t pieces) {
 }
 
 Resampling divided_by_step(const Curve& curve, bool closed, double step) {
-  const auto pieces = static_cast<std::size_t>(std::lround(length(curve, closed) / step));
+  const auto pieces = saturate_cast<std::size_t>(std::round(length(curve, closed) / step));
   return divided(curve, closed, std::max<std::size_t>(8, pieces));
 }
 
@@ -84,7 +84,7 @@ Curve normals(const Curve& curve, bool closed) {
 
 double min_gap(const Curve& curve, double apart) {
   const int n = static_cast<int>(curve.size());
-  const int away = static_cast<int>(std::ceil(apart / (length(curve) / n)));
+  const int away = saturate_cast<int>(std::ceil(apart / (length(curve) / n)));
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < n; ++i)
     for (int j = i + away; j < n && j - i <= n - away; ++j) {

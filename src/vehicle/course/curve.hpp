@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::vehicle::detail {
@@ -65,7 +66,7 @@ Curve normals(const Curve& curve, bool closed = true);
 template <class Value>
 std::vector<Value> smoothed(const std::vector<Value>& values, bool closed, double step, double width) {
   const auto n = static_cast<std::ptrdiff_t>(values.size());
-  const auto reach = std::min(n / 2, static_cast<std::ptrdiff_t>(std::ceil(4 * width / step)));
+  const auto reach = std::min(n / 2, saturate_cast<std::ptrdiff_t>(std::ceil(4 * width / step)));
   std::vector<double> weight, sum;  // sum: of the weights up to each one, on both sides
   for (std::ptrdiff_t k = 0; k <= reach; ++k) {
     const double away = static_cast<double>(k) * step / width;

@@ -24,7 +24,7 @@ SpeedLimits grip_limits(double friction, double top_speed, double acceleration, 
 
 std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
                                   const SpeedLimits& limits) {
-  detail::require_positive("step", step);
+  detail::require(step > 0, "step", step, "above 0");
   const std::size_t n = curvature.size();
   return feasible_speeds(std::vector<double>(n, limits.top_speed), curvature, std::vector<double>(n, step),
                          true, limits);
@@ -32,10 +32,13 @@ std::vector<double> speed_profile(const std::vector<double>& curvature, double s
 
 std::vector<double> feasible_speeds(std::span<const double> given, std::span<const double> curvature,
                                     std::span<const double> step, bool closed, const SpeedLimits& limits) {
-  detail::require_positive(limits);
+  detail::require_plausible(limits);
+  detail::require_finite(curvature, step);
   const std::size_t n = given.size();
-  if (curvature.size() != n || step.size() != n)
-    throw std::invalid_argument("feasible_speeds: speed, curvature and step must have the same size");
+  if (curvature.size() != n)
+    throw std::invalid_argument("feasible_speeds: speed and curvature must have the same size");
+  for (std::size_t i = 0; i < n; ++i)
+    detail::require(given[i] >= 0, "speed " + std::to_string(i), given[i], "at least 0");
   if (n == 0) return {};
   std::vector<double> speed(n);
   for (std::size_t i = 0; i < n; ++i)

@@ -24,12 +24,12 @@ constexpr int curvature_reach = 3;      // rows, reduces the noise of second dif
 
 Curve make_raceline(const Curve& centre_line, const TrackGeneratorOptions& options) {
   // A multiple of 16 halves evenly down to the coarsest level.
-  const int count = 16 * static_cast<int>(std::ceil(options.length / program_step / 16));
+  const int count = 16 * saturate_cast<int>(std::ceil(options.length / program_step / 16));
   Curve line = detail::resampled(centre_line, count);
   const auto offsets = minimum_curvature_offsets(line, 0.5 * options.width - options.wall_margin);
   const Curve normals = detail::normals(line);
   for (int i = 0; i < count; ++i) line[i] = line[i] + offsets[i] * normals[i];
-  return detail::resampled(line, static_cast<int>(std::floor(detail::length(line) / raceline_step)));
+  return detail::resampled(line, saturate_cast<int>(std::floor(detail::length(line) / raceline_step)));
 }
 
 std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, double& lap_time) {

@@ -31,14 +31,14 @@ maps::OccupancyGrid draw_map(const Curve& centre_line, const TrackGeneratorOptio
   maps::OccupancyGrid grid;
   grid.resolution = resolution;
   grid.origin = {left * resolution, bottom * resolution, 0};
-  grid.width = static_cast<int>(std::ceil((high.x + reach + border) / resolution) - left);
-  grid.height = static_cast<int>(std::ceil((high.y + reach + border) / resolution) - bottom);
+  grid.width = saturate_cast<int>(std::ceil((high.x + reach + border) / resolution) - left);
+  grid.height = saturate_cast<int>(std::ceil((high.y + reach + border) / resolution) - bottom);
 
   std::vector<double> squared(static_cast<std::size_t>(grid.width) * grid.height, inf);
   for (std::size_t i = 0; i < centre_line.size(); ++i) {
     const maps::Point a = centre_line[i], b = centre_line[(i + 1) % centre_line.size()];
     const auto index = [&](double v, double first) {
-      return static_cast<int>(std::floor(v / resolution) - first);
+      return saturate_cast<int>(std::floor(v / resolution) - first);
     };
     const int x0 = index(std::min(a.x, b.x) - reach, left), x1 = index(std::max(a.x, b.x) + reach, left);
     const int y0 = index(std::min(a.y, b.y) - reach, bottom), y1 = index(std::max(a.y, b.y) + reach, bottom);

@@ -9,6 +9,7 @@
 #include "localiser_particles.hpp"
 #include "localiser_search.hpp"
 #include "localiser_sensor.hpp"
+#include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -49,11 +50,6 @@ constexpr double trust_unit = 0.3, max_trust = 5, doubt_keeps = 0.93, min_trust 
 constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
 
 /// Whether a pose is a number and as large as that of a car may be.
-bool is_plausible(const maps::Pose& pose) {
-  return std::abs(pose.x) <= LocaliserInput::furthest && std::abs(pose.y) <= LocaliserInput::furthest &&
-         std::abs(pose.yaw) <= LocaliserInput::max_yaw;
-}
-
 /// The pose `to` in the frame of `from`.
 maps::Pose relative(const maps::Pose& from, const maps::Pose& to) {
   const maps::Point p = maps::inverse_transform(from, {to.x, to.y});
@@ -272,7 +268,7 @@ Localiser::Localiser(Localiser&&) noexcept = default;
 Localiser& Localiser::operator=(Localiser&&) noexcept = default;
 
 bool Localiser::start_at(const maps::Pose& pose) noexcept {
-  if (!is_plausible(pose)) return false;
+  if (!maps::is_plausible(pose)) return false;
   implementation_->start_at(pose);
   return true;
 }
@@ -297,7 +293,7 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
   out.relocated = false;
   out.resampled = false;
   out.beams = 0;
-  if (!is_plausible(input.odometry) || !(std::abs(input.stamp) <= LocaliserInput::latest))
+  if (!maps::is_plausible(input.odometry) || !(std::abs(input.stamp) <= LocaliserInput::latest))
     return finish(LocaliserStatus::bad_odometry);
   if (self.has_odometry && input.stamp <= self.stamp && input.stamp > self.stamp - clock_set_back)
     return finish(LocaliserStatus::stale);
@@ -315,7 +311,7 @@ const LocaliserOutput& Localiser::output() const noexcept {
 }
 maps::Pose Localiser::carried_to(const maps::Pose& odometry) const noexcept {
   const Implementation& self = *implementation_;
-  if (!self.has_odometry || !is_plausible(odometry)) return self.output.pose;
+  if (!self.has_odometry || !maps::is_plausible(odometry)) return self.output.pose;
   return compose(self.output.pose, relative(self.odometry, odometry));
 }
 maps::Pose Localiser::odometry_frame() const noexcept {

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/numbers/count.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "vehicle/course/curve.hpp"
 
 namespace slalom::vehicle {
@@ -20,16 +22,15 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
     throw std::invalid_argument("centre_line: " + std::to_string(n) + " points; at least 4 are needed");
   if (left.size() != n || right.size() != n)
     throw std::invalid_argument("centre_line: points and widths must have the same number");
-  if (!(step > 0)) throw std::invalid_argument("step: " + std::to_string(step) + " must be above 0 m");
+  if (!(step > 0)) throw std::invalid_argument("step: " + to_text(step) + " must be above 0 m");
+  maps::check_points("centre_line", points);
   for (std::size_t i = 0; i < n; ++i)
-    if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(left[i]) ||
-        !std::isfinite(right[i]))
-      throw std::invalid_argument("centre_line: point " + std::to_string(i) + " must be finite");
+    if (!std::isfinite(left[i]) || !std::isfinite(right[i]))
+      throw std::invalid_argument("centre_line: the widths at point " + std::to_string(i) +
+                                  " must be finite");
   const double length = detail::length(points, closed);
-  if (!(length > 0) || length / step > max_corridor_points)
-    throw std::invalid_argument(
-        "centre_line: " + std::to_string(length) + " m long; must be above 0 m and at most " +
-        std::to_string(max_corridor_points * step) + " m in steps of " + std::to_string(step) + " m");
+  if (!(length > 0)) throw std::invalid_argument("centre_line: all points are the same");
+  count(length, step, max_corridor_points, "centre_line");
   const detail::Resampling places = detail::divided_by_step(points, closed, step);
   Corridor corridor;
   corridor.closed = closed;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/files/write_file.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
 #include "vehicle/course/course_csv.hpp"
@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double jump_steps = 20;  // usual steps, than which a jump is longer
+constexpr double jump_turn = 1;    // rad, by which a line turns where it jumps
 constexpr int track_decimals = 4;
 constexpr int race_decimals = 6;  // curvatures are second differences of the coordinates
 
@@ -36,20 +38,13 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-void write_file(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw IoError(file.string(), 0, "cannot be written");
-}
-
 /// Creates the folder and writes what all courses have; `maker` is the command of the program.
 void save_course(const fs::path& folder, const maps::OccupancyGrid& map,
                  const std::vector<RacelinePoint>& raceline, int decimals, const std::string& maker,
                  const TrackLabel& label, const maps::Pose& start, bool closed) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) throw IoError(folder.string(), 0, "cannot create the folder");
+  if (error) throw IoError(folder.string(), 0, "cannot be created: " + error.message());
   maps::save_ros_map(map, folder / "map.yaml");
   std::string text = "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n";
   for (const RacelinePoint& point : raceline) {
@@ -90,6 +85,32 @@ void save_race_course(const RaceCourse& course, const fs::path& folder, const Tr
   write_file(folder / "centerline.csv", text);
 }
 
+std::size_t find_jump(std::span<const maps::Point> points) {
+  if (points.size() < 4) return 0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < points.size(); ++i) steps.push_back(distance(points[i - 1], points[i]));
+  std::vector<double> sorted = steps;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  const auto turn = [&](std::size_t i) {  // at a point that has both neighbours
+    const auto yaw = [&](std::size_t k) {
+      return std::atan2(points[k + 1].y - points[k].y, points[k + 1].x - points[k].x);
+    };
+    return std::abs(maps::wrap_angle(yaw(i) - yaw(i - 1)));
+  };
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (steps[i - 1] <= jump_steps * usual) continue;
+    if ((i > 1 && turn(i - 1) > jump_turn) || (i + 1 < points.size() && turn(i) > jump_turn)) return i;
+  }
+  return 0;
+}
+
+std::string jump_text(std::span<const maps::Point> points, std::size_t jump) {
+  return "jumps by " + fixed(distance(points[jump - 1], points[jump]), 1) +
+         " m, as a pose that was corrected does; remove the points on one side of the jump";
+}
+
 CentreLineFile read_centre_line(const std::filesystem::path& file) {
   bool widths = false;
   auto rows = detail::read_centre_line_rows(file, widths);
@@ -104,10 +125,12 @@ CentreLineFile read_centre_line(const std::filesystem::path& file) {
   if (rows.size() < 4)
     throw IoError(file.string(), 0, std::to_string(rows.size()) + " points; a centre line needs at least 4");
   CentreLineFile read;
+  for (const auto& row : rows) read.line.points.push_back({row.x, row.y});
+  if (const std::size_t jump = find_jump(read.line.points); jump > 0)
+    throw IoError(file.string(), rows[jump].number, jump_text(read.line.points, jump));
   double longest = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (i > 0) longest = std::max(longest, apart(rows[i - 1], rows[i]));
-    read.line.points.push_back({rows[i].x, rows[i].y});
     if (!widths) continue;
     read.left.push_back(rows[i].left);
     read.right.push_back(rows[i].right);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/distance_field.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"
@@ -57,9 +58,10 @@ class FreeSpace {
  private:
   /// Makes small unknown spots free that touch no occupied cell. Returns their number.
   static int fill_spots(maps::OccupancyGrid& map, double largest) {
+    const int most = saturate_cast<int>(largest / map.resolution);
+    if (most < 1) return 0;
     const CellRegions unknown(map.width, map.height, true,
                               [&](int x, int y) { return map.at(x, y) == maps::Occupancy::unknown; });
-    const int most = static_cast<int>(std::floor(largest / map.resolution));
     std::vector<char> fill(unknown.regions().size(), 0);
     for (std::size_t k = 0; k < fill.size(); ++k) {
       const CellRegion& region = unknown.regions()[k];
@@ -89,8 +91,8 @@ class FreeSpace {
   double to_centre(const maps::Point& at) const {
     const double left = std::floor(at.x), low = std::floor(at.y), s = at.x - left, t = at.y - low;
     const auto distance = [&](double column, double row) {
-      return field_.at(std::clamp(static_cast<int>(column), 0, map_.width - 1),
-                       std::clamp(static_cast<int>(row), 0, map_.height - 1));
+      return field_.at(std::clamp(saturate_cast<int>(column), 0, map_.width - 1),
+                       std::clamp(saturate_cast<int>(row), 0, map_.height - 1));
     };
     return (1 - t) * ((1 - s) * distance(left, low) + s * distance(left + 1, low)) +
            t * ((1 - s) * distance(left, low + 1) + s * distance(left + 1, low + 1));
@@ -98,8 +100,8 @@ class FreeSpace {
 
   /// m, from a point, in cells, to the nearest wall cell, at most `reach` (m).
   double to_edge(const maps::Point& at, double reach) const {
-    const int cells = static_cast<int>(std::ceil(reach / map_.resolution)) + 1;
-    const int x0 = static_cast<int>(std::lround(at.x)), y0 = static_cast<int>(std::lround(at.y));
+    const int cells = saturate_cast<int>(std::ceil(reach / map_.resolution)) + 1;
+    const int x0 = saturate_cast<int>(std::round(at.x)), y0 = saturate_cast<int>(std::round(at.y));
     double nearest = reach / map_.resolution;
     for (int y = y0 - cells; y <= y0 + cells; ++y)
       for (int x = x0 - cells; x <= x0 + cells; ++x) {

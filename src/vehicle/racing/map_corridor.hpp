@@ -72,7 +72,7 @@ class Rays {
     const double limit = std::abs(offset) - 0.02 * measure_.step;
     if (limit <= 0) return true;
     const auto window =
-        std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(4 * limit / measure_.step) + 2, n / 2);
+        std::min<std::ptrdiff_t>(saturate_cast<std::ptrdiff_t>(4 * limit / measure_.step) + 2, n / 2);
     for (std::ptrdiff_t k = -window; k <= window; ++k) {
       std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) + k;
       if (!closed_ && (j < 0 || j >= n)) continue;

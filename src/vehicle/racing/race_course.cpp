@@ -6,6 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "slalom/core/numbers/count.hpp"
+#include "slalom/maps/image.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "vehicle/course/track_parts.hpp"
 #include "vehicle/racing/free_space.hpp"
 #include "vehicle/racing/loop_search.hpp"
@@ -14,12 +17,15 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double widest = 25;             // reach of a corridor to one side, in half widths of the car
-constexpr double max_line_points = 3000;  // points of a centre line
-constexpr int max_rounds = 4;             // rounds of improving a line along its own normals
-constexpr double min_gain = 5e-4;         // share of the time, by which a round must improve it
-constexpr double min_room = 1e-3;         // m, between the bounds of a line
-constexpr double max_yaw = 0.6;           // rad, of the way from the x axis at a start that is found
+constexpr double widest = 25;              // reach of a corridor to one side, in half widths of the car
+constexpr double max_line_points = 3000;   // points of a centre line
+constexpr int max_rounds = 4;              // rounds of improving a line along its own normals
+constexpr double min_gain = 5e-4;          // share of the time, by which a round must improve it
+constexpr double min_room = 1e-3;          // m, between the bounds of a line
+constexpr double max_yaw = 0.6;            // rad, of the way from the x axis at a start that is found
+constexpr double most_cells = 2.5e7;       // cells of a map that is drawn
+constexpr double most_drawn = 3e8;         // cells that are visited to draw it
+constexpr double most_cells_of_car = 200;  // cells of a map across the car
 constexpr double half_turn = 3.14159265358979323846;  // rad
 
 std::string text_of(const maps::Point& point) {
@@ -161,13 +167,27 @@ void check(const RaceCourseOptions& options, const RacingCar& car) {
     throw std::invalid_argument("reverse: must not be set with a start pose, which sets the direction");
 }
 
-void check_finite(const GuideLine& guide) {
+void check(const GuideLine& guide) {
   if (guide.points.size() < 4)
     throw std::invalid_argument("line: " + std::to_string(guide.points.size()) +
                                 " points; at least 4 are needed");
-  for (const maps::Point& point : guide.points)
-    if (!std::isfinite(point.x) || !std::isfinite(point.y))
-      throw std::invalid_argument("line: every point must be finite");
+  maps::check_points("line", guide.points);
+}
+
+/// The size of the cells (m) of a map that is drawn: as given, or larger where the map would have more than
+/// `most_cells`.
+double drawn_resolution(double length_x, double length_y, double resolution) {
+  const double side = std::max(length_x, length_y) / (maps::max_image_side - 8);
+  return std::max({resolution, std::sqrt(length_x * length_y / most_cells), side});
+}
+
+/// Throws std::invalid_argument if a corridor is so wide for its length that a map of it takes too long.
+void check_work(const Corridor& corridor, double side, double wall, double resolution) {
+  const double points = static_cast<double>(corridor.centre_line.size());
+  const double cells = (length(corridor) / points + 2 * (side + wall)) / resolution;
+  if (points * cells * cells > most_drawn)
+    throw std::invalid_argument("corridor: walls " + to_text(std::round(side)) +
+                                " m from the centre line cannot be drawn; they must be nearer to it");
 }
 
 }  // namespace
@@ -179,7 +199,8 @@ double centre_line_step(const RacingCar& car, double length) {
 RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, const RaceCourseOptions& options,
                        const GuideLine* guide) {
   check(options, car);
-  if (guide) check_finite(*guide);
+  if (guide) check(*guide);
+  count(car.width, map.resolution, most_cells_of_car, "map: the width of the car");
   RaceCourse course;
   course.map = map;
   const double keep = wall_distance(car);
@@ -231,21 +252,29 @@ maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, d
     high_y = std::max(high_y, line[i].y);
     reach = std::max({reach, corridor.left[i], corridor.right[i]});
   }
-  reach += wall;
   maps::OccupancyGrid map;
-  map.resolution = resolution;
-  map.origin = {resolution * std::floor((low_x - reach) / resolution - 2),
-                resolution * std::floor((low_y - reach) / resolution - 2), 0};
-  map.width = static_cast<int>(std::ceil((high_x + reach - map.origin.x) / resolution)) + 2;
-  map.height = static_cast<int>(std::ceil((high_y + reach - map.origin.y) / resolution)) + 2;
-  std::vector<double> beyond(static_cast<std::size_t>(map.width) * map.height, infinity);
+  map.resolution =
+      drawn_resolution(high_x - low_x + 2 * (reach + wall), high_y - low_y + 2 * (reach + wall), resolution);
+  wall = std::max(wall, 2 * map.resolution);
+  check_work(corridor, reach, wall, map.resolution);
+  reach += wall;
+  const auto below = [&](double value) {
+    return map.resolution * std::floor((value - reach) / map.resolution - 2);
+  };
+  map.origin = {below(low_x), below(low_y), 0};
+  const auto cells = [&](double high, double first) {
+    return count(high + reach - first, map.resolution, maps::max_image_side - 2, "corridor: its map") + 2;
+  };
+  map.width = static_cast<int>(cells(high_x, map.origin.x));
+  map.height = static_cast<int>(cells(high_y, map.origin.y));
   const std::size_t segments = corridor.closed ? line.size() : line.size() - 1;
+  std::vector<double> beyond(static_cast<std::size_t>(map.width) * map.height, infinity);
   for (std::size_t i = 0; i < segments; ++i) {
     const std::size_t next = (i + 1) % line.size();
     const maps::Point a = line[i], d{line[next].x - a.x, line[next].y - a.y};
     const double square = d.x * d.x + d.y * d.y;
     const auto cell = [&](double value, double origin) {
-      return static_cast<int>(std::floor((value - origin) / resolution));
+      return saturate_cast<int>(std::floor((value - origin) / map.resolution));
     };
     const int x0 = cell(std::min(a.x, a.x + d.x) - reach, map.origin.x),
               x1 = cell(std::max(a.x, a.x + d.x) + reach, map.origin.x),
@@ -253,8 +282,8 @@ maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, d
               y1 = cell(std::max(a.y, a.y + d.y) + reach, map.origin.y);
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
-        const double px = map.origin.x + (x + 0.5) * resolution - a.x,
-                     py = map.origin.y + (y + 0.5) * resolution - a.y;
+        const double px = map.origin.x + (x + 0.5) * map.resolution - a.x,
+                     py = map.origin.y + (y + 0.5) * map.resolution - a.y;
         const double t = std::clamp((px * d.x + py * d.y) / square, 0.0, 1.0);
         const auto& widths = d.x * py - d.y * px > 0 ? corridor.left : corridor.right;
         double& least = beyond[static_cast<std::size_t>(y) * map.width + x];
@@ -262,6 +291,7 @@ maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, d
                          std::hypot(px - t * d.x, py - t * d.y) - ((1 - t) * widths[i] + t * widths[next]));
       }
   }
+  map.cells.reserve(beyond.size());
   for (const double b : beyond)
     map.cells.push_back(b <= 0      ? maps::Occupancy::free
                         : b <= wall ? maps::Occupancy::occupied

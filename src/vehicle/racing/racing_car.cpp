@@ -11,7 +11,7 @@ namespace slalom::vehicle {
 namespace {
 
 using detail::require;
-using detail::require_positive;
+using detail::require_within;
 
 /// Linear between rows, constant beyond them.
 GripAtSpeed interpolated(const std::vector<GripAtSpeed>& rows, double speed) {
@@ -60,23 +60,22 @@ RacingCar passenger_car() {
 }  // namespace
 
 void validate(const RacingCar& car) {
-  require_positive("width", car.width);
-  require(car.margin >= 0 && std::isfinite(car.margin), "margin", car.margin, "finite and at least 0");
-  require_positive("wheelbase", car.wheelbase);
-  require(car.max_steering > 0 && car.max_steering < 1.5, "max_steering", car.max_steering,
-          "above 0 and below 1.5 rad");
-  require_positive("max_steering_rate", car.max_steering_rate);
-  require_positive(car.limits);
-  require(car.power > 0, "power", car.power, "above 0");
+  require_within(0.01, 100, "width", car.width);
+  require_within(0, 100, "margin", car.margin);
+  require_within(0.01, 100, "wheelbase", car.wheelbase);
+  require_within(0.001, 1.5, "max_steering", car.max_steering);
+  require_within(0.001, 1e9, "max_steering_rate", car.max_steering_rate);
+  detail::require_plausible(car.limits);
+  require(car.power >= 0.01, "power", car.power, "at least 0.01");
   for (std::size_t i = 0; i < car.grip.size(); ++i) {
     const std::string row = "ggv[" + std::to_string(i) + "].";
     const GripAtSpeed& grip = car.grip[i];
-    require(grip.speed >= 0 && std::isfinite(grip.speed), row + "speed", grip.speed, "finite and at least 0");
+    require_within(0, 1000, row + "speed", grip.speed);
     require(i == 0 || grip.speed > car.grip[i - 1].speed, row + "speed", grip.speed,
             "above that of the row before");
-    require_positive(row + "acceleration", grip.acceleration);
-    require_positive(row + "braking", grip.braking);
-    require_positive(row + "lateral", grip.lateral);
+    require_within(0.01, 1000, row + "acceleration", grip.acceleration);
+    require_within(0.01, 1000, row + "braking", grip.braking);
+    require_within(0.01, 1000, row + "lateral", grip.lateral);
   }
 }
 
@@ -111,7 +110,7 @@ RacingCar racing_car(const Configuration& configuration) {
 }
 
 void set_friction(RacingCar& car, double friction) {
-  require_positive("friction", friction);
+  require_within(0.01, 10, "friction", friction);
   const double grip = friction * gravity;
   car.limits.lateral_acceleration = car.limits.acceleration = car.limits.braking = grip;
   car.grip.clear();
@@ -132,9 +131,8 @@ GripAtSpeed grip_at(const RacingCar& car, double speed) {
 std::vector<double> racing_speeds(std::span<const double> curvature, std::span<const double> step,
                                   bool closed, const RacingCar& car) {
   validate(car);
+  detail::require_finite(curvature, step);
   const std::size_t n = curvature.size();
-  if (step.size() != n)
-    throw std::invalid_argument("racing_speeds: curvature and step must have the same size");
   std::vector<double> speed(n);
   for (std::size_t i = 0; i < n; ++i) {
     speed[i] = cornering_speed(car, curvature[i], car.limits.top_speed);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
@@ -206,6 +207,40 @@ TEST(RaceCourse, MakesTheMapOfACorridor) {
   EXPECT_EQ(at(0, 0), Occupancy::unknown);
 }
 
+TEST(RaceCourse, SizesThatFollowFromLengthsHaveLimits) {
+  const auto makes = [](const Corridor& corridor) { return message_of([&] { race_course(corridor, {}); }); };
+  EXPECT_EQ(makes(testing::circle(5, 1000)),
+            "corridor: walls 1000 m from the centre line cannot be drawn; they must be nearer to it");
+  // 20 km around, 20 m wide: the cells of its map are larger.
+  const auto map = draw_corridor(testing::circle(3000, 10), 0.05, 0.2);
+  EXPECT_LT(map.cells.size(), 2.6e7);
+  EXPECT_LT(map.resolution, 1.4);
+  const maps::OccupancyGrid fine{8, 8, 1e-3, {}, std::vector<Occupancy>(64, Occupancy::free)};
+  EXPECT_NE(message_of([&] { race_course(fine, {}); }).find("map: the width of the car"), std::string::npos);
+}
+
+TEST_F(RaceCourseFile, JumpsInALineAreNamed) {
+  const auto line = [&](int jump, double x, double y) {
+    std::string text;
+    for (int i = 0; i < 40; ++i)
+      text += (i == jump ? std::to_string(x) + "," + std::to_string(y)
+                         : std::to_string(0.1 * i) + "," + std::to_string(0.001 * i * i)) +
+              "\n";
+    return write("line.csv", text);
+  };
+  EXPECT_EQ(read_centre_line(line(-1, 0, 0)).line.points.size(), 40u);
+  for (const auto& [jump, x, y] :
+       {std::tuple{20, 0.0, 900.0}, {7, 1e6, 30.0}, {39, -50.0, 0.0}, {1, 0.0, 60.0}}) {
+    const std::string place = "line.csv:" + std::to_string(jump + 1);
+    expect_error_with<IoError>({place.c_str(), "jumps by"},
+                               [&, jump = jump, x = x, y = y] { read_centre_line(line(jump, x, y)); });
+  }
+  expect_error_with<IoError>({"line.csv:8", "within 1e7 m"}, [&] { read_centre_line(line(7, 1e9, 0)); });
+  // A straight of which only the ends are given is none.
+  EXPECT_NO_THROW(
+      read_centre_line(write("line.csv", "0,0\n0.1,0\n0.2,0\n0.3,0\n30,0\n30.1,0\n30.2,0.01\n30.3,0.02\n")));
+}
+
 TEST_F(RaceCourseFile, IsLoadedAsACourse) {
   const RaceCourse made = race_course(rectangular_course(), RacingCar{});
   save_race_course(made, folder_ / "course", {"room", "a \"room\"", "slalom course"});
@@ -240,7 +275,7 @@ TEST_F(RaceCourseFile, CentreLinesHaveOneOfSeveralForms) {
 TEST_F(RaceCourseFile, SaysWhatIsWrongInACentreLine) {
   const std::pair<const char*, std::vector<const char*>> cases[] = {
       {"0,0,1,1\n1,0,x,1\n", {"line.csv:2", "3 (width)", "'x'"}},
-      {"0,0,1,1\n1,0,-1,1\n", {"line.csv:2", "at least 0"}},
+      {"0,0,1,1\n1,0,-1,1\n", {"line.csv:2", "within 0 to 1e7 m"}},
       {"0,0,1\n", {"line.csv:1", "3 columns"}},
       {"0,0,1,1\n1,0\n", {"line.csv:2", "as many"}},
       {"0,0,1,1\n1,0,1,1\n", {"line.csv", "at least 4"}}};

@@ -73,6 +73,12 @@ TEST(RacingSpeeds, LateralGripMayDependOnTheSpeed) {
   EXPECT_NEAR(racing_speeds(std::vector<double>(50, 0.16), step, true, car)[7], 5, 1e-9);
 }
 
+TEST(RacingSpeeds, ACurvatureThatIsNoNumberIsNoStraight) {
+  const std::vector<double> curvature{0, std::nan(""), 0}, step(3, 1.0);
+  EXPECT_EQ(message_of([&] { racing_speeds(curvature, step, true, {}); }),
+            "curvature 1: .nan must be finite");
+}
+
 TEST(RacingSpeeds, SteeringTakesTime) {
   // A step of the curvature by 0.5 1/m over 0.1 m: v 0.5 / 0.1 * wheelbase <= rate.
   RacingCar car;
@@ -91,7 +97,10 @@ TEST(RacingCar, IsKnownByName) {
   RacingCar car;
   set_friction(car, 0.5);
   EXPECT_DOUBLE_EQ(car.limits.braking, 4.905);
-  EXPECT_THROW(set_friction(car, 0), std::invalid_argument);
+  for (const double friction : {0.0, 1e300, std::nan("")})
+    EXPECT_THROW(set_friction(car, friction), std::invalid_argument);
+  car.wheelbase = 1e-9;
+  EXPECT_EQ(message_of([&] { validate(car); }), "wheelbase: 1e-09 must be within 0.01 to 100");
 }
 
 TEST(RacingCar, OfAConfigurationHasItsSizesAndTheGripOfItsPlans) {

@@ -58,6 +58,13 @@ double centre_line_step(const RacingCar& car, double length);
 /// `resolution` m.
 maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, double wall);
 
+/// The point to which a line jumps, 0 if it does not: it is more than 20 usual (median) steps from the point
+/// before, and the line turns by more than 1 rad there or at that point, unlike a straight whose ends alone
+/// are given.
+std::size_t find_jump(std::span<const maps::Point> points);
+/// A sentence without subject on the jump to a point.
+std::string jump_text(std::span<const maps::Point> points, std::size_t jump);
+
 /// The points and widths of a centre line file, and whether its ends meet.
 struct CentreLineFile {
   GuideLine line;                   ///< the points, and whether the line is closed
@@ -67,7 +74,8 @@ struct CentreLineFile {
 /// Reads a centre line: rows `x, y, width to the right, width to the left` (m), or x and y alone, separated
 /// by commas or semicolons. Lines that begin with `#`, and a first row of names, are headers; if one names
 /// the left width before the right one, that is their order. The line is closed if its ends are at most three
-/// of its longest steps apart. Throws IoError with file, line, column, value and rule.
+/// of its longest steps apart. Throws IoError with file, line, column, value and rule, also where the line
+/// jumps.
 CentreLineFile read_centre_line(const std::filesystem::path& file);
 
 /// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), centerline.csv

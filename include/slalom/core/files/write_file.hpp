@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "slalom/core/error.hpp"
+
+namespace slalom {
+
+/// Writes a whole file. If that fails, throws IoError with the reason of the system, and leaves no part of
+/// the file.
+void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// The error of a file that could not be written, with the reason of the system: the `errno` of the failed
+/// call.
+IoError cannot_write(const std::filesystem::path& file);
+
+}  // namespace slalom

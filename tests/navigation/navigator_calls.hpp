@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+
+#include "navigation/grids.hpp"
+#include "slalom/navigation/navigator.hpp"
+#include "support/adversary.hpp"
+#include "support/any_others.hpp"
+#include "support/promise.hpp"
+
+/// Navigators as state machines: updates with any pose, path and map, and what every command promises.
+namespace slalom::navigation {
+
+inline constexpr double period = 0.05;  // s
+
+inline SvgMppiOptions few_samples(const BaseOptions& base) {
+  SvgMppiOptions solver = svg_mppi_options(base);
+  solver.horizon = 8;
+  solver.samples = 32;
+  solver.guides.iterations = 1;
+  return solver;
+}
+
+/// 4 m x 4 m around the origin with a box in it, or with any boxes.
+struct Hall {
+  Hall() : Hall(UnknownCells::obstacle) { add(0.5, -0.5, 1, 0.5, maps::Occupancy::occupied); }
+  explicit Hall(testing::Adversary& adversary) : Hall(static_cast<UnknownCells>(adversary.below(2))) {
+    for (int left = adversary.below(6); left > 0; --left) {
+      const double x = adversary.within(-2, 2), y = adversary.within(-2, 2);
+      add(x, y, x + adversary.within(0, 2), y + adversary.within(0, 2),
+          static_cast<maps::Occupancy>(adversary.below(3)));
+    }
+  }
+  explicit Hall(UnknownCells unknown)
+      : grid(free_grid(-2, -2, 4, 4)), costmap(grid.width, grid.height, grid.resolution, unknown) {
+    costmap.update(grid);
+  }
+  void add(double x0, double y0, double x1, double y1, maps::Occupancy value) {
+    fill(grid, x0, y0, x1, y1, value);
+    costmap.update(grid);
+  }
+  maps::OccupancyGrid grid;
+  Costmap costmap;
+};
+
+inline Navigator make_navigator(const NavigatorOptions& options, const Costmap& costmap,
+                                const Footprint& footprint = Footprint::rectangle(0.3, 0.3, 0.4)) {
+  return {footprint, options, few_samples(options.base), costmap};
+}
+
+/// Throws Finding unless a base with these limits may be sent this.
+inline void check(const NavigationResult& result, const BaseOptions& base) {
+  using testing::require;
+  const Velocity& v = result.command;
+  require(v.forward >= -base.max_reverse && v.forward <= base.max_forward, "the speed is within its limits");
+  require(std::abs(v.left) <= (base.kind == BaseKind::omnidirectional ? base.max_sideways : 0),
+          "the sideways speed is within its limits");
+  require(std::abs(v.turn) <= base.max_turn, "the yaw rate is within its limits");
+  require(std::isfinite(result.remaining), "the remaining path is finite");
+  for (const maps::Pose& each : result.plan)
+    require(std::isfinite(each.x) && std::isfinite(each.y) && std::isfinite(each.yaw), "plans are finite");
+  for (const maps::Pose& each : result.path)
+    require(std::isfinite(each.x) && std::isfinite(each.y), "the path is finite");
+}
+
+struct NavigatorTally {
+  long updates = 0, corrections = 0;
+  long statuses[7] = {};
+};
+
+/// One navigator and a few dozen updates. Throws Finding.
+inline void call_navigator(testing::Adversary& adversary, const Hall& hall, NavigatorTally& tally,
+                           const Footprint& footprint = Footprint::rectangle(0.3, 0.3, 0.4)) {
+  NavigatorOptions options;
+  options.base.kind = static_cast<BaseKind>(adversary.below(3));
+  options.find_detours = adversary.below(4) != 0;
+  options.patience = adversary.within(0, 1);
+  options.stuck_after = adversary.within(0.1, 2);
+  if (adversary.below(2)) options.time_step = adversary.within(0.001, 1);
+  Navigator navigator = make_navigator(options, hall.costmap, footprint);
+  const Costmap other_size(10, 10, 0.1);
+  testing::AnyOthers others;
+  for (int i = 0; i < 60; ++i) {
+    const bool hostile = adversary.once_in(4);
+    const auto value = [&](double low, double high) {
+      return hostile ? adversary.any(low, high) : adversary.within(low, high);
+    };
+    if (adversary.once_in(10)) {
+      const maps::Pose points[] = {{value(-2, 2), value(-2, 2), 0},
+                                   {value(-2, 2), value(-2, 2), value(-4, 4)}};
+      try {
+        navigator.set_path(points);
+      } catch (const std::invalid_argument&) {  // not finite, or too far away
+      }
+    }
+    if (adversary.once_in(40)) navigator.reset(static_cast<std::uint64_t>(i));
+    const maps::Pose pose{value(-2, 2), value(-2, 2), value(-4, 4)};
+    const Velocity velocity{value(-1, 1), value(-1, 1), value(-2, 2)};
+    const Costmap& costmap = adversary.once_in(20) ? other_size : hall.costmap;
+    const NavigationResult result =
+        navigator.update(pose, velocity, costmap, value(0, 0.2), others.draw(adversary));
+    check(result, options.base);
+    ++tally.updates;
+    ++tally.statuses[static_cast<int>(result.status)];
+    tally.corrections += result.corrections;
+  }
+}
+
+}  // namespace slalom::navigation
