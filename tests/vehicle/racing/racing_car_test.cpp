@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "support/thrown_words.hpp"
+
 namespace slalom::vehicle {
 namespace {
 
