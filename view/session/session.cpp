@@ -95,6 +95,9 @@ void Session::turn() {
     if (steps_left_ > 0) --steps_left_;
     tick();
   }
+  // The first change after a pause need not wait for these.
+  if (state_.paused && is_held() && (!held_ || std::abs(held_->ticks() - shown_tick()) > scan_lead))
+    present(scan_lead);
   if (std::exchange(are_options_changed_, false)) tell_text(0, options_message(options_facts()));
   const auto now = Clock::now();
   if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;

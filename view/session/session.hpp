@@ -63,6 +63,7 @@ class Session {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr int scan_lead = 1;  ///< ticks before the one that is shown, whose end made its scan
   using Json = nlohmann::ordered_json;
   /// The options or the bodies that a change has replaced after some ticks.
   struct Change {

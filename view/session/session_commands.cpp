@@ -14,7 +14,6 @@ constexpr int max_steps = 400;  // ticks of one command "step"
 constexpr double least_rate = 0.001, most_rate = 100;
 constexpr double before_contact = 2.0, after_contact = 0.25;  // s that are shown of a collision
 constexpr double contact_rate = 0.25;
-constexpr int scan_lead = 1;  // ticks from which on the scan of the tick that is shown sees a change
 
 bool is_among(std::initializer_list<std::string_view> names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();

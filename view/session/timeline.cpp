@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t max_frame_bytes = 400u << 20;
 constexpr std::size_t max_copy_bytes = 1u << 30;
 constexpr std::size_t max_copies = 200;
-constexpr double longest_way = 0.03;  // s of wall clock from a copy to the tick that is sought
+constexpr double longest_way = 0.01;  // s of planning from a copy to the tick that is sought
 
 }  // namespace
 
