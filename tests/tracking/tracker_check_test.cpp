@@ -17,7 +17,8 @@ TEST(TrackerCheck, BeamsThatAreNearlyOneEnd) {
   std::vector<float> ranges;
   double stamp = 0;
   const auto objects = [&](double increment) {
-    return tracker.update({.scan = {ranges, -1.5, increment, 0.05, 30}, .stamp = stamp += 0.025})
+    return tracker
+        .update({.scan = {ranges, -1.5, increment, 0.05, 30}, .sensor = {}, .stamp = stamp += 0.025})
         .objects.size();
   };
   for (int i = 0; i < 200; ++i) {
