@@ -1,6 +1,7 @@
 // Mistakes that every command refuses in the same words, and results that are not lost.
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "tools/evaluation_folder.hpp"
 
