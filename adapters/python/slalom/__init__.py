@@ -35,5 +35,7 @@ def __getattr__(name: str) -> object:
 
 
 display.install(_slalom)
+for _module in filter(None, (_slalom, _driving)):
+    display.set_pickles(_module)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
 __all__ += ["FewSamplesWarning", "__version__"]

@@ -6,6 +6,7 @@ The classes are compiled. `install` adds the methods here, since text is easier 
 from __future__ import annotations
 
 import ast
+import copyreg
 import functools
 import inspect
 import re
@@ -48,6 +49,20 @@ def install(solvers: ModuleType) -> None:
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
             _constructed(cls, lambda problem: ((), _changed(problem)))
     setattr(solvers.Plan, "__repr__", _plan_text)
+
+
+def set_pickles(module: ModuleType) -> None:
+    """Sets `__reduce__` of the compiled classes: that of Python would make objects without their compiled part, which
+    end the interpreter."""
+    for cls in [each for each in vars(module).values() if isinstance(each, type) and not issubclass(each, Exception)]:
+        if hasattr(cls, "__setstate__"):
+            setattr(cls, "__reduce__", lambda self: (copyreg.__newobj__, (type(self),), self.__getstate__()))  # type: ignore[attr-defined]
+        elif cls.__reduce__ is object.__reduce__:
+            setattr(cls, "__reduce__", _refuse_pickle)
+
+
+def _refuse_pickle(self: Any) -> Any:
+    raise TypeError(f"cannot pickle or copy a slalom.{type(self).__name__}")
 
 
 def _refuse_attribute(controller: Any, name: str, value: Any) -> None:

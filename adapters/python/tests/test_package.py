@@ -95,6 +95,42 @@ def test_what_cannot_be_pickled_says_so():
         pickle.dumps(point(cost=lambda x, u: x[:, 0]))
 
 
+def objects():
+    """An object of every compiled class."""
+    controller = slalom.SvgMppi(slalom.CartPole(), horizon=8, samples=64)
+    field = slalom.Field(np.zeros((2, 2)), 0.1)
+    streams = []
+    risk = slalom.RiskEvaluator(slalom.CartPole(), lambda random: streams.append(random) or slalom.CartPole())
+    made = [controller, controller.solve([0, 0, 0.1, 0]), field, slalom.OccupancyGrid(np.zeros((2, 2)), 0.1), point(), risk,
+            streams[0]]
+    made += [cls() for cls in (slalom.Arm, slalom.Pendulum, slalom.CartPole, slalom.DifferentialDrive, slalom.Quadrotor,
+                               slalom.Car)]
+    made += [getattr(slalom, cls)(slalom.CartPole()) for cls in dir(slalom)
+             if isinstance(getattr(slalom, cls), type) and issubclass(getattr(slalom, cls), slalom.Controller)
+             and cls != "Controller"]
+    if hasattr(slalom, "Course"):
+        course = slalom.Course("wren")
+        made += [course, slalom.World(course), slalom.Planner(course)]
+    return made
+
+
+@pytest.mark.parametrize("each", objects(), ids=lambda each: type(each).__name__)
+def test_pickles_and_copies_of_any_object_are_made_or_refused(each):
+    ways = [lambda protocol=protocol: pickle.loads(pickle.dumps(each, protocol)) for protocol in range(6)]
+    for make in [*ways, lambda: copy.copy(each), lambda: copy.deepcopy(each), each.__reduce__,
+                 *(lambda protocol=protocol: each.__reduce_ex__(protocol) for protocol in range(6))]:
+        try:
+            repr(make())
+        except (TypeError, RuntimeError, AttributeError, pickle.PicklingError) as error:
+            assert "pickle" in str(error) or "solved again" in str(error)
+
+
+def test_there_is_an_object_of_every_class():
+    classes = {cls for module in filter(None, (slalom._slalom, slalom._driving)) for cls in vars(module).values()
+               if isinstance(cls, type) and not issubclass(cls, Exception)}
+    assert classes - {type(each) for each in objects()} <= {slalom.AnyProblem, slalom.Controller}
+
+
 def test_copies_of_a_plan_stay_valid():
     controller = slalom.SvgMppi(slalom.CartPole(), horizon=8, samples=64)
     plan = controller.solve([0, 0, 0.1, 0])
