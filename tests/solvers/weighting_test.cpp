@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "solvers/problems.hpp"
 
@@ -77,6 +78,17 @@ TEST(Weighting, FindsTheTemperatureForAnEffectiveSampleSize) {
           << "costs of " << scale << ", lambda " << weighting.temperature();
     }
   }
+}
+
+TEST(Weighting, CostsTimesAPowerOfTwoGiveTheSameWeights) {
+  const auto weights = [](double factor) {
+    Drawn drawn([factor](double v) { return factor * (std::abs(v - 1) + (v < 0 ? 100 : 0)); });
+    Weighting weighting(1, 0.05);
+    drawn.seek(weighting, 0.3f);
+    drawn.seek(weighting, 0.2f);  // starts at the temperature that was found
+    return std::vector<float>(drawn.samples.weights().begin(), drawn.samples.weights().end());
+  };
+  for (const int k : {-20, -3, 1, 20}) EXPECT_EQ(weights(std::ldexp(1, k)), weights(1)) << "2^" << k;
 }
 
 TEST(Weighting, ControlTermIsInUnitsOfTheTemperature) {

@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+
+#include "solvers/sampling/seek_temperature.hpp"
 
 namespace slalom::detail {
 
 namespace {
-
-/// The limits of the search, as logarithms of the temperature: 1e-9 ... 1e12.
-constexpr double lowest = -20.7, highest = 27.6;
-/// Largest error of the effective sample size, as a logarithm, and the largest number of trials.
-constexpr double tolerance = 0.01;
-constexpr int maximum_trials = 40;
 
 double effective(const WeightSums<double>& sums) {
   return sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
@@ -24,40 +19,18 @@ WeightSums<double> Weighting::weigh(SampleSet& samples, float least, ThreadPool&
   return samples.weigh(least, static_cast<float>(temperature_), pool);
 }
 
-WeightSums<double> Weighting::try_temperature(SampleSet& samples, double logarithm,
-                                              ThreadPool& pool) noexcept {
-  temperature_ = std::exp(logarithm);
-  return weigh(samples, samples.mix_totals(static_cast<float>(temperature_), pool), pool);
-}
-
 WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcept {
   const double wanted = std::max(share_ * samples.samples(), 1.0);
-  struct Trial {
-    double at, error;  // logarithms of the temperature and of effective sample size / wanted
+  const float least = samples.mix_totals(0, pool);
+  const double scale = samples.mean_excess(least);
+  const auto weigh_at = [&](double temperature) {
+    temperature_ = temperature;
+    return weigh(samples, samples.mix_totals(static_cast<float>(temperature), pool), pool);
   };
-  std::optional<Trial> low, high;  // the last temperatures that were too low and too high
-  double at = std::clamp(std::log(temperature_), lowest, highest), stride = 1;
-  bool was_too_low = false;
-  for (int trial = 0; trial < maximum_trials; ++trial) {
-    const WeightSums<double> sums = try_temperature(samples, at, pool);
-    const double error = std::log(std::max(effective(sums), 1e-3) / wanted);
-    if (std::abs(error) < tolerance) return sums;
-    const bool too_low = error < 0;
-    (too_low ? low : high) = Trial{at, error};
-    if (low && high) {
-      // The Illinois rule: if the same end remains twice, its error is halved, so that false position
-      // converges quickly.
-      if (too_low == was_too_low) (too_low ? high : low)->error /= 2;
-      at = low->at + (high->at - low->at) * low->error / (low->error - high->error);
-    } else if (at == (too_low ? highest : lowest)) {
-      break;
-    } else {
-      at = std::clamp(at + (too_low ? stride : -stride), lowest, highest);
-      stride *= 2;
-    }
-    was_too_low = too_low;
-  }
-  return try_temperature(samples, low && high ? at : std::log(first_temperature_), pool);
+  if (!(scale > 0)) return weigh_at(given_temperature_);
+  const double found = seek_temperature(wanted, scale, temperature_,
+                                        [&](double temperature) { return effective(weigh_at(temperature)); });
+  return weigh_at(found);
 }
 
 /// Computes the coefficients of the control term. Correlated samples have the covariance D C D, where D holds

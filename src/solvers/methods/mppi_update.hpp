@@ -10,37 +10,35 @@ namespace slalom::detail {
 ///
 /// w = exp(-(J - min J) / lambda).
 ///
-/// lambda is fixed, or adapted so that the effective sample size (sum w)^2 / sum w^2 (Kong 1992) is a
-/// fraction of the number of samples. The effective sample size grows with lambda from 1 to the number of
-/// samples, so lambda is found by bracketing and false position on log lambda, starting from the last solve's
-/// value. In J = S + lambda g, the control term g is in units of lambda.
+/// lambda is fixed, or adapted so that the effective sample size (sum w)^2 / sum w^2 (Kong 1992) has a wanted
+/// value. The search starts at the last solve's lambda. In J = S + lambda g, the control term g is in units
+/// of lambda.
 class Weighting {
  public:
-  /// `temperature` is lambda, or its first value if it is adapted. `share` is the wanted effective sample
-  /// size / samples, or 0 if lambda is fixed.
+  /// `temperature` is lambda. `share` is the wanted effective sample size / samples, or 0 if lambda is fixed;
+  /// if lambda is adapted, `temperature` is used where all costs are equal.
   Weighting(double temperature, double share)
-      : first_temperature_(temperature), share_(share), temperature_(temperature) {}
+      : given_temperature_(temperature), share_(share), temperature_(first()) {}
 
   /// Whether the temperature is adapted.
   bool seeks() const noexcept { return share_ > 0; }
-  /// The temperature of the last weights.
+  /// The temperature of the last weights; 0 before the first ones if it is adapted.
   double temperature() const noexcept { return temperature_; }
-  /// Returns to the configured temperature.
-  void reset() noexcept { temperature_ = first_temperature_; }
+  /// Forgets the last solve.
+  void reset() noexcept { temperature_ = first(); }
 
   /// Sets the samples' weights from their totals. `least` is the lowest total. The weights are not
   /// normalised. Returns their sums.
   WeightSums<double> weigh(SampleSet& samples, float least, ThreadPool& pool) noexcept;
 
   /// Adapts the temperature, then sets the weights as `weigh` does. The samples' stored terms are their
-  /// control terms in units of the temperature. If no temperature gives the wanted effective sample size,
-  /// uses the configured one.
+  /// control terms in units of the temperature. If all costs are equal, uses the configured one.
   WeightSums<double> seek(SampleSet& samples, ThreadPool& pool) noexcept;
 
  private:
-  WeightSums<double> try_temperature(SampleSet& samples, double logarithm, ThreadPool& pool) noexcept;
+  double first() const noexcept { return seeks() ? 0 : given_temperature_; }
 
-  double first_temperature_, share_, temperature_;
+  double given_temperature_, share_, temperature_;
 };
 
 /// The closed-form update of MPPI (Williams et al., "Information-Theoretic Model Predictive Control", IEEE

@@ -238,6 +238,17 @@ float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
   return *std::min_element(least_.begin(), least_.end());
 }
 
+double SampleSet::mean_excess(float least) const noexcept {
+  double sum = 0;
+  int counted = 0;
+  for (const float total : totals()) {
+    if (!(total < infinite)) continue;
+    sum += static_cast<double>(total) - static_cast<double>(least);
+    ++counted;
+  }
+  return counted > 0 ? sum / counted : 0;
+}
+
 WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
     weight_sums_[tile] = kernels::exponential_weights(totals_.data(), costs_.data(), least, temperature,
