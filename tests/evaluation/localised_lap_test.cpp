@@ -36,6 +36,19 @@ TEST(LocalisedLap, TheEstimateHoldsNearTheLimitOfGrip) {
   EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.6F);
 }
 
+TEST(LocalisedLap, ParkedCarsThatHideWallsDoNotMoveTheEstimateElsewhere) {
+  // On wren, views of two parked cars and what they leave of the walls look like those of places metres away.
+  auto driver = configuration("hardware", 0);
+  driver.planner.latency = 0.01;
+  const LapSettings settings{.obstacles = 5, .hardware = HardwareConditions{}, .latency = 0.01};
+  for (const auto& [method, seed] : {std::pair("mppi", 310), std::pair("svg_mppi", 290)}) {
+    const LapResult result = run_lap({timed_out_after(8), {driver, method}, settings}, seed);
+    const auto& errors = result.localisation.error;
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.5F) << method;
+    EXPECT_EQ(result.localisation.blind, 0) << method;
+  }
+}
+
 TEST(LocalisedLap, ItsSensorsAreThoseOfTheWorld) {
   const LapResult usual = lap("default", {.localised = true}, "wren", 2);
   const LapResult noisy = lap("default", {.range_noise = 0.05, .localised = true}, "wren", 2);

@@ -236,6 +236,7 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   const double apart = std::hypot(best->pose.x - place.x, best->pose.y - place.y);
   const double turned = std::abs(maps::wrap_angle(best->pose.yaw - place.yaw));
   if (output.share > good_share && apart < near_place && turned < near_yaw) return;
+  if (!search.confirms(best->pose, place, *sensor, beams)) return;
   particles.spread_about(best->pose, relocated_deviation, relocated_yaw_deviation, next_key());
   place_log_fit = best->log_fit;
   trust = 0;

@@ -69,6 +69,16 @@ class Search {
     return static_cast<double>(log_fit_[0]);
   }
 
+  /// Whether the sensor model of the options also prefers `other` to `place`. That of beams does not count a
+  /// reading that ends before a wall, at a car that is not in the map, as much as one that passes through it.
+  bool confirms(const maps::Pose& other, const maps::Pose& place, const SensorTables& sensor,
+                const ScanBeams& beams) noexcept {
+    for (int i = 0; i < simd::padding; ++i) put(i, i == 0 ? other : place);
+    sensor.weigh({poses_.row(0, 0), poses_.row(0, 1), poses_.row(0, 2), simd::padding}, beams,
+                 log_fit_.data());
+    return log_fit_[0] > log_fit_[1];
+  }
+
  private:
   static constexpr int max_hypotheses = 96;
   static constexpr int search_factor = 28;                    ///< random poses per hypothesis in each update
