@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -26,6 +27,37 @@ struct DriveArguments {
   int laps = 1;
   std::string json, record, plot;
   bool record_all = false, record_times = false;
+};
+
+/// The longest time that a car stood in a lap.
+class LongestStand {
+ public:
+  void add(const evaluation::ControlStep& step) {
+    if (std::abs(step.seen.speed) > moving ||
+        std::hypot(step.seen.pose.x - at_.x, step.seen.pose.y - at_.y) > near) {
+      at_ = step.seen.pose;
+      since_ = step.time;
+      blocked_ = steps_ = 0;
+    }
+    ++steps_;
+    blocked_ += step.output.status == vehicle::PlannerStatus::blocked;
+    if (step.time - since_ <= duration) return;
+    duration = step.time - since_;
+    place = at_;
+    progress = step.progress;
+    every_plan_collides = 2 * blocked_ > steps_;
+  }
+
+  double duration = 0;               ///< s
+  maps::Pose place;                  ///< pose of the centre of gravity
+  double progress = 0;               ///< share of the lap
+  bool every_plan_collides = false;  ///< or it reversed, most of the time
+
+ private:
+  static constexpr double moving = 1.0, near = 1.0;  // m/s, m
+  maps::Pose at_;
+  double since_ = 0;
+  int blocked_ = 0, steps_ = 0;
 };
 
 /// A drive of several laps and its outputs.
@@ -77,11 +109,13 @@ class DriveJob {
     const std::uint64_t seed = evaluation::lap_seed(arguments_.seed, lap, scenario_.lap.obstacles);
     if (recording_) recording_->begin_lap(lap + 1, seed);
     driven_ = {};
+    LongestStand stand;
     LapResult result;
     {
       ProgressLine progress(words_);
       const auto on_step = [&](const evaluation::ControlStep& tick) {
         progress.show(lap + 1, arguments_.laps, tick);
+        stand.add(tick);
         if (recording_) recording_->add(tick);
         if (arguments_.plot.empty()) return;
         driven_.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
@@ -92,6 +126,7 @@ class DriveJob {
     if (result.steps == 0) return;
     laps_.push_back(std::move(result));
     say(laps_.back());
+    if (laps_.back().timeout) say_stand(stand);
     if (recording_) recording_->end_lap(laps_.back(), lap + 1);
   }
 
@@ -113,6 +148,16 @@ class DriveJob {
         times.empty() ? 0.0 : evaluation::percentile(times, 0.99));
     if (!lap.estimation.slip_error.empty()) say_estimates(lap.estimation);
     std::fflush(words_);
+  }
+
+  /// Says where and why a lap that timed out was blocked. The place is in the map frame.
+  void say_stand(const LongestStand& stand) const {
+    const maps::Point& origin = scenario_.environment->course.origin;
+    std::fprintf(words_, "  blocked for %.1f s at (%.2f, %.2f), yaw %.2f, %.1f m along the lap: %s\n",
+                 stand.duration, stand.place.x + origin.x, stand.place.y + origin.y, stand.place.yaw,
+                 stand.progress * setup_.length(),
+                 stand.every_plan_collides ? "every plan collides or reverses"
+                                           : "plans without a collision do not get on");
   }
 
   void say_estimates(const evaluation::EstimationRecord& record) const {

@@ -77,6 +77,7 @@ struct Localiser::Implementation {
         particles(options, free_cells),
         search(free_cells),
         beams(options.beams) {
+    options.sensor_model = sensor->model();
     start_everywhere();
   }
 

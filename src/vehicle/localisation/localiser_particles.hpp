@@ -113,7 +113,7 @@ class Particles {
     float* log_fit = log_fit_.data();
     sensor.weigh({now_.row(0, 0), now_.row(0, 1), now_.row(0, 2), padded(count_)}, beams, log_fit);
     const float best = *std::max_element(log_fit, log_fit + count_);
-    const int used = options_.sensor_model == SensorModel::beam ? beams.count : beams.hits;
+    const int used = sensor.model() == SensorModel::beam ? beams.count : beams.hits;
     const float power = static_cast<float>(exponent * used);
     double sum = 0;
     for (int i = 0; i < count_; ++i) {

@@ -83,7 +83,7 @@ SensorTables::SensorTables(const maps::OccupancyGrid& map, const LocaliserOption
       field_(geometry_.rows, geometry_.columns),
       place_(geometry_.rows, geometry_.columns) {
   make_field(map, options);
-  if (options.sensor_model == SensorModel::beam) make_ranges(map, options);
+  if (options.sensor_model == SensorModel::beam) make_ranges(map);
 }
 
 void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
@@ -107,12 +107,11 @@ void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOpt
   }
 }
 
-void SensorTables::make_ranges(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
-  const maps::DistanceField walls = maps::distance_transform(map, false);
+void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
   table_.angles = table_angles;
   table_.geometry = geometry_of(map, std::max(table_cell, map.resolution));
   table_.rows = maps::CellGrid<1>(table_.geometry.rows, table_.geometry.columns);
-  table_.range_unit = static_cast<float>(options.range_cap / 65535);
+  table_.range_unit = static_cast<float>(options_.range_cap / 65535);
 
   const double scale = 1 / map.resolution;
   const auto is_free = [&](double x, double y) {
@@ -130,18 +129,18 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map, const LocaliserOp
   }
   const std::size_t angles = static_cast<std::size_t>(table_.angles);
   if (origins.size() * angles > max_entries) {
-    throw std::invalid_argument(
-        "localiser.sensor_model: the table of ranges of this map would have more than 2^27 entries; use "
-        "likelihood_field");
+    options_.sensor_model = SensorModel::likelihood_field;
+    return;
   }
+  const maps::DistanceField walls = maps::distance_transform(map, false);
   table_.pairs.assign(origins.size() * angles, 0);
   std::vector<std::uint32_t> ranges(angles);
   for (std::size_t i = 1; i < origins.size(); ++i) {
     for (std::size_t a = 0; a < angles; ++a) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(a) / static_cast<double>(angles);
       const double range = cast(walls, origins[i].x * scale, origins[i].y * scale, std::cos(angle),
-                                std::sin(angle), options.range_cap);
-      ranges[a] = static_cast<std::uint32_t>(std::min(65535.0, range / options.range_cap * 65535));
+                                std::sin(angle), options_.range_cap);
+      ranges[a] = static_cast<std::uint32_t>(std::min(65535.0, range / options_.range_cap * 65535));
     }
     for (std::size_t a = 0; a < angles; ++a)
       table_.pairs[i * angles + a] = ranges[a] | (ranges[(a + 1) % angles] << 16);

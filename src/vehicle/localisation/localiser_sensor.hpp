@@ -71,8 +71,12 @@ struct RangeTable {
 /// The likelihood of a scan on the map.
 class SensorTables {
  public:
-  /// `map` has been checked. Throws std::invalid_argument where the range table would be too large.
+  /// `map` has been checked. Where the table of ranges would be too large, there is none, and the model is
+  /// the likelihood field.
   SensorTables(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+
+  /// The model by which `weigh` computes.
+  SensorModel model() const noexcept { return options_.sensor_model; }
 
   /// The mean over beams of the logarithm of each beam's probability over the highest possible one, for each
   /// particle; the values of the padding are undefined. Needs beams.count >= 1, of the likelihood field hits
@@ -91,7 +95,7 @@ class SensorTables {
 
  private:
   void make_field(const maps::OccupancyGrid& map, const LocaliserOptions& options);
-  void make_ranges(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+  void make_ranges(const maps::OccupancyGrid& map);
 
   LocaliserOptions options_;
   maps::GridGeometry geometry_;

@@ -14,13 +14,20 @@ double disc_radius(const BodyOptions& options) {
 }  // namespace
 
 ObstacleCost::ObstacleCost(const BodyOptions& options)
-    : discs_(options.model == BodyModel::discs), radius_(disc_radius(options)), margin_(options.margin) {
+    : discs_(options.model == BodyModel::discs),
+      radius_(disc_radius(options)),
+      margin_(options.margin),
+      soft_margin_(options.soft_margin) {
   const double length = options.front + options.rear;
   for (int i = 0; i < 3; ++i) disc_[i] = -options.rear + length * (2 * i + 1) / 6;
-  collision_clearance_ = radius_ + margin_;
-  soft_end_ = radius_ + margin_ + options.soft_margin;
-  inverse_soft_margin_ = options.soft_margin > 0 ? 1 / options.soft_margin : 0;
+  set_margin_shares(1, 1);
   soft_cost_ = options.soft_margin > 0 ? options.soft_cost : 0;
+}
+
+void ObstacleCost::set_margin_shares(double margin, double soft) noexcept {
+  collision_clearance_ = radius_ + margin * margin_;
+  soft_end_ = radius_ + margin * margin_ + soft * soft_margin_;
+  inverse_soft_margin_ = soft_margin_ > 0 ? 1 / (soft * soft_margin_) : 0;
 }
 
 double ObstacleCost::clearance_reach(const BodyOptions& options) {

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "vehicle/planner/car_estimator.hpp"
 #include "vehicle/planner/detour.hpp"
 #include "vehicle/planner/feasible_speeds.hpp"
+#include "vehicle/planner/manoeuvre.hpp"
 #include "vehicle/planner/map_options.hpp"
+#include "vehicle/planner/passage.hpp"
 #include "vehicle/planner/planner_base.hpp"
 #include "vehicle/planner/recovery.hpp"
 #include "vehicle/planner/sight.hpp"
@@ -19,13 +22,15 @@ class DynamicPlanner final : public PlannerBase {
  public:
   explicit DynamicPlanner(PlannerParts& parts)
       : PlannerBase(parts),
+        path_(parts.path),
         car_(options_, this->model()),
         speeds_(limited_path(parts.path, options_, traits_), options_.grip_shares.values()),
         sight_(parts.path, speeds_.length() > 0, reach_, options_, traits_.body),
+        passage_(parts.path, speeds_.length() > 0, traits_.body),
         detour_(limited_path(parts.path, options_, traits_), speeds_.length() > 0, traits_.body),
+        manoeuvre_(parts.path, speeds_.length() > 0, traits_.body, traits_.wheelbase, options_.steer_limit),
         ways_(parts.path, speeds_.length() > 0, solver_->horizon(), solver_->inputs(), traits_,
               options_.steer_limit) {
-    conditions_.top_speed = options_.max_speed;
     set_friction(traits_.friction);
     if (traits_.seeks_lap_time) field_.set_curvatures(speeds_.curvatures(), speeds_.length() > 0);
   }
@@ -46,8 +51,13 @@ class DynamicPlanner final : public PlannerBase {
     field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), time_in_view());
     obstacles_.charge_time_behind(field_, origin_, start.pose);
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
+    conditions_.top_speed = options_.max_speed;
+    conditions_.margin_share = conditions_.soft_share = 1;
     if (traits_.seeks_lap_time && options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);
+    if (options_.back_up && traits_.obstacle_map == ObstacleMap::clearance)
+      fit_margins(scan_pose, 1 + fastest * horizon_time());
     if (options_.back_up) recover(odometry, start.pose);
+    if (options_.back_up && manoeuvres(input, scan_pose)) return;
     if (must_stop(here)) return stop(PlannerStatus::off_course);
     model().set_conditions(conditions_);
     begin_rollouts(scan_pose, start, here.speed);
@@ -94,18 +104,28 @@ class DynamicPlanner final : public PlannerBase {
   void look_ahead(const maps::LaserScanView& scan, const maps::Pose& scan_pose) noexcept {
     seen_ = sight_.look(scan, scan_pose, field_.nearest());
     obstacles_.add(sight_.unknown());
-    conditions_.top_speed = std::min(sight_.stopping_speed(seen_.way), options_.max_speed);
+    conditions_.top_speed = std::min(conditions_.top_speed, sight_.stopping_speed(seen_.way));
+  }
+
+  /// Lets plans keep no wider margins than the narrowest place of the next `reach` m has, and pass it slowly.
+  void fit_margins(const maps::Pose& scan_pose, double reach) noexcept {
+    const WidestWay way = passage_.search(obstacles_.clearance_map(), scan_pose, field_.nearest(), reach);
+    conditions_.margin_share = way.margin_share;
+    conditions_.soft_share = way.soft_share;
+    conditions_.top_speed = std::min(conditions_.top_speed, way.top_speed);
   }
 
   /// Decides whether plans reverse, how urgent they are, and whether they follow a detour.
   void recover(const Odometry& odometry, const maps::Pose& start) noexcept {
     const int nearest = field_.nearest();
+    const bool at_end = speeds_.length() == 0 && path_.size() - 1 - static_cast<std::size_t>(nearest) < 2;
+    if (at_end) recovery_.watch_from(speeds_.arc(nearest));
     recovery_.update(speeds_.arc(nearest), speeds_.length(), odometry.speed,
                      speeds_.speeds()[static_cast<std::size_t>(nearest)], options_.control_period,
                      obstacles_.one_drives_ahead(odometry.pose, origin_));
     detour_.note(recovery_, odometry.pose);
     conditions_.reverse = recovery_.reversing() ? Recovery::speed : 0;
-    conditions_.margin_share = recovery_.margin_share();
+    conditions_.margin_share = std::min(conditions_.margin_share, recovery_.margin_share());
     on_detour_ =
         recovery_.tries_again() && detour_.search(obstacles_.clearance_map(), odometry.pose, nearest);
     if (on_detour_) {
@@ -116,6 +136,36 @@ class DynamicPlanner final : public PlannerBase {
           (recovery_.leaving() || seen_.obstacle < PathInSight::all) && !recovery_.reversing();
       conditions_.urgency = passes ? Urgency::passing : Urgency::usual;
     }
+  }
+
+  /// Drives a manoeuvre where the car stands without a way on, or is turned away from the path. Returns
+  /// whether the command is that of a manoeuvre.
+  bool manoeuvres(const PlannerInput& input, const maps::Pose& pose) noexcept {
+    const maps::ReferencePoint& path = path_[static_cast<std::size_t>(field_.nearest())];
+    const bool turned = std::abs(maps::wrap_angle(pose.yaw - path.yaw)) > most_turned;
+    const bool stands = std::abs(input.odometry.speed) < standing;
+    const bool begins = recovery_.begins_to_reverse() || (turned && stands);
+    const maps::ClearanceMap& obstacles = obstacles_.clearance_map();
+    if (traits_.obstacle_map != ObstacleMap::clearance || (!manoeuvre_.active() && !begins)) return false;
+    const double sight = std::abs(input.scan.angle_min);
+    const auto find = [&] {
+      return manoeuvre_.search(obstacles, pose, field_.nearest(), turned ? -1e3 : way_past, sight);
+    };
+    if (!manoeuvre_.active() && !find()) return false;
+    std::optional<Command> command =
+        manoeuvre_.follow(obstacles, pose, input.odometry.speed, steer_estimate());
+    if (!command && manoeuvre_.active()) {
+      const bool found = stands && find();
+      if (found) command = manoeuvre_.follow(obstacles, pose, input.odometry.speed, steer_estimate());
+      if (!command && stands) manoeuvre_.cancel();
+      if (!command && !stands) command = Command{car_.state().now().steer, 0};
+    }
+    recovery_.watch_from(speeds_.arc(field_.nearest()));
+    if (!command) return false;
+    stop(manoeuvre_.reverses() ? PlannerStatus::blocked : PlannerStatus::fallback_plan);
+    brakes_ = false;
+    output_.command = *command;
+    return true;
   }
 
   /// Replaces the solution by a better sequence, if there is one.
@@ -147,21 +197,31 @@ class DynamicPlanner final : public PlannerBase {
     path_friction_ = 0;
     set_friction(traits_.friction);
     recovery_.reset();
+    manoeuvre_.cancel();
   }
   double steer_estimate() const noexcept override { return car_.state().now().steer; }
-  double slowest() const noexcept override { return recovery_.reversing() ? -1.5 * Recovery::speed : 0; }
+  double slowest() const noexcept override {
+    return recovery_.reversing() || manoeuvre_.active() ? -1.5 * Recovery::speed : 0;
+  }
   GridView<4> followed() const noexcept override {
     return on_detour_ ? detour_.field().view() : field_.view();
   }
 
   DynamicVehicleModel& model() noexcept { return static_cast<DynamicVehicleModel&>(*model_); }
 
+  static constexpr double most_turned = 1.8;  ///< rad from the path, beyond which the car turns first
+  static constexpr double standing = 0.15;    ///< m/s
+  static constexpr double way_past = 1.5;     ///< m along the path, past the place where the car stands
+
+  std::vector<maps::ReferencePoint> path_;
   CarEstimator car_;
   FeasibleSpeeds speeds_;
   Sight sight_;
+  Passage passage_;
   PathInSight seen_;  ///< set only with `sight_deceleration`
   Recovery recovery_;
   Detour detour_;
+  Manoeuvre manoeuvre_;
   WaysAround ways_;
   DrivingConditions conditions_;
   double path_friction_ = 0;  ///< friction for which the path's speeds were computed

@@ -12,8 +12,9 @@
 
 namespace slalom::vehicle::detail {
 
-/// Remembers the obstacle points of the last seconds, in the frame of the odometry. Where the scan does not
-/// reach, old points still count, so a reversing car knows the obstacles behind it.
+/// Remembers the obstacle points of the last scans, in the frame of the odometry. Where the scan does not
+/// reach, old points still count, so a reversing car knows the obstacles behind it. Only scans from different
+/// places are kept, so a car that stands or shuffles forgets nothing.
 class ObstacleMemory {
  public:
   /// The lengths of maps are `scale` times those for a 1/10-scale car.
@@ -22,13 +23,18 @@ class ObstacleMemory {
   void reset() noexcept {
     for (Scan& scan : scans_) scan.count = 0;
     age_ = interval;
+    is_empty_ = true;
   }
 
   /// Remembers points (robot's frame, m) of the scan at `pose`. Call it once per control period (s).
   void remember(std::span<const maps::ScanPoint> seen, const maps::Pose& pose, double period) noexcept {
     age_ += period;
-    if (age_ < interval) return;
+    const bool elsewhere = is_empty_ || std::hypot(pose.x - last_.x, pose.y - last_.y) > apart ||
+                           std::abs(maps::wrap_angle(pose.yaw - last_.yaw)) > turned;
+    if (age_ < interval || !elsewhere) return;
     age_ = 0;
+    last_ = pose;
+    is_empty_ = false;
     Scan& scan = scans_[next_];
     next_ = (next_ + 1) % scans;
     scan.count = 0;
@@ -90,7 +96,8 @@ class ObstacleMemory {
   };
 
   static constexpr std::size_t scans = 24, max_points = 160;
-  static constexpr double interval = 0.2;  ///< s between scans that are kept
+  static constexpr double interval = 0.2;               ///< s between scans that are kept
+  static constexpr double apart = 0.15, turned = 0.15;  ///< m, rad, from the last scan that was kept
 
   struct Scan {
     std::array<maps::Point, max_points> points;  ///< map frame
@@ -99,6 +106,8 @@ class ObstacleMemory {
   std::array<Scan, scans> scans_{};
   std::size_t next_ = 0;
   double age_ = interval;
+  maps::Pose last_;  ///< pose of the scan that was kept last
+  bool is_empty_ = true;
   double reach_;  ///< m; points that are further away are not kept
   ReservedVector<maps::Point> blind_;
 };

@@ -17,6 +17,8 @@ class Recovery {
   void reset() noexcept { *this = {}; }
 
   bool reversing() const noexcept { return reversing_; }
+  /// Whether it began to reverse in the last update.
+  bool begins_to_reverse() const noexcept { return reversing_ && reversing_for_ == 0; }
   /// Whether the car is not yet well past the place where it crawled or stood.
   bool leaving() const noexcept { return leaving_; }
   /// Whether the car drives on after reversing and is not yet well past that place.
@@ -28,6 +30,14 @@ class Recovery {
   bool confined() const noexcept { return confined_; }
   /// The share of the margin around the body that plans keep.
   double margin_share() const noexcept { return confined_ ? confined_margin : 1; }
+
+  /// Begins to watch anew from this place along the course (m), after a manoeuvre: nothing counts as
+  /// standing.
+  void watch_from(double arc) noexcept {
+    reversing_ = false;
+    furthest_ = arc;
+    since_progress_ = standing_for_ = crawling_for_ = 0;
+  }
 
   /// Advances by one control period (s). `arc` is the place of the car along the course (m), and `length`
   /// that of a closed course (m), 0 if it is open. The car drives at `speed_now` and would drive at

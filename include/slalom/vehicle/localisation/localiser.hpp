@@ -88,7 +88,7 @@ class Localiser {
   /// Copies the needed parts of `map` into tables, and starts everywhere. Throws std::invalid_argument on
   /// options out of range; on a map without free or without occupied cells, with more than 32766 cells to a
   /// side, with sizes that disagree, with an origin that is not finite or a resolution that is not finite and
-  /// positive; and if the table of ranges would have more than 2^27 entries.
+  /// positive.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
   /// Copies everything: the copy continues bit for bit like the original. The tables of the map are shared.
@@ -117,7 +117,9 @@ class Localiser {
 
   int particle_count() const noexcept;          ///< number of the present particles
   Particle particle(int index) const noexcept;  ///< 0 <= index < particle_count()
-  /// The options given at construction.
+  /// The options given at construction. `sensor_model` is the one in use: likelihood_field where the table of
+  /// ranges would have more than 2^27 entries, with 180 for each cell of 0.1 m (or of the map, if larger)
+  /// that is free.
   const LocaliserOptions& options() const noexcept;
 
  private:

@@ -51,7 +51,10 @@ template <class Options, class Visit>
 requires is_options_of<Options, LocaliserOptions>
 void visit_options(Options& o, Visit&& visit) {
   visit(o.seed, {"seed", "", "seed of the random numbers"});
-  visit(o.sensor_model, {"sensor_model", "", "probability of a range at a pose"});
+  visit(o.sensor_model,
+        {"sensor_model", "",
+         "probability of a range at a pose; beam needs a table, and is likelihood_field on maps too "
+         "large for one"});
   visit(o.laser_x, {"laser_x", "m", "position of the laser ahead of the rear axle", -10, 10});
   visit(o.laser_y, {"laser_y", "m", "position of the laser to the left of the rear axle", -10, 10});
   visit(o.laser_yaw, {"laser_yaw", "rad", "direction of the laser", -3.2, 3.2});

@@ -22,9 +22,9 @@ class ObstacleCost {
   /// free, 100 occupied), for discs the map of clearances (m, up to `clearance_reach`). Its ring is negative.
   void set_map(const GridView<1>& obstacles, const maps::Pose& robot) noexcept;
 
-  /// Counts collisions up to this share (0 to 1) of the margin around the body. It matters with discs alone:
-  /// the map for a box has its margin in it.
-  void set_margin_share(double share) noexcept { collision_clearance_ = radius_ + share * margin_; }
+  /// Counts collisions up to this share (0 to 1) of the margin around the body, and nearness up to this share
+  /// (above 0) of the soft margin. It matters with discs alone: the map for a box has its margins in it.
+  void set_margin_shares(double margin, double soft) noexcept;
 
   /// The robot's pose at the time of the scan, map frame.
   const maps::Pose& robot() const noexcept { return robot_; }
@@ -94,7 +94,7 @@ class ObstacleCost {
   GridView<1> obstacles_;
   maps::Pose robot_;
   bool discs_;
-  double radius_, margin_;                        ///< m, of a disc, and around it
+  double radius_, margin_, soft_margin_;          ///< m, of a disc, and around it
   double to_local_[6] = {1, 0, 0, 0, 1, 0};       ///< m in the map frame -> m in the robot's
   Coefficient to_cells_[6] = {1, 0, 0, 0, 1, 0};  ///< m in the map frame -> cells of the cost map
   Coefficient disc_[3];                           ///< m, centres of the discs ahead of the rear axle

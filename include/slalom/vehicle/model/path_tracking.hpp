@@ -106,7 +106,7 @@ class PathTracking {
   {
     motion_.set_conditions(now);
     cost_.set_conditions(now);
-    obstacles_.set_margin_share(now.margin_share);
+    obstacles_.set_margin_shares(now.margin_share, now.soft_share);
   }
 
   /// The state at the start; `reference_speed` (m/s) is the path's there.

@@ -71,6 +71,7 @@ struct DrivingConditions {
   double reverse = 0;                ///< m/s; above 0, the car reverses along the path, at most at this speed
   Urgency urgency = Urgency::usual;  ///< price of lost time
   double margin_share = 1;           ///< 0 to 1, share of the body's margin that predictions keep
+  double soft_share = 1;             ///< above 0 to 1, share of the soft margin in which nearness has a cost
 };
 
 /// Properties of a vehicle model.

@@ -1,0 +1,88 @@
+// Turning in three points, in a lane.
+#include "vehicle/planner/manoeuvre.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "support/allocations.hpp"
+#include "support/lane.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+const BodyOptions body{.margin = 0.05};
+constexpr double wheelbase = 0.33, steer_limit = 0.4189, period = 0.025, sight = 2.36;
+
+/// A lane along the x axis, 2 m wide, as a car sees it.
+class Lane {
+ public:
+  explicit Lane(double half = 1) {
+    for (double x = 0; x < 20; x += 0.03)
+      for (const double side : {-half, half}) walls_.push_back({x, side});
+  }
+  const maps::ClearanceMap& seen_from(const maps::Pose& pose) {
+    map_.clear();
+    std::vector<maps::Point> seen;
+    for (const maps::Point& wall : walls_) seen.push_back(maps::inverse_transform(pose, wall));
+    map_.add(std::span<const maps::Point>(seen));
+    return map_;
+  }
+
+ private:
+  std::vector<maps::Point> walls_;
+  maps::ClearanceMap map_{{.length_x = 10, .length_y = 10, .center_x = 1, .reach = 0.5}};
+};
+
+/// Drives a car with exact brakes until its way ends. Returns its last pose.
+maps::Pose driven(Manoeuvre& manoeuvre, Lane& lane, maps::Pose pose) {
+  double speed = 0, steer = 0;
+  for (int k = 0; k < 2000 && manoeuvre.active(); ++k) {
+    auto command = manoeuvre.follow(lane.seen_from(pose), pose, speed, steer);
+    if (!command && !manoeuvre.active()) break;
+    if (!command) {  // beside the way: it stops and searches again
+      command = Command{steer, 0};
+      if (std::abs(speed) < 0.1) {
+        EXPECT_TRUE(manoeuvre.search(lane.seen_from(pose), pose, static_cast<int>(10 * pose.x), -1e3, sight));
+      }
+    }
+    steer += std::clamp(command->steer - steer, -3.2 * period, 3.2 * period);
+    speed += std::clamp(command->speed - speed, -6 * period, 4 * period);
+    const double turned = speed * period * std::tan(steer) / wheelbase, middle = pose.yaw + 0.5 * turned;
+    pose = {pose.x + speed * period * std::cos(middle), pose.y + speed * period * std::sin(middle),
+            maps::wrap_angle(pose.yaw + turned)};
+    const maps::ClearanceMap& map = lane.seen_from(pose);
+    for (const double x : {-0.119, 0.17, 0.461})
+      for (const double y : {-0.155, 0.155}) EXPECT_GT(map.at(x, y), 0) << "at " << pose.x << ", " << pose.y;
+  }
+  return pose;
+}
+
+TEST(Manoeuvre, TurnsACarRoundInALane) {
+  Manoeuvre manoeuvre(testing::lane(5), false, body, wheelbase, steer_limit);
+  for (const double yaw : {3.14, 2.0, -1.57, -2.6}) {
+    Lane lane;
+    const maps::Pose start{10, 0.2, yaw};
+    const maps::ClearanceMap& map = lane.seen_from(start);
+    const long before = testing::allocations();
+    const bool found = manoeuvre.search(map, start, 100, -1e3, sight);
+    EXPECT_EQ(testing::allocations(), before);
+    ASSERT_TRUE(found) << yaw;
+    const maps::Pose end = driven(manoeuvre, lane, start);
+    EXPECT_LT(std::abs(end.yaw), 0.7) << "from " << yaw;
+    EXPECT_LT(std::abs(end.y), 1) << "from " << yaw;
+  }
+}
+
+TEST(Manoeuvre, FindsNoWayWhereThereIsNone) {
+  Manoeuvre manoeuvre(testing::lane(5), false, body, wheelbase, steer_limit);
+  Lane narrow(0.25);
+  const maps::Pose start{10, 0, 3.14};
+  EXPECT_FALSE(manoeuvre.search(narrow.seen_from(start), start, 100, -1e3, sight));
+  EXPECT_FALSE(manoeuvre.active());
+}
+
+}  // namespace
+}  // namespace slalom::vehicle::detail
