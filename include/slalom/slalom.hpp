@@ -19,6 +19,7 @@
 #include "slalom/solvers/feedback.hpp"
 #include "slalom/solvers/proposals.hpp"
 #include "slalom/solvers/registry.hpp"
+#include "slalom/solvers/solve_batch.hpp"
 #include "slalom/solvers/solver.hpp"
 #include "slalom/solvers/solver_base.hpp"
 

@@ -11,8 +11,6 @@
 namespace slalom {
 namespace {
 
-constexpr const char* activation_names[] = {"tanh", "relu", "softplus", "silu"};
-
 [[noreturn]] void reject(const std::string& what) {
   throw std::invalid_argument("mlp: " + what);
 }
@@ -145,6 +143,13 @@ void MlpNetwork::store(const MlpParameters::Layer& layer, std::vector<float>& we
 
 }  // namespace detail
 
+Activation activation_of(std::string_view name) {
+  const char* const* const names = enum_names(Activation{});
+  for (int i = 0; names[i]; ++i)
+    if (name == names[i]) return static_cast<Activation>(i);
+  throw std::invalid_argument("'" + std::string(name) + "' must be tanh, relu, softplus or silu");
+}
+
 MlpParameters load_mlp(const std::filesystem::path& npz_file) {
   auto arrays = read_npz(npz_file);
   const auto fail = [&](const std::string& what) { throw IoError(npz_file.string(), 0, what); };
@@ -170,10 +175,11 @@ MlpParameters load_mlp(const std::filesystem::path& npz_file) {
                         weights.values, biases.values});
   }
   const std::string activation = take("activation", 0, true).text;
-  const auto* const known = std::find(std::begin(activation_names), std::end(activation_names), activation);
-  if (known == std::end(activation_names))
-    fail("array 'activation': '" + activation + "' must be tanh, relu, softplus or silu");
-  p.activation = static_cast<Activation>(known - std::begin(activation_names));
+  try {
+    p.activation = activation_of(activation);
+  } catch (const std::invalid_argument& error) {
+    fail(std::string("array 'activation': ") + error.what());
+  }
   p.input_mean = take("input_mean", 1, false).values;
   p.input_scale = take("input_scale", 1, false).values;
   p.output_mean = take("output_mean", 1, false).values;

@@ -34,6 +34,22 @@ struct Plain {
   }
 };
 
+/// The same without a terminal cost.
+struct Unending {
+  template <class T>
+  using State = Plain::State<T>;
+  static constexpr int inputs = Plain::inputs;
+
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 2>& u) const {
+    return Plain{}.step(x, u);
+  }
+  template <class T>
+  Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
+    return Plain{}.stage_cost(x, u);
+  }
+};
+
 /// The same in terms.
 struct Named : Plain {
   static constexpr std::array cost_names{"position", "speed", "effort"};
@@ -56,6 +72,12 @@ struct AllNamed : Named {
 /// Pushes that build up slowly: the first by 2 a second, the second by 0.5.
 struct Slow : Plain {
   std::array<double, 2> input_rate_max{2, 0.5};
+};
+
+/// A push that is on, off or reversed, and one of any value.
+struct Stepped : Plain {
+  double input_min = -1, input_max = 1;
+  std::array<double, 2> input_levels{3, 0};
 };
 
 struct Rollouts {
@@ -120,6 +142,26 @@ TEST_P(ProblemPartsOnInstructionSet, RateLimitsHoldInRolloutsAsInThePlan) {
   }
 }
 
+TEST_P(ProblemPartsOnInstructionSet, LevelsHoldInRolloutsAsInThePlan) {
+  Rollouts rollouts;
+  ProblemEvaluator<Stepped> evaluator({}, GetParam());
+  const Input<double, 2> remainder{{0.25, 0}};
+  evaluator.set_state({0.4, 0.1});
+  evaluator.set_previous_input(remainder);
+  rollouts.run(evaluator);
+  for (int k = 0; k < 128; ++k) {
+    auto u = rollouts.sequence(k);
+    const auto free = u;
+    hold_input_rates(Stepped{}, remainder, u.data(), 9);
+    for (std::size_t step = 0; step < 9; ++step) {
+      EXPECT_TRUE(u[step][0] == -1 || u[step][0] == 0 || u[step][0] == 1) << u[step][0];
+      EXPECT_EQ(u[step][1], free[step][1]);
+    }
+    const double held = predict(Stepped{}, {0.4, 0.1}, u.data(), 9, nullptr).value;
+    EXPECT_NEAR(static_cast<double>(rollouts.costs[static_cast<std::size_t>(k)]), held, 1e-4 * held);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Targets, ProblemPartsOnInstructionSet,
                          ::testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
                                            simd::Target::avx512),
@@ -133,6 +175,37 @@ TEST(ProblemParts, RatesAreHeldFromWhatWasAppliedBefore) {
   EXPECT_DOUBLE_EQ(u[1][0], 1.4);
   EXPECT_DOUBLE_EQ(u[2][0], 1.2);
   EXPECT_DOUBLE_EQ(u[2][1], -0.05);
+}
+
+TEST(ProblemParts, LevelsHaveTheMeanOfTheInputs) {
+  std::array<Input<double, 2>, 40> u;
+  u.fill({{0.28125, 0.28125}});
+  hold_input_rates(Stepped{}, {}, u.data(), 40);
+  double sum = 0;
+  for (const auto& each : u) sum += each[0];
+  EXPECT_NEAR(sum, 40 * 0.28125, 0.5);
+  Input<double, 2> remainder{};  // as if the plan was made in two parts
+  const std::vector<float> wanted(80, 0.28125f);
+  carry_remainder(Stepped{}, wanted.data(), u.data(), 17, remainder);
+  std::array<Input<double, 2>, 23> rest;
+  rest.fill({{0.28125, 0.28125}});
+  hold_input_rates(Stepped{}, remainder, rest.data(), 23);
+  for (std::size_t k = 0; k < 23; ++k) EXPECT_EQ(rest[k][0], u[17 + k][0]) << k;
+}
+
+TEST(ProblemParts, TheTerminalCostIsOptional) {
+  const Input<double, 2> u[1] = {{{1, 2}}};
+  EXPECT_EQ(predict(Unending{}, {0.5, 1}, u, 1, nullptr).value,
+            Plain{}.stage_cost(Plain::State<double>{0.5, 1}, u[0]).value);
+  ProblemEvaluator<Unending> evaluator{Unending{}};
+  evaluator.set_state({0.5, 1});
+  SequenceBatch batch(1, 2, 1);
+  batch.row(0, 0)[0] = 1;
+  batch.row(0, 1)[0] = 2;
+  AlignedBuffer costs(batch.stride());
+  std::vector<std::uint8_t> hits(static_cast<std::size_t>(batch.stride()));
+  evaluator.evaluate(batch, 0, 1, costs.data(), hits.data());
+  EXPECT_FLOAT_EQ(costs[0], 0.25f + 0.1f + 0.05f);
 }
 
 TEST(ProblemParts, CostTermsAreNamed) {

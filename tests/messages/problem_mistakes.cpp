@@ -22,6 +22,8 @@ struct Point {
   float input_min[1] = {-1};
 #elif MISTAKE == 10
   double input_rate_max = 1;
+#elif MISTAKE == 20
+  double input_levels = 3;
 #elif MISTAKE == 19
   double ts = 0.1;
 #endif
@@ -71,7 +73,12 @@ struct Point {
     return x.position * x.position;
   }
 #endif
-#if MISTAKE != 8 && MISTAKE != 1
+#if MISTAKE == 8
+  template <class T>
+  T terminal_cost(const State<T>& x) {
+    return x.position;
+  }
+#elif MISTAKE != 1
   template <class T>
   T terminal_cost(const State<T>& x) const {
 #if MISTAKE == 13

@@ -40,6 +40,53 @@ TEST(Controller, RepeatsThePlanWhereTheStateIsNotFinite) {
   EXPECT_EQ(second.states[0].position, 0.5);
 }
 
+/// An integrator whose steps have no stated duration.
+struct Timeless {
+  template <class T>
+  using State = DoubleIntegrator::State<T>;
+  static constexpr int inputs = 1;
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 1>& u) const {
+    return {x.position + T(0.1) * x.speed, x.speed + T(0.1) * u[0]};
+  }
+  template <class T>
+  T stage_cost(const State<T>& x, const Input<T, 1>&) const {
+    return square(x.position);
+  }
+};
+
+TEST(Controller, RejectsTimesThatItCannotUse) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Mppi controller{DoubleIntegrator{}, {.horizon = 5}};
+  for (const SolveRequest& request :
+       {SolveRequest{.elapsed = -0.1}, SolveRequest{.elapsed = nan},
+        SolveRequest{.elapsed = std::numeric_limits<double>::infinity()}, SolveRequest{.deadline = nan}})
+    EXPECT_EQ(controller.solve({0.5, 0}, request).status, Status::invalid_time);
+  EXPECT_NE(controller.solve({0.5, 0}, {.elapsed = 0.1, .deadline = -1}).status, Status::invalid_time);
+  Mppi timeless{Timeless{}, {.horizon = 5}};
+  EXPECT_EQ(timeless.solve({0.5, 0}, {.elapsed = 0.1}).status, Status::invalid_time);
+  EXPECT_EQ(timeless.solve({0.5, 0}).status, Status::ok);
+}
+
+TEST(SolveBatch, GivesThePlansOfSingleSolvesOnAnyNumberOfThreads) {
+  using Integrator = Mppi<DoubleIntegrator>;
+  const Integrator one{DoubleIntegrator{},
+                       {.horizon = 8, .samples = 128, .input_min = {-2}, .input_max = {2}}};
+  std::vector<Integrator::State> states;
+  for (int i = 0; i < 9; ++i) states.push_back({0.1 * i, 0});
+  for (const int threads : {1, 3}) {
+    std::vector<Integrator> batch(states.size(), one), single(states.size(), one);
+    ThreadPool pool(threads);
+    std::vector<double> found(states.size());
+    for (int k = 0; k < 2; ++k) {  // the second solve starts from each controller's own last plan
+      solve_batch(std::span(batch), states, {.elapsed = 0.1}, pool,
+                  [&](int i, const auto& plan) { found[static_cast<std::size_t>(i)] = plan.inputs[0][0]; });
+      for (std::size_t i = 0; i < states.size(); ++i)
+        EXPECT_EQ(found[i], single[i].solve(states[i], {.elapsed = 0.1}).inputs[0][0]) << i;
+    }
+  }
+}
+
 /// The problem of the copy is its own: the original's changes do not reach it, and both go on with the same
 /// bits as controllers that were never copied.
 template <class Make>

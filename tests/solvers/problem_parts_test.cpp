@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "slalom/slalom.hpp"
 #include "solvers/problems.hpp"
@@ -70,6 +71,41 @@ TEST(RateLimits, StartFromTheAppliedInput) {
   EXPECT_LE(controller.solve(far_left, {.elapsed = 0.1}).inputs[0][0], -1.8 + 1e-12);
   controller.reset(0);
   EXPECT_LE(std::abs(controller.solve(far_left).inputs[0][0]), 0.2 + 1e-12);
+}
+
+/// A thruster: on or off in either direction.
+struct Thruster : DoubleIntegrator {
+  double input_min = -1, input_max = 1, input_levels = 3;
+};
+
+TEST(InputLevels, PlansHaveThemAndReachWhatTheyCannotHold) {
+  for (const char* name : solver_names()) {
+    Controller<Thruster> controller(Thruster{}, solver_options(name));
+    Thruster::State<double> x{1, 0};
+    int pushes = 0;
+    for (int k = 0; k < 100; ++k) {
+      const auto plan = controller.solve(x, {.elapsed = k ? 0.1 : 0});
+      for (const auto& u : plan.inputs)
+        ASSERT_TRUE(u[0] == -1 || u[0] == 0 || u[0] == 1) << name << ' ' << u[0];
+      EXPECT_EQ(plan.corrections, 0);
+      pushes += plan.inputs[0][0] != 0;
+      x = controller.problem().step(x, plan.inputs[0]);
+    }
+    EXPECT_LT(std::abs(x.position), 0.6) << name;
+    EXPECT_GT(pushes, 1) << name;
+  }
+}
+
+TEST(InputLevels, AreChecked) {
+  Thruster thruster;
+  thruster.input_levels = 1;
+  EXPECT_THROW(Mppi(thruster, {}), std::invalid_argument);
+  thruster.input_levels = 2.5;
+  EXPECT_THROW(Mppi(thruster, {}), std::invalid_argument);
+  thruster.input_levels = 2;
+  EXPECT_NO_THROW(Mppi(thruster, {}));
+  thruster.input_max = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(Mppi(thruster, {}), std::invalid_argument);
 }
 
 /// Pushes that hold for four steps at a time.

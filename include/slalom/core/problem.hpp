@@ -14,7 +14,7 @@
 ///       static constexpr int inputs = 1;                       // torque, N m
 ///       template <class T> State<T> step(const State<T>& x, const Input<T, 1>& u) const;
 ///       template <class T> T stage_cost(const State<T>& x, const Input<T, 1>& u) const;
-///       template <class T> T terminal_cost(const State<T>& x) const;
+///       template <class T> T terminal_cost(const State<T>& x) const;    // optional
 ///     };
 ///
 /// `State<T>` is an aggregate of `T` (nested arrays are fine). Optional:
@@ -29,6 +29,9 @@
 ///  - members `input_min` and `input_max`, a `double` or a `std::array<double, inputs>`: bounds in
 ///    addition to those of a method's options, read when a controller is made;
 ///  - a member `input_rate_max`, of the same type: the largest rate of each input in rollouts and plans, 1/s;
+///  - a member `input_levels`, of the same type: the number of evenly spaced values from `input_min` to
+///    `input_max` that an input takes, for instance 3 for a thruster that pushes, pulls or is off; 0: all
+///    values;
 ///  - `void sample(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept`: its own
 ///    noise instead of independent standard normal values (see `Sampler`);
 ///  - `static constexpr bool long_steps = true`: a step has several hundred instructions, so
@@ -121,9 +124,23 @@ SLALOM_INLINE_CALLS auto stage_cost(const P& p, const StateOf<P, T>& x, const L&
   }
 }
 
+/// Has the name `terminal_cost` twice if a problem has it, too, and then naming it is ambiguous.
+struct TerminalCostName {
+  int terminal_cost;
+};
+template <class P>
+struct TerminalCostProbe : P, TerminalCostName {};
+/// Whether a problem has no member `terminal_cost` at all, neither a right nor a wrong one.
+template <class P>
+concept LacksTerminalCost = !std::is_final_v<P> && requires {
+  &TerminalCostProbe<P>::terminal_cost;
+};
+
 template <class P, class T, class L>
 SLALOM_INLINE_CALLS auto terminal_cost(const P& p, const StateOf<P, T>& x, const L& seen) {
-  if constexpr (looks_up<P, T>) {
+  if constexpr (LacksTerminalCost<P>) {
+    return T(0);
+  } else if constexpr (looks_up<P, T>) {
     return p.terminal_cost(x, seen);
   } else {
     return p.terminal_cost(x);

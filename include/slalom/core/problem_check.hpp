@@ -50,10 +50,9 @@ concept DeclaresStageCost = requires(const P& p, const StateOf<P, T>& x, const I
 }
 || looks_up<P, T>;
 template <class P, class T>
-concept DeclaresTerminalCost = requires(const P& p, const StateOf<P, T>& x) {
+concept DeclaresTerminalCost = LacksTerminalCost<P> || requires(const P& p, const StateOf<P, T>& x) {
   p.terminal_cost(x);
-}
-|| looks_up<P, T>;
+} || looks_up<P, T>;
 
 template <class P>
 concept InputMinFits = !has_input_min<P> || is_bound<decltype(P::input_min), P::inputs>;
@@ -61,6 +60,8 @@ template <class P>
 concept InputMaxFits = !has_input_max<P> || is_bound<decltype(P::input_max), P::inputs>;
 template <class P>
 concept InputRateFits = !limits_rates<P> || is_bound<decltype(P::input_rate_max), P::inputs>;
+template <class P>
+concept InputLevelsFit = !has_levels<P> || is_bound<decltype(P::input_levels), P::inputs>;
 template <class P>
 concept HasTimeStep = requires(const P& p) {
   p.time_step();
@@ -81,6 +82,10 @@ constexpr void check_parts() {
   static_assert(
       !limits_rates<P> || HasTimeStep<P>,
       "slalom: a problem with input_rate_max needs the duration of its step, `dt` or `time_step()`");
+  static_assert(InputLevelsFit<P>,
+                "slalom: the problem's input_levels must be a double or a std::array<double, inputs>");
+  static_assert(!has_levels<P> || (has_input_min<P> && has_input_max<P> && !limits_rates<P>),
+                "slalom: a problem with input_levels needs input_min and input_max, and no input_rate_max");
   static_cast<void>(cost_terms_of<P>());
 }
 
@@ -98,9 +103,8 @@ constexpr bool check_problem() {
                   "slalom: the problem needs `template <class T> T stage_cost(const State<T>& x, const "
                   "slalom::Input<T, inputs>& u) const`, for every T, and const");
     static_assert(DeclaresTerminalCost<P, double> && DeclaresTerminalCost<P, float>,
-                  "slalom: the problem needs `template <class T> T terminal_cost(const State<T>& x) const`, "
-                  "for every T, "
-                  "and const");
+                  "slalom: the problem's terminal_cost must be `template <class T> T terminal_cost(const "
+                  "State<T>& x) const`, for every T, and const");
     if constexpr (DeclaresStep<P, double>) {
       static_assert(StepsToState<P, double>, "slalom: the problem's step must return the State<T> of its T");
     }

@@ -40,10 +40,10 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
     for (int i = 0; i < detail::state_size<P>; ++i) state_[i] = static_cast<float>(values[i]);
   }
 
-  /// Sets the input that was applied before the next rollouts. Ignored unless the problem has
-  /// `input_rate_max`.
+  /// Sets the input that was applied before the next rollouts, for a problem with `input_rate_max`, or the
+  /// remainder for one with `input_levels`. Otherwise ignored.
   void set_previous_input(const Input<double, P::inputs>& u) noexcept {
-    if constexpr (detail::limits_rates<P>) {
+    if constexpr (detail::carries_inputs<P>) {
       for (int i = 0; i < P::inputs; ++i) state_[detail::state_size<P> + i] = static_cast<float>(u[i]);
     }
   }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
@@ -113,6 +115,15 @@ inline constexpr bool limits_rates = requires(const P& p) {
   p.input_rate_max;
 };
 
+template <class P>
+inline constexpr bool has_levels = requires(const P& p) {
+  p.input_levels;
+};
+/// Whether rollouts carry a value for each input from step to step: the input before where rates are limited,
+/// the remainder where inputs are in levels.
+template <class P>
+inline constexpr bool carries_inputs = limits_rates<P> || has_levels<P>;
+
 /// Whether rollouts of a problem take packs in pairs (pack/pair.hpp).
 template <class P>
 inline constexpr bool has_long_steps = requires {
@@ -162,6 +173,13 @@ InputBounds stated_bounds(const P& problem) {
       const double rate = entry(problem.input_rate_max, i);
       require(rate >= 0, ".input_rate_max", rate, "at least 0");
     }
+    if constexpr (has_levels<P>) {
+      const double levels = entry(problem.input_levels, i);
+      require(levels == 0 || (levels >= 2 && levels <= 1e6 && levels == std::floor(levels)), ".input_levels",
+              levels, "0 or a whole number from 2 to 1e6");
+      require(levels == 0 || (high > low && std::isfinite(high - low)), ".input_max", high,
+              "finite and above input_min where there are input_levels");
+    }
     bounds.low[static_cast<std::size_t>(i)] = low;
     bounds.high[static_cast<std::size_t>(i)] = high;
   }
@@ -186,10 +204,55 @@ SLALOM_INLINE void hold_rate(Input<T, M>& u, Input<T, M>& previous, const Input<
   }
 }
 
+/// The levels of each input: low, low + spacing ... high. An input with a spacing of 0 takes all values.
+template <class T, int M>
+struct Levels {
+  Input<T, M> low, high, spacing, inverse;
+};
+template <class T, class P>
+SLALOM_INLINE_CALLS Levels<T, P::inputs> levels_of(const P& problem) {
+  Levels<T, P::inputs> levels;
+  for (int i = 0; i < P::inputs; ++i) {
+    const double low = min_input(problem, i), high = largest_input(problem, i),
+                 count = entry(problem.input_levels, i);
+    const double spacing = count >= 2 ? (high - low) / (count - 1) : 0;
+    levels.low[i] = T(spacing > 0 ? low : 0);
+    levels.high[i] = T(high);
+    levels.spacing[i] = T(spacing);
+    levels.inverse[i] = T(spacing > 0 ? 1 / spacing : 0);
+  }
+  return levels;
+}
+
+/// The unit of an input's variances, input^2: for an input in levels 0.03 of the squared distance between two
+/// of them, since larger variances make it leave its level in most steps; otherwise 1.
+template <class P>
+double unit_variance(const P& problem, int input) noexcept {
+  if constexpr (has_levels<P>) {
+    const double spacing = levels_of<double>(problem).spacing[input];
+    if (spacing > 0) return 0.03 * spacing * spacing;
+  }
+  return 1;
+}
+
+/// Replaces each input by the level nearest to it and the remainder of the step before, and keeps the new
+/// remainder (error diffusion): the levels have the mean of the inputs.
+template <class T, int M>
+SLALOM_INLINE_CALLS void hold_levels(Input<T, M>& u, Input<T, M>& remainder, const Levels<T, M>& levels) {
+  for (int i = 0; i < M; ++i) {
+    const T spacing = levels.spacing[i], wanted = u[i] + remainder[i];
+    const T nearest = levels.low[i] + round((wanted - levels.low[i]) * levels.inverse[i]) * spacing;
+    const T level = select(spacing > T(0), clamp(nearest, levels.low[i], levels.high[i]), u[i]);
+    remainder[i] = clamp(wanted - level, T(-0.5) * spacing, T(0.5) * spacing);
+    u[i] = level;
+  }
+}
+
 }  // namespace detail
 
 /// Limits the rates of a control sequence u[step], in place, to the problem's `input_rate_max`, when
-/// `previous` was applied before it. Changes nothing for a problem without it.
+/// `previous` was applied before it, or moves the sequence to the problem's `input_levels`, where `previous`
+/// is the remainder of the steps before. Changes nothing for a problem without them.
 template <Problem P>
 void hold_input_rates(const P& problem, Input<double, P::inputs> previous, Input<double, P::inputs>* u,
                       int steps) noexcept {
@@ -197,6 +260,24 @@ void hold_input_rates(const P& problem, Input<double, P::inputs> previous, Input
     Input<double, P::inputs> reach;
     for (int i = 0; i < P::inputs; ++i) reach[i] = detail::input_step(problem, i);
     for (int k = 0; k < steps; ++k) detail::hold_rate(u[k], previous, reach);
+  } else if constexpr (detail::has_levels<P>) {
+    const auto levels = detail::levels_of<double>(problem);
+    for (int k = 0; k < steps; ++k) detail::hold_levels(u[k], previous, levels);
+  }
+}
+
+/// Moves the `remainder` of a problem with `input_levels` on by the first steps of a plan: by `wanted`
+/// [step][input], the sequence of the method, less `held`, that in levels.
+template <Problem P>
+void carry_remainder(const P& problem, const float* wanted, const Input<double, P::inputs>* held, int steps,
+                     Input<double, P::inputs>& remainder) noexcept {
+  const auto levels = detail::levels_of<double>(problem);
+  for (int k = 0; k < steps; ++k) {
+    for (int i = 0; i < P::inputs; ++i, ++wanted) {
+      const double left = remainder[i] + static_cast<double>(*wanted) - held[k][i],
+                   most = levels.spacing[i] / 2;
+      remainder[i] = std::clamp(left, -most, most);
+    }
   }
 }
 

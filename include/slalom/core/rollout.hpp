@@ -29,11 +29,11 @@ SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<
 template <class P, class F>
 using SeenOf = decltype(look_up<P, F>(std::declval<const P&>(), std::declval<const StateOf<P, F>&>()));
 
-/// Takes the place of the previous inputs in a problem that does not limit their rates.
+/// Takes the place of what a problem does not need.
 struct NoInput {};
-/// The inputs of the previous step, if the problem limits their rates.
+/// The inputs of the previous step if the problem limits their rates, or the remainder of its levels.
 template <class P, class F>
-using HeldInput = std::conditional_t<limits_rates<P>, InputOf<P, F>, NoInput>;
+using HeldInput = std::conditional_t<carries_inputs<P>, InputOf<P, F>, NoInput>;
 
 /// The rollouts of one pack while they run.
 template <class P, class F>
@@ -49,13 +49,14 @@ template <class P, class F>
 struct RolloutStart {
   StateOf<P, F> x;
   SeenOf<P, F> seen;                               ///< looked up once, since all start from one state
-  [[no_unique_address]] HeldInput<P, F> previous;  ///< the inputs applied before
-  [[no_unique_address]] HeldInput<P, F> reach;     ///< how far an input may move in a step
+  [[no_unique_address]] HeldInput<P, F> previous;  ///< the inputs applied before, or the remainder
+  /// How far an input may move in a step, or its levels.
+  [[no_unique_address]] std::conditional_t<has_levels<P>, Levels<F, P::inputs>, HeldInput<P, F>> reach;
 };
 
-/// Size of the start of a rollout: the state, then the previous inputs if rates are limited.
+/// Size of the start of a rollout: the state, then the previous inputs or remainders that it carries.
 template <class P>
-inline constexpr int start_size = state_size<P> + (limits_rates<P> ? P::inputs : 0);
+inline constexpr int start_size = state_size<P> + (carries_inputs<P> ? P::inputs : 0);
 
 /// The inputs of a batch: for each step and input a row with a value for each sample.
 struct InputRows {
@@ -78,12 +79,11 @@ SLALOM_INLINE_CALLS RolloutStart<P, F> rollout_start(const P& problem, const flo
   RolloutStart<P, F> start;
   start.x = broadcast_state<P, F>(initial, std::make_index_sequence<state_size<P>>{});
   start.seen = look_up<P, F>(problem, start.x);
-  if constexpr (limits_rates<P>) {
-    for (int i = 0; i < P::inputs; ++i) {
-      start.reach[i] = F(static_cast<float>(input_step(problem, i)));
-      start.previous[i] = F(initial[state_size<P> + i]);
-    }
-  }
+  if constexpr (carries_inputs<P>)
+    for (int i = 0; i < P::inputs; ++i) start.previous[i] = F(initial[state_size<P> + i]);
+  if constexpr (limits_rates<P>)
+    for (int i = 0; i < P::inputs; ++i) start.reach[i] = F(static_cast<float>(input_step(problem, i)));
+  if constexpr (has_levels<P>) start.reach = levels_of<F>(problem);
   return start;
 }
 
@@ -99,7 +99,7 @@ SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& st
     r[j].x = start.x;
     r[j].total = F(0.0f);
     r[j].hit = mask_t<F>(false);
-    if constexpr (limits_rates<P>) r[j].previous = start.previous;
+    if constexpr (carries_inputs<P>) r[j].previous = start.previous;
   }
   seen[0] = start.seen;
   const float* row = rows.values + sample;
@@ -110,6 +110,7 @@ SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& st
       InputOf<P, F> u;
       SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * rows.stride + j * F::lanes);
       if constexpr (limits_rates<P>) hold_rate(u, r[j].previous, start.reach);
+      if constexpr (has_levels<P>) hold_levels(u, r[j].previous, start.reach);
       accumulate<F>(stage_cost<P, F>(problem, r[j].x, seen[j], u, k), r[j].total, r[j].hit);
       r[j].x = step<P, F>(problem, r[j].x, seen[j], u, k);
     }

@@ -10,6 +10,8 @@ enum class Status {
   degenerate,        ///< infinite or NaN costs: no usable weights, and the result is the fallback of the
                      ///< method; or the plan has no finite cost
   non_finite_state,  ///< the state given is not finite; nothing was solved, the result repeats the last plan
+  invalid_time,  ///< `elapsed` is negative or not finite, or was given without a duration of the problem's
+                 ///< steps, or the deadline is not a number; nothing was solved, as above
 };
 
 /// The name of a status, as it is written in results.
@@ -25,6 +27,8 @@ constexpr const char* name(Status status) noexcept {
       return "degenerate";
     case Status::non_finite_state:
       return "non_finite_state";
+    case Status::invalid_time:
+      return "invalid_time";
   }
   return "unknown";
 }

@@ -3,81 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstring>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "slalom/core/final_check.hpp"
 #include "slalom/core/polymorphic.hpp"
-#include "slalom/core/problem_check.hpp"
-#include "slalom/core/problem_evaluator.hpp"
+#include "slalom/solvers/controlled.hpp"
 #include "slalom/solvers/registry.hpp"
 
 namespace slalom {
-
-/// A batch evaluator that a `Controller` can own in place of a problem: one that evaluates batches on a GPU,
-/// in a physics engine or by hand-written loops. In addition to the functions of `BatchEvaluator` it has
-///
-///     struct State { double x, y, yaw; };               // `double` members only
-///     static constexpr int input_count = 2;             // result of inputs()
-///     void set_state(const State&);                     // start of the next sequences
-///
-/// and may have
-///
-///     Cost<double> predict(const State&, const Input<double, 2>* u, int steps, State* x) const;
-///                                                       // x[0 ... steps] and the cost of one sequence
-///     void set_previous_input(const Input<double, 2>&); // input before the next sequences
-///     const MyProblem& problem() const;                 // gives bounds and rates, as in RiskEvaluator
-template <class E>
-concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, const typename E::State& x) {
-  requires sizeof(typename E::State) % sizeof(double) == 0;
-  requires(std::is_trivially_copyable_v<typename E::State> && E::input_count > 0);
-  e.set_state(x);
-};
-
-namespace detail {
-
-/// Properties of the problem or the evaluator that a controller owns.
-template <class P>
-struct Controlled {
-  static_assert(check_problem<P>());
-  static_assert(HasTimeStep<P> ||
-                    !(
-                        requires { &P::ts; } || requires { &P::Ts; } || requires { &P::delta_t; } ||
-                        requires { &P::timestep; } || requires { &P::time_step; }),
-                "slalom: the problem's duration of a step must be `dt`, or the result of `time_step()`");
-  using Evaluator = ProblemEvaluator<P>;
-  using State = StateOf<P, double>;
-  static constexpr int inputs = P::inputs;
-  static constexpr bool predicts = true;
-  static constexpr bool uses_previous_input = limits_rates<P>;
-  static constexpr bool has_problem = true;
-  static constexpr auto cost_terms() { return cost_terms_of<P>(); }
-};
-
-template <StateEvaluator E>
-struct Controlled<E> {
-  using Evaluator = E;
-  using State = typename E::State;
-  static constexpr int inputs = E::input_count;
-  static constexpr bool predicts =
-      requires(const E& e, const State& x, const Input<double, inputs>* u, State* states) {
-    { e.predict(x, u, 1, states) } -> std::convertible_to<Cost<double>>;
-  };
-  static constexpr bool uses_previous_input = requires(E & e, const Input<double, inputs>& u) {
-    e.set_previous_input(u);
-  };
-  static constexpr bool has_problem = requires(const E& e) { e.problem(); };
-  static constexpr auto cost_terms() { return std::array<CostTerm, 1>{{{"total", 0}}}; }
-};
-
-}  // namespace detail
 
 /// The answer of a controller: the inputs to apply and the predicted states. Its spans point into the
 /// controller and stay valid until the next solve or reset.
@@ -140,10 +79,12 @@ class Controller {
     allocate();
   }
 
-  /// Solves from state `x` and returns the plan. If the state is not finite, repeats the last plan.
+  /// Solves from state `x` and returns the plan. If the state is not finite, or a time of the request is not
+  /// valid (`Status::invalid_time`), repeats the last plan.
   Plan<P> solve(const State& x, const SolveRequest& request = {}) noexcept {
     corrections_ = 0;
     if (!finite(x)) return plan(Status::non_finite_state);
+    if (!valid_times(request, evaluator_.time_step())) return plan(Status::invalid_time);
     evaluator_.set_state(x);
     if constexpr (Controlled::uses_previous_input) {
       recall_input(request.elapsed);
@@ -231,6 +172,9 @@ class Controller {
     PerInput &low = *options.find<PerInput>("input_min"), &high = *options.find<PerInput>("input_max");
     if (low.fits(input_count)) low = bounds_.low;
     if (high.fits(input_count)) high = bounds_.high;
+    if constexpr (Controlled::in_levels)
+      scale_variances(options, input_count,
+                      [this](int input) { return detail::unit_variance(evaluator_.problem(), input); });
     return options;
   }
 
@@ -253,6 +197,7 @@ class Controller {
     for (int i = 0; i < input_count; ++i) previous_[i] = bounds_.nearest(static_cast<std::size_t>(i), 0);
     std::fill(inputs_.begin(), inputs_.end(), previous_);
     given_ = previous_;
+    if constexpr (Controlled::in_levels) hold_input_rates(problem(), {}, inputs_.data(), solver_->horizon());
     told_ = true;
   }
 
@@ -312,9 +257,18 @@ class Controller {
 
   /// Determines the input that is being applied: that of `set_previous_input`, or else the last plan's input
   /// `elapsed` (s) after it was made.
+  /// For a problem with levels, the remainder that is left then.
   void recall_input(double elapsed) noexcept {
     const double step = evaluator_.time_step();
     const double last = static_cast<double>(inputs_.size() - 1);
+    if constexpr (Controlled::in_levels) {
+      const int applied = step > 0 ? static_cast<int>(std::min(std::round(elapsed / step), last)) : 0;
+      if (!std::exchange(told_, false))
+        carry_remainder(problem(), solver_->result().inputs.data(), inputs_.data(), applied, previous_);
+      else
+        previous_ = {};
+      return;
+    }
     const double now = step > 0 && elapsed > step ? std::min(std::round(elapsed / step) - 1, last) : 0;
     previous_ = inputs_[static_cast<std::size_t>(now)];
     if (!std::exchange(told_, false)) return;

@@ -20,7 +20,7 @@ struct SequenceList {
 
 /// The inputs of a solve that change from one to the next.
 struct SolveRequest {
-  /// Time since the last solve, s. Solvers that shift their warm start shift it by this time.
+  /// Time since the last solve, s, at least 0. Solvers that shift their warm start shift it by this time.
   double elapsed = 0;
   /// Wall-clock time that the solve may take, s; 1e6 or more: no limit. When it has passed, the solver begins
   /// no new part of the samples and returns the best solution so far. It ends later by the part that is being
@@ -31,6 +31,13 @@ struct SolveRequest {
   /// ignore them.
   SequenceList proposals{};
 };
+
+/// Whether a controller can solve a request for a problem whose steps take `time_step` (s; 0: unknown):
+/// `elapsed` is finite, at least 0, and 0 if the duration of a step is unknown; the deadline is a number.
+inline bool valid_times(const SolveRequest& request, double time_step) noexcept {
+  const double most = time_step > 0 ? std::numeric_limits<double>::max() : 0;
+  return request.elapsed >= 0 && request.elapsed <= most && request.deadline == request.deadline;
+}
 
 /// Wall-clock times of the stages of one solve, s.
 struct StageTimes {

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "slalom/core/options.hpp"
 #include "slalom/core/polymorphic.hpp"
@@ -135,6 +136,18 @@ void visit_options(Options& options, Visit&& visit) {
           }
         },
         any);
+  });
+}
+
+/// Multiplies the options whose unit is input^2 by `factor(input)` for each of the inputs.
+template <class Factor>
+void scale_variances(SolverOptions& options, int inputs, Factor&& factor) {
+  options.for_each([&](const SolverOptions::Field& field, const Declaration& declaration) {
+    PerInput* const* const option = std::get_if<PerInput*>(&field);
+    if (!option || std::string_view(declaration.unit) != "input^2" || !(*option)->fits(inputs)) return;
+    std::vector<double> scaled;
+    for (int i = 0; i < inputs; ++i) scaled.push_back((**option)[i] * factor(i));
+    **option = PerInput(std::move(scaled));
   });
 }
 

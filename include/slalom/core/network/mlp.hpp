@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,11 @@ enum class Activation : std::uint8_t {
   softplus,  ///< log(1 + e^x)
   silu,      ///< x / (1 + e^-x)
 };
+
+inline const char* const* enum_names(Activation) {
+  static constexpr const char* const names[] = {"tanh", "relu", "softplus", "silu", nullptr};
+  return names;
+}
 
 /// The parameters of a network of dense layers, as they are trained and stored.
 struct MlpParameters {
@@ -37,6 +43,9 @@ struct MlpParameters {
   std::vector<double> output_mean;           ///< is added to them then; empty: 0
   bool residual = false;                     ///< the first inputs are added to the outputs at the end
 };
+
+/// The activation of this name. Throws std::invalid_argument if there is none.
+Activation activation_of(std::string_view name);
 
 /// Reads parameters from a file of `numpy.savez`: `weights_0` [outputs, inputs], `biases_0` [outputs], and so
 /// on for each layer; `activation`, the name of an Activation; and, if present, `input_mean`, `input_scale`,

@@ -65,8 +65,8 @@ class RiskEvaluator final : public BatchEvaluator, private Sampler {
     }
   }
 
-  /// Sets the input that was applied before the next rollouts. Only for problems with `input_rate_max`.
-  void set_previous_input(const Input<double, P::inputs>& u) noexcept requires detail::limits_rates<P> {
+  /// Sets the input that was applied before the next rollouts, or the remainder, as `ProblemEvaluator` does.
+  void set_previous_input(const Input<double, P::inputs>& u) noexcept requires detail::carries_inputs<P> {
     for (ProblemEvaluator<P>& variant : variants_) variant.set_previous_input(u);
   }
 

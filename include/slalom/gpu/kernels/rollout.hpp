@@ -23,6 +23,7 @@ class Rollout {
 
   explicit Rollout(const Arguments<P>& a) : problem_(problem_of(a)) {
     static_assert(sizeof x_ == sizeof(float) * detail::state_size<P>);
+    static_assert(!detail::has_levels<P>, "slalom: problems with input_levels are not solved on a GPU");
     memcpy(&x_, a.start, sizeof x_);
     if constexpr (detail::limits_rates<P>) {
       for (int i = 0; i < P::inputs; ++i) {
