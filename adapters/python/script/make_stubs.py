@@ -61,7 +61,8 @@ def constructor(name, cls):
     arguments = signature(cls.__init__)[0]
     values = [m for m, value in vars(cls).items() if isinstance(value, property) and value.fset]
     if issubclass(cls, _slalom.AnyProblem) and arguments.endswith("**kwargs: Any") and values:
-        return "self, *" + "".join(f", {m}: {property_type(vars(cls)[m])} = ..." for m in values if m != "discs")
+        return arguments.replace("**kwargs: Any", "*") + "".join(f", {m}: {property_type(vars(cls)[m])} = ..." for m in values
+                                                               if m != "discs" or cls is _slalom.MlpProblem)
     return arguments
 
 
@@ -72,7 +73,7 @@ def property_type(value):
     if words.startswith("the callable"):
         return "Callable[..., Any] | None" if "None" in words else "Callable[..., Any]"
     if match and match[1] == "object" and value.fset:
-        return "float"
+        return "Any" if "MlpProblem" in value.fget.__doc__ else "float"
     return translate(match[1], False) if match else "Any"
 
 

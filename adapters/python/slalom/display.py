@@ -46,6 +46,11 @@ def install(solvers: ModuleType) -> None:
             _constructed(cls, lambda problem: ((), {name: getattr(problem, name) for name in _PARTS}))
         elif cls is solvers.RiskEvaluator:
             _constructed(cls, lambda risk: ((risk.problem, risk.randomize), risk.options))
+        elif cls is solvers.CompiledProblem:
+            _constructed(cls, lambda problem: ((problem.library,), problem.parameters))
+        elif cls is solvers.MlpProblem:
+            _constructed(cls, lambda problem: ((problem.network,), {name: getattr(problem, name)
+                                                                    for name in _settable(solvers.MlpProblem)}))
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
             _constructed(cls, lambda problem: ((), _changed(problem)))
     setattr(solvers.Plan, "__repr__", _plan_text)
@@ -121,9 +126,15 @@ def _keywords(solvers: ModuleType, cls: type) -> list[tuple[str, Any]]:
     if issubclass(cls, solvers.Controller):
         words = (cls.__doc__ or "").split("`")
         return [(o["name"], o["default"]) for o in solvers.options(words[1])] if len(words) > 1 else []
+    if cls in (solvers.CompiledProblem, solvers.MlpProblem):
+        return [(name, None) for name in _settable(cls)]
     default = cls()
-    return [(name, getattr(default, name)) for name, member in vars(cls).items()
-            if isinstance(member, property) and member.fset and name != "discs"]
+    return [(name, getattr(default, name)) for name in _settable(cls) if name != "discs"]
+
+
+def _settable(cls: type) -> list[str]:
+    return [name for each in cls.__mro__ for name, member in vars(each).items()
+            if isinstance(member, property) and member.fset]
 
 
 def _constructed(cls: type, arguments: Callable[[Any], Arguments]) -> None:
@@ -133,7 +144,7 @@ def _constructed(cls: type, arguments: Callable[[Any], Arguments]) -> None:
 
 
 def _make(cls: type, positional: tuple[Any, ...], named: dict[str, Any]) -> Any:
-    discs = named.pop("discs", None)  # an attribute, but no argument
+    discs = None if cls.__name__ == "MlpProblem" else named.pop("discs", None)  # an attribute, but no argument
     made = cls(*positional, **named)
     if discs is not None:
         setattr(made, "discs", discs)
@@ -151,9 +162,8 @@ def _call(name: str, positional: Iterable[Any], named: dict[str, Any]) -> str:
 def _changed(problem: Any) -> dict[str, Any]:
     """The parameters that differ from their defaults."""
     default = type(problem)()
-    named = ((name, member) for cls in type(problem).__mro__ for name, member in vars(cls).items())
-    settable = [name for name, member in named if isinstance(member, property) and member.fset]
-    return {name: getattr(problem, name) for name in settable if getattr(problem, name) != getattr(default, name)}
+    return {name: getattr(problem, name) for name in _settable(type(problem))
+            if getattr(problem, name) != getattr(default, name)}
 
 
 def _controller_text(controller: Any) -> str:

@@ -136,6 +136,25 @@ void bind_controllers(py::module_& module) {
   });
   for (const char* method : solver_names()) bind_method(module, base, method);
   module.def(
+      "solve_batch",
+      [](const std::vector<py::object>& controllers, std::vector<std::vector<double>> states, double elapsed,
+         double deadline, int threads) {
+        if (controllers.size() != states.size())
+          throw std::invalid_argument("states: has " + std::to_string(states.size()) + " states, must have " +
+                                      std::to_string(controllers.size()) + ", one for each controller");
+        Controller::solve({controllers.begin(), controllers.end()}, std::move(states),
+                          {elapsed, deadline, {}}, threads);
+        std::vector<Plan> plans;
+        for (const py::object& each : controllers) plans.push_back({each, each.cast<Controller&>().solves()});
+        return plans;
+      },
+      py::arg("controllers"), py::arg("states"), py::arg("elapsed") = 0.0,
+      py::arg("deadline") = std::numeric_limits<double>::infinity(), py::arg("threads") = 1,
+      "The plans of many controllers, each from its own state and its own last plan, in parallel on "
+      "`threads` "
+      "threads. Copies of one controller draw the same noise unless each is reset with a seed of its own. "
+      "Callables run one at a time.");
+  module.def(
       "methods",
       [] {
         const auto all = solver_names();

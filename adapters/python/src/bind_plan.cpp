@@ -106,7 +106,9 @@ void bind_plan(py::module_& module) {
   read("has_few_samples", "whether there were 20 or more of them; a FewSamplesWarning says so once",
        [](const Plan& p) { return p.result().has_few_samples(); });
   read("times", "wall-clock time (s) of each stage", &times);
-  read("status", "'ok', 'deadline', 'all_collided', 'degenerate' or 'non_finite_state'",
+  read("status",
+       "'ok', 'deadline', 'all_collided', 'degenerate' or 'non_finite_state'; a time that is not valid is an "
+       "error",
        [](const Plan& p) { return std::string(name(p.controller().status())); });
   read("ok", "whether the status is 'ok'",
        [](const Plan& p) { return p.controller().status() == Status::ok; });

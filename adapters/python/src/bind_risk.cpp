@@ -41,7 +41,7 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
   void set_previous_input(std::span<const double> u) override {
     for (const auto& variant : variants_) variant->set_previous_input(u);
   }
-  void begin(py::handle owner) override {
+  void begin(void* owner) override {
     for (const auto& variant : variants_) variant->begin(owner);
   }
   void finish() override {

@@ -145,8 +145,8 @@ void CallableProblem::set_state(std::span<const double> state) {
   std::transform(state.begin(), state.end(), state_.begin(), [](double v) { return static_cast<float>(v); });
 }
 
-void CallableProblem::begin(py::handle owner) {
-  owner_ = owner;
+void CallableProblem::begin(void* owner) {
+  owner_ = static_cast<PyObject*>(owner);
   error_ = nullptr;
 }
 

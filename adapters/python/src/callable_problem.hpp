@@ -41,7 +41,7 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void set_state(std::span<const double> state) override;
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
-  void begin(py::handle owner) override;
+  void begin(void* owner) override;
   /// Rethrows the first exception of a callable during the solve.
   void finish() override;
 

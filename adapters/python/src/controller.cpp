@@ -45,6 +45,15 @@ SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
   return options;
 }
 
+/// The options with variances in the units of the problem's inputs.
+SolverOptions scaled(const AnyProblem& problem, SolverOptions options) {
+  bool other = false;
+  for (int i = 0; i < problem.inputs(); ++i) other = other || problem.unit_variance(i) != 1;
+  if (other)
+    scale_variances(options, problem.inputs(), [&](int input) { return problem.unit_variance(input); });
+  return options;
+}
+
 /// The bounds of every input, once the solver has checked them.
 InputBounds bounds_of(const SolverOptions& options, int inputs) {
   InputBounds bounds(inputs);
@@ -84,7 +93,7 @@ void warn_of_few_samples() {
 Controller::Controller(const AnyProblem& problem, const SolverOptions& options)
     : problem_(problem.clone()),
       options_(within_bounds(problem, options)),
-      solver_(make_solver(options_, problem.inputs())),
+      solver_(make_solver(scaled(problem, options_), problem.inputs())),
       bounds_(bounds_of(options_, problem.inputs())),
       state_(static_cast<std::size_t>(problem.states())),
       inputs_(static_cast<std::size_t>(solver_->horizon() * solver_->inputs())),
@@ -105,6 +114,9 @@ void Controller::rest() {
 void Controller::update_previous_input(double elapsed) {
   if (std::exchange(previous_known_, false)) return;
   const double step = problem_->evaluator().time_step(), last = solver_->horizon() - 1;
+  const double applied = step > 0 ? std::min(std::round(elapsed / step), last) : 0;
+  const auto values = static_cast<std::size_t>(applied) * previous_.size();
+  if (problem_->carry(result().inputs.first(values), std::span(inputs_).first(values), previous_)) return;
   const double now = step > 0 && elapsed > step ? std::min(std::round(elapsed / step) - 1, last) : 0;
   const auto at = inputs_.begin() + static_cast<std::ptrdiff_t>(now) * solver_->inputs();
   std::copy_n(at, previous_.size(), previous_.begin());
@@ -123,29 +135,33 @@ void Controller::set_previous_input(std::vector<double> input) {
   previous_known_ = true;
 }
 
-void Controller::solve(py::handle owner, std::vector<double> state, const SolveRequest& request) {
+void Controller::check(const std::vector<double>& state, const SolveRequest& request) const {
   if (static_cast<int>(state.size()) != problem_->states())
     throw std::invalid_argument("state: has " + std::to_string(state.size()) + " values, must have " +
                                 std::to_string(problem_->states()));
   check_times(request, problem_->evaluator().time_step());
-  const Busy busy(usage_);
+}
+
+/// Prepares a solve. Returns false, and the plan remains, if the state is not finite.
+bool Controller::start(py::handle owner, std::vector<double> state, double elapsed) {
   ++solves_;
   is_new_ = false;
   corrections_ = 0;
   if (!std::all_of(state.begin(), state.end(), [](double v) { return std::isfinite(v); })) {
     status_ = Status::non_finite_state;
-    return;
+    return false;
   }
   state_ = std::move(state);
   prediction_.reset();
-  update_previous_input(request.elapsed);
+  update_previous_input(elapsed);
   problem_->set_state(state_);
   problem_->set_previous_input(previous_);
-  problem_->begin(owner);
-  {
-    const py::gil_scoped_release unlock;
-    solver_->solve(problem_->evaluator(), request);
-  }
+  problem_->begin(owner.ptr());
+  return true;
+}
+
+/// Takes the plan from the solver. Rethrows the exception of a callable.
+void Controller::finish() {
   std::copy(result().inputs.begin(), result().inputs.end(), inputs_.begin());
   problem_->hold_rates(previous_, inputs_);
   std::vector<double> before = previous_;
@@ -155,6 +171,37 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
   status_ = result().status;
   problem_->finish();
   if (result().few_samples_solves == SolveResult::few_samples_patience) warn_of_few_samples();
+}
+
+void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,
+                       const SolveRequest& request, int threads) {
+  ThreadPool pool(threads);
+  std::vector<Controller*> all;
+  std::vector<std::unique_ptr<Busy>> busy;
+  for (std::size_t i = 0; i < owners.size(); ++i) {
+    all.push_back(owners[i].cast<Controller*>());
+    all[i]->check(states[i], request);
+    busy.push_back(std::make_unique<Busy>(all[i]->usage_));
+  }
+  std::vector<Controller*> started;
+  for (std::size_t i = 0; i < owners.size(); ++i)
+    if (all[i]->start(owners[i], std::move(states[i]), request.elapsed)) started.push_back(all[i]);
+  {
+    const py::gil_scoped_release unlock;
+    pool.run(static_cast<int>(started.size()), [&](int i) {
+      Controller& each = *started[static_cast<std::size_t>(i)];
+      each.solver_->solve(each.problem_->evaluator(), request);
+    });
+  }
+  std::exception_ptr first;
+  for (Controller* each : started) {
+    try {
+      each->finish();
+    } catch (...) {
+      if (!first) first = std::current_exception();
+    }
+  }
+  if (first) std::rethrow_exception(first);
 }
 
 std::unique_ptr<Controller> Controller::copy() {

@@ -21,7 +21,14 @@ class Controller {
   std::unique_ptr<Controller> copy();
 
   /// Solves without the interpreter lock. `owner` is the Python object of this controller.
-  void solve(py::handle owner, std::vector<double> state, const SolveRequest& request);
+  void solve(py::handle owner, std::vector<double> state, const SolveRequest& request) {
+    solve({owner}, {std::move(state)}, request, 1);
+  }
+  /// Solves with many controllers, each from its own state, on a number of threads. Throws before the first
+  /// solve if a state or a time is not valid or a controller is in use, and afterwards the first exception of
+  /// a callable.
+  static void solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,
+                    const SolveRequest& request, int threads);
   void reset(std::uint64_t seed);
   void prepare();
   /// Sets the input applied before the next solve, for problems with limits on input rates.
@@ -55,6 +62,9 @@ class Controller {
 
   Controller(const Controller&) = default;
 
+  void check(const std::vector<double>& state, const SolveRequest& request) const;
+  bool start(py::handle owner, std::vector<double> state, double elapsed);
+  void finish();
   void update_previous_input(double elapsed);
   void rest();
 
@@ -72,9 +82,25 @@ class Controller {
   Usage usage_;
 };
 
+void bind_compiled(py::module_& module);
 void bind_controllers(py::module_& module);
 void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_risk(py::module_& module);
 
 }  // namespace slalom::python
+
+/// The type that Python sees of a problem: for a compiled one, whose own type is in its library,
+/// CompiledProblem.
+template <>
+struct pybind11::polymorphic_type_hook<slalom::python::AnyProblem> {
+  /// Returns the address of the whole object and sets its type.
+  static const void* get(const slalom::python::AnyProblem* problem, const std::type_info*& type) {
+    if (const auto* compiled = dynamic_cast<const slalom::python::CompiledProblem*>(problem)) {
+      type = &typeid(slalom::python::CompiledProblem);
+      return compiled;
+    }
+    type = problem ? &typeid(*problem) : nullptr;
+    return dynamic_cast<const void*>(problem);
+  }
+};

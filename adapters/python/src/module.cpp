@@ -6,6 +6,7 @@ PYBIND11_MODULE(_slalom, module) {
   module.doc() = "Real-time sampling-based stochastic optimal control.";
   pybind11::register_exception<slalom::IoError>(module, "IoError", PyExc_OSError);
   slalom::python::bind_problems(module);
+  slalom::python::bind_compiled(module);
   slalom::python::bind_risk(module);
   slalom::python::bind_controllers(module);
   slalom::python::bind_maps(module);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -13,8 +11,6 @@
 #include "slalom/core/problem_evaluator.hpp"
 
 namespace slalom::python {
-
-namespace py = pybind11;
 
 /// The outcome of a control sequence in double.
 struct Prediction {
@@ -52,18 +48,41 @@ class AnyProblem {
   /// Bounds of the problem for an input; infinite if it has none.
   virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
   virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
+  /// The unit of an input's variances, input^2; not 1 for an input in levels.
+  virtual double unit_variance(int /*input*/) const { return 1; }
   /// Limits the rates of u [step][input], where `previous` was applied before, if the problem limits rates.
   virtual void hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {}
-  /// Sets the input applied before the next rollouts, for a problem that limits rates.
+  /// Sets the input applied before the next rollouts, for a problem that limits rates, or the remainder for
+  /// one with levels.
   virtual void set_previous_input(std::span<const double>) {}
-  /// To be called before and after a solve. The argument is the Python object that owns the solver's memory.
-  virtual void begin(py::handle) {}
+  /// Moves the remainder of a problem with levels on by the applied steps of a plan: `wanted` by the method,
+  /// `held` in levels, both [step][input]. Returns false for other problems.
+  virtual bool carry(std::span<const float> /*wanted*/, std::span<const double> /*held*/,
+                     std::span<double> /*remainder*/) const {
+    return false;
+  }
+  /// To be called before and after a solve. The argument is the PyObject that owns the solver's memory.
+  virtual void begin(void* /*owner*/) {}
   virtual void finish() {}
 };
 
-/// A built-in problem, compiled.
-template <Problem P>
-class BuiltIn final : public AnyProblem {
+/// A parameter of a problem that is compiled at run time: a `double` member, or an array of them.
+struct Parameter {
+  const char* name;
+  std::span<double> values;
+};
+
+/// A problem that is compiled at run time, in a library of its own (compiled_problem.hpp).
+class CompiledProblem : public AnyProblem {
+ public:
+  /// The problem's members that can be changed between solves.
+  virtual std::vector<Parameter> parameters() { return {}; }
+  std::string library;  ///< the file that it was loaded from
+};
+
+/// A problem struct.
+template <Problem P, class Base = AnyProblem>
+class BuiltIn : public Base {
  public:
   using State = slalom::detail::StateOf<P, double>;
   static constexpr int state_count = slalom::detail::state_size<P>;
@@ -100,9 +119,10 @@ class BuiltIn final : public AnyProblem {
 
   double input_min(int input) const override { return slalom::detail::min_input(problem(), input); }
   double input_max(int input) const override { return slalom::detail::largest_input(problem(), input); }
+  double unit_variance(int input) const override { return slalom::detail::unit_variance(problem(), input); }
   void hold_rates([[maybe_unused]] std::span<const double> previous,
                   [[maybe_unused]] std::span<double> u) const override {
-    if constexpr (slalom::detail::limits_rates<P>) {
+    if constexpr (slalom::detail::carries_inputs<P>) {
       std::vector<Input<double, P::inputs>> sequence(u.size() / P::inputs);
       std::memcpy(sequence.data(), u.data(), u.size_bytes());
       hold_input_rates(problem(), to_input(previous), sequence.data(), static_cast<int>(sequence.size()));
@@ -110,7 +130,18 @@ class BuiltIn final : public AnyProblem {
     }
   }
   void set_previous_input([[maybe_unused]] std::span<const double> u) override {
-    if constexpr (slalom::detail::limits_rates<P>) evaluator_.set_previous_input(to_input(u));
+    if constexpr (slalom::detail::carries_inputs<P>) evaluator_.set_previous_input(to_input(u));
+  }
+  bool carry([[maybe_unused]] std::span<const float> wanted, [[maybe_unused]] std::span<const double> held,
+             [[maybe_unused]] std::span<double> remainder) const override {
+    if constexpr (slalom::detail::has_levels<P>) {
+      std::vector<Input<double, P::inputs>> sequence(held.size() / P::inputs);
+      std::memcpy(sequence.data(), held.data(), held.size_bytes());
+      auto now = to_input(remainder);
+      carry_remainder(problem(), wanted.data(), sequence.data(), static_cast<int>(sequence.size()), now);
+      std::memcpy(remainder.data(), &now, sizeof now);
+    }
+    return slalom::detail::has_levels<P>;
   }
 
  private:

@@ -215,3 +215,17 @@ def test_tensors_share_the_memory_of_the_solver():
     assert [data for data, *_ in seen] == kept and seen[0][1:] == ((128, 1), torch.float32)
     np.testing.assert_allclose(plans[0].inputs, plans[1].inputs, atol=1e-4)
     assert list(plans[0].cost_terms) == ["distance", "effort"]
+
+
+def test_a_plan_is_drawn(tmp_path):
+    pytest.importorskip("matplotlib")
+    for make in slalom.SvgMppi, slalom.Icem, slalom.SvMpc:
+        controller = make(slalom.DifferentialDrive(), horizon=20, input_min=[-0.5, -2], input_max=[0.5, np.inf])
+        controller.solve([0, 0, 0])
+        plan = controller.solve([0, 0, 0], elapsed=0.1)
+        figure = slalom.plot.plan(plan)
+        figure.savefig(tmp_path / "plan.png")
+        titles = [axis.get_title(loc="left") for part in figure.subfigs for axis in part.axes]
+        assert len(titles) == 6 and titles[0].startswith("at a bound in ") and "effective sample size" in titles[4]
+        at_bound = np.mean(np.abs(plan.inputs[:, 0]) == 0.5)
+        assert slalom.plot.saturation(plan)[0] == pytest.approx(at_bound)

@@ -1,0 +1,95 @@
+"""Figures of a plan, to see why a controller does what it does (docs/my-robot-does-not.md). Needs matplotlib."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+_MOST_LINES = 60  # samples that are drawn
+
+
+def plan(plan: Any) -> Any:
+    """A matplotlib figure of a plan: samples, guides and inputs within their bounds, predicted states, costs and weights
+    of the samples, and the cost by term. `figure.savefig("plan.png")` writes it to a file."""
+    from matplotlib.figure import Figure
+
+    inputs = plan.inputs.shape[1]
+    figure = Figure(figsize=(11, 2.2 * (inputs + 2)), layout="constrained")
+    rows = figure.subfigures(2, 1, height_ratios=(inputs, 2))
+    axes = rows[0].subplots(inputs, 1, sharex=True, squeeze=False)[:, 0]
+    for index, axis in enumerate(axes):
+        _inputs(axis, plan, index)
+    axes[-1].set_xlabel("step")
+    axes[0].legend(loc="upper right", fontsize="small")
+    states, costs, weights, terms = rows[1].subplots(2, 2).flat
+    _states(states, plan)
+    _costs(costs, plan)
+    _weights(weights, plan)
+    _terms(terms, plan)
+    figure.suptitle(f"{plan.controller.method}: {plan.status}, cost {plan.cost:.4g}")
+    return figure
+
+
+def saturation(plan: Any) -> Any:
+    """The share of the steps, 0 ... 1, in which each input of a plan is at one of its bounds: an array [inputs]."""
+    low, high = _bounds(plan)
+    result = np.mean((plan.inputs <= low) | (plan.inputs >= high), axis=0)
+    return np.where(low < high, result, 0.0)
+
+
+def _bounds(plan: Any) -> tuple[Any, Any]:
+    options, inputs = plan.controller.options, plan.inputs.shape[1]
+    return np.broadcast_to(options["input_min"], inputs), np.broadcast_to(options["input_max"], inputs)
+
+
+def _lines(axis: Any, rows: Any, label: str, **style: Any) -> None:
+    """A line for each row, with one entry in the legend."""
+    for number, row in enumerate(rows):
+        axis.plot(row, label=label if number == 0 else None, **style)
+
+
+def _inputs(axis: Any, plan: Any, index: int) -> None:
+    samples = plan.samples[:, :, index]
+    best = np.argsort(plan.weights)[::-1][:_MOST_LINES // 2]
+    others = np.linspace(0, len(samples) - 1, _MOST_LINES // 2).astype(int) if len(samples) else []
+    _lines(axis, samples[others], "samples", color="tab:gray", alpha=0.25, linewidth=0.6)
+    _lines(axis, samples[best], "samples of largest weight", color="tab:blue", alpha=0.3, linewidth=0.8)
+    _lines(axis, plan.guides[:, :, index], "guides", color="tab:orange", linestyle="--")
+    _lines(axis, [plan.inputs[:, index]], "plan", color="tab:green", linewidth=2.5)
+    for bound in (each[index] for each in _bounds(plan) if np.isfinite(each[index])):
+        axis.axhline(bound, color="black", linewidth=0.8)
+    axis.set_ylabel(f"input {index}")
+    axis.set_title(f"at a bound in {100 * saturation(plan)[index]:.0f} % of the steps", loc="left", fontsize="small")
+
+
+def _states(axis: Any, plan: Any) -> None:
+    for index in range(min(plan.states.shape[1], 10)):
+        axis.plot(plan.states[:, index], label=f"state {index}")
+    axis.set_title("predicted states", loc="left", fontsize="small")
+    axis.set_xlabel("step")
+    axis.legend(fontsize="small")
+
+
+def _costs(axis: Any, plan: Any) -> None:
+    costs = plan.costs[np.isfinite(plan.costs)]
+    axis.set_title(f"costs of {len(plan.costs)} samples: {100 * plan.collided_share:.0f} % collide, "
+                   f"{len(plan.costs) - len(costs)} not finite", loc="left", fontsize="small")
+    if len(costs):
+        axis.hist(costs, bins=50, color="tab:gray")
+    axis.axvline(plan.cost, color="tab:green", linewidth=2.5, label="plan")
+    axis.legend(fontsize="small")
+
+
+def _weights(axis: Any, plan: Any) -> None:
+    axis.plot(np.arange(1, len(plan.weights) + 1), np.cumsum(np.sort(plan.weights)[::-1]))
+    axis.set_xscale("log")
+    axis.set_title(f"sum of the largest weights: effective sample size {plan.effective_sample_size:.1f} at temperature "
+                   f"{plan.temperature:.3g}", loc="left", fontsize="small")
+    axis.set_xlabel("samples")
+
+
+def _terms(axis: Any, plan: Any) -> None:
+    terms = plan.cost_terms
+    axis.barh(list(terms), list(terms.values()), color="tab:green")
+    axis.set_title("cost of the plan by term", loc="left", fontsize="small")

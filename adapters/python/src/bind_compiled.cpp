@@ -1,0 +1,190 @@
+#include <dlfcn.h>
+
+#include "controller.hpp"
+#include "network_problem.hpp"
+#include "slalom/core/dispatch.hpp"
+
+namespace slalom::python {
+namespace {
+
+/// The values of a parameter as Python has them: a float, or a list.
+py::object to_python(std::span<const double> values) {
+  if (values.size() == 1) return py::float_(values[0]);
+  return py::cast(std::vector<double>(values.begin(), values.end()));
+}
+
+/// Sets a parameter. Returns false if the problem has none of this name.
+bool set_parameter(CompiledProblem& problem, const std::string& name, const py::object& value) {
+  for (const Parameter& parameter : problem.parameters()) {
+    if (name != parameter.name) continue;
+    const auto values = py::isinstance<py::sequence>(value) || py::isinstance<py::array>(value)
+                            ? value.cast<std::vector<double>>()
+                            : std::vector<double>{value.cast<double>()};
+    if (values.size() != parameter.values.size())
+      throw std::invalid_argument(name + ": has " + std::to_string(values.size()) + " values, must have " +
+                                  std::to_string(parameter.values.size()));
+    std::copy(values.begin(), values.end(), parameter.values.begin());
+    return true;
+  }
+  return false;
+}
+
+std::string names_of(CompiledProblem& problem) {
+  std::string names;
+  for (const Parameter& parameter : problem.parameters())
+    names += (names.empty() ? "" : ", ") + std::string(parameter.name);
+  return names.empty() ? "none" : names;
+}
+
+void set_attribute(CompiledProblem& problem, const std::string& name, const py::object& value) {
+  if (!set_parameter(problem, name, value))
+    throw py::attribute_error("the problem has no parameter '" + name + "'; it has: " + names_of(problem));
+}
+
+/// Loads the library of a compiled problem, which stays loaded. Throws ImportError if that fails.
+std::unique_ptr<CompiledProblem> load(const std::string& library, const py::kwargs& keywords) {
+  void* const loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const make = loaded ? dlsym(loaded, "slalom_make_problem") : nullptr;
+  if (!make) throw py::import_error(dlerror());
+  std::unique_ptr<CompiledProblem> problem(reinterpret_cast<CompiledProblem* (*)()>(make)());
+  problem->library = library;
+  for (const auto& [key, value] : keywords)
+    set_attribute(*problem, key.cast<std::string>(), py::reinterpret_borrow<py::object>(value));
+  return problem;
+}
+
+/// Parts of a network's problem from keyword arguments.
+using Parts = NetworkProblem::Parts;
+
+std::vector<double> numbers(const py::object& value) {
+  if (value.is_none()) return {};
+  if (py::isinstance<py::sequence>(value) || py::isinstance<py::array>(value))
+    return value.cast<std::vector<double>>();
+  return {value.cast<double>()};
+}
+
+py::object from_numbers(const std::vector<double>& values) {
+  return values.empty() ? py::object(py::none()) : to_python(values);
+}
+
+/// A part of a network's problem: how Python sets it, and what Python reads.
+struct Part {
+  const char* name;
+  const char* help;
+  void (*set)(Parts&, const py::object&);
+  py::object (*get)(const Parts&);
+};
+
+template <std::vector<double> NetworkModel::*field>
+constexpr Part weights(const char* name, const char* help) {
+  return {name, help, [](Parts& p, const py::object& value) { p.model.*field = numbers(value); },
+          [](const Parts& p) { return from_numbers(p.model.*field); }};
+}
+
+const Part network_parts[] = {
+    weights<&NetworkModel::goal>("goal", "the state that costs nothing; default: 0"),
+    weights<&NetworkModel::state_weights>("state_weights",
+                                          "costs of the squared distances from the goal, in each step"),
+    weights<&NetworkModel::terminal_weights>("terminal_weights", "the same, after the last step"),
+    weights<&NetworkModel::input_weights>("input_weights", "costs of the squared inputs"),
+    {"discs", "(x, y, radius) of discs in the plane of the first two states; a state within one collides",
+     [](Parts& p, const py::object& value) {
+       p.model.discs.clear();
+       if (value.is_none()) return;
+       for (const auto& [x, y, radius] : value.cast<std::vector<std::tuple<double, double, double>>>())
+         p.model.discs.push_back({x, y, radius});
+     },
+     [](const Parts& p) {
+       py::list all;
+       for (const NetworkModel::Disc& disc : p.model.discs)
+         all.append(py::make_tuple(disc.x, disc.y, disc.radius));
+       return py::object(all);
+     }},
+    {"disc_weight", "cost of a state within a disc",
+     [](Parts& p, const py::object& value) { p.model.disc_weight = value.cast<double>(); },
+     [](const Parts& p) { return py::object(py::float_(p.model.disc_weight)); }},
+    {"dt", "s, duration of a step; 0: unknown",
+     [](Parts& p, const py::object& value) { p.dt = value.cast<double>(); },
+     [](const Parts& p) { return py::object(py::float_(p.dt)); }},
+    {"input_min", "least inputs: a number, one for each input, or None",
+     [](Parts& p, const py::object& value) { p.input_min = numbers(value); },
+     [](const Parts& p) { return from_numbers(p.input_min); }},
+    {"input_max", "largest inputs: a number, one for each input, or None",
+     [](Parts& p, const py::object& value) { p.input_max = numbers(value); },
+     [](const Parts& p) { return from_numbers(p.input_max); }},
+};
+
+/// Sets the parts that are given. Throws TypeError if there is no part of a name.
+Parts with_keywords(Parts parts, const py::kwargs& keywords) {
+  for (const auto& [key, value] : keywords) {
+    const auto name = key.cast<std::string>();
+    const auto* const part = std::find_if(std::begin(network_parts), std::end(network_parts),
+                                          [&](const Part& each) { return name == each.name; });
+    if (part == std::end(network_parts)) throw py::type_error("MlpProblem: unknown argument '" + name + "'");
+    part->set(parts, py::reinterpret_borrow<py::object>(value));
+  }
+  return parts;
+}
+
+}  // namespace
+
+void bind_compiled(py::module_& module) {
+  py::class_<CompiledProblem, AnyProblem>(
+      module, "CompiledProblem",
+      "A problem struct that `slalom.compile` has compiled. Its parameters are attributes.")
+      .def(py::init(&load), py::arg("library"))
+      .def_readonly("library", &CompiledProblem::library, "the file that it was loaded from")
+      .def_property_readonly(
+          "parameters",
+          [](CompiledProblem& self) {
+            py::dict all;
+            for (const Parameter& parameter : self.parameters())
+              all[parameter.name] = to_python(parameter.values);
+            return all;
+          },
+          "the parameters by name")
+      .def("__getattr__",
+           [](CompiledProblem& self, const std::string& name) {
+             for (const Parameter& parameter : self.parameters())
+               if (name == parameter.name) return to_python(parameter.values);
+             throw py::attribute_error("the problem has no parameter '" + name +
+                                       "'; it has: " + names_of(self));
+           })
+      .def("__setattr__", &set_attribute)
+      .def("__dir__", [](CompiledProblem& self) {
+        py::list all = py::module_::import("builtins").attr("object").attr("__dir__")(py::cast(self));
+        for (const Parameter& parameter : self.parameters()) all.append(parameter.name);
+        return all;
+      });
+
+  std::string words =
+      "A problem whose dynamics is a network, at the speed of C++.\n\n"
+      "network: a slalom.mlp.Mlp that maps a state and the inputs of a step to the next state (with "
+      "`residual`: to "
+      "its change), together at most 64 values\n\n"
+      "The cost of a state is sum of weight * (state - goal)^2, and that of inputs sum of weight * input^2. "
+      "A "
+      "weight or bound is one number, or one for each state or input. Keyword arguments, also "
+      "attributes:\n\n";
+  for (const Part& part : network_parts) words += "    " + std::string(part.name) + ": " + part.help + "\n";
+  py::class_<NetworkProblem, AnyProblem> problem(module, "MlpProblem", words.c_str());
+  problem.def(py::init([](const py::object& network, const py::kwargs& keywords) {
+                return std::make_unique<NetworkProblem>(with_keywords({network, {}, 0, {}, {}}, keywords));
+              }),
+              py::arg("network"));
+  reader(problem)("network", "the network", [](const NetworkProblem& p) { return p.parts().network; });
+  for (const Part& part : network_parts)
+    problem.def_property(
+        part.name, [&part](const NetworkProblem& p) { return part.get(p.parts()); },
+        [&part](NetworkProblem& p, const py::object& value) {
+          Parts parts = p.parts();
+          part.set(parts, value);
+          p.set_parts(std::move(parts));
+        },
+        part.help);
+  module.def(
+      "instruction_set", [] { return std::string(simd::name(simd::active_target())); },
+      "The instruction set in use: avx512, avx2, sse4 or generic.");
+}
+
+}  // namespace slalom::python

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+
+#include "problem.hpp"
+#include "slalom/core/problem_check.hpp"
+
+/// The end of a source file that `slalom.compile` makes of a problem struct. This header and problem.hpp do
+/// not need the headers of Python.
+namespace slalom::python {
+
+inline std::span<double> values_of(double& value) {
+  return {&value, 1};
+}
+template <std::size_t N>
+std::span<double> values_of(std::array<double, N>& values) {
+  return values;
+}
+
+/// The problem struct `P`. `list(P&)` returns its parameters.
+template <class P, std::vector<Parameter> (*list)(P&)>
+class CompiledFrom final : public BuiltIn<P, CompiledProblem> {
+ public:
+  using BuiltIn<P, CompiledProblem>::BuiltIn;
+  std::unique_ptr<AnyProblem> clone() const override { return std::make_unique<CompiledFrom>(*this); }
+  std::vector<Parameter> parameters() override { return list(this->problem()); }
+};
+
+}  // namespace slalom::python
+
+/// Defines the function by which the library of a compiled problem makes one.
+#define SLALOM_COMPILED_PROBLEM(P, list)                                                                     \
+  static_assert(slalom::detail::check_problem<P>());                                                         \
+  extern "C" __attribute__((visibility("default"))) slalom::python::CompiledProblem* slalom_make_problem() { \
+    return new slalom::python::CompiledFrom<P, list>(P{});                                                   \
+  }

@@ -1,0 +1,193 @@
+#include "network_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slalom/core/dispatch.hpp"
+
+namespace slalom::python {
+
+namespace {
+
+constexpr int most = slalom::detail::MlpNetwork::max_neurons;
+
+/// The parts of the cost of a state, and whether it collides.
+template <class T>
+struct StateCost {
+  T distance = T(0), discs = T(0);
+  mask_t<T> collided = mask_t<T>(false);
+};
+
+template <class T>
+SLALOM_INLINE_CALLS StateCost<T> state_cost(const NetworkModel& m, const std::vector<double>& weights,
+                                            const T* x) {
+  StateCost<T> cost;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    cost.distance = cost.distance + T(weights[i]) * square(x[i] - T(m.goal[i]));
+  for (const NetworkModel::Disc& disc : m.discs) {
+    const auto inside = square(x[0] - T(disc.x)) + square(x[1] - T(disc.y)) < T(disc.radius * disc.radius);
+    cost.collided = cost.collided || inside;
+  }
+  cost.discs = select(cost.collided, T(m.disc_weight), T(0));
+  return cost;
+}
+
+template <class T>
+SLALOM_INLINE_CALLS T input_cost(const NetworkModel& m, const T* u) {
+  T cost(0);
+  for (std::size_t i = 0; i < m.input_weights.size(); ++i) cost = cost + T(m.input_weights[i]) * square(u[i]);
+  return cost;
+}
+
+/// Replaces a state by the one after a step.
+template <class T>
+SLALOM_INLINE_CALLS void take_step(const NetworkModel& m, const T* u, T* x) {
+  T values[most], other[most];
+  for (int i = 0; i < m.states; ++i) values[i] = x[i];
+  for (int i = 0; i < m.inputs; ++i) values[m.states + i] = u[i];
+  m.network.evaluate(values, other);
+  for (int i = 0; i < m.states; ++i) x[i] = m.residual ? x[i] + values[i] : values[i];
+}
+
+struct NetworkRollout {
+  template <class Target>
+  SLALOM_KERNEL static void run(const NetworkModel& m, const float* start, const SequenceBatch& batch,
+                                int first, int count, float* costs, std::uint8_t* collided) {
+    using F = Pack<Target>;
+    for (int s = first; s < first + count; s += F::lanes) {
+      F x[most], u[most], total(0.0f);
+      mask_t<F> hit(false);
+      for (int i = 0; i < m.states; ++i) x[i] = F(start[i]);
+      for (int k = 0; k <= batch.steps(); ++k) {
+        const bool last = k == batch.steps();
+        const StateCost<F> cost = state_cost(m, last ? m.terminal_weights : m.state_weights, x);
+        total = total + cost.distance + cost.discs;
+        hit = hit || cost.collided;
+        if (last) break;
+        for (int i = 0; i < m.inputs; ++i) u[i] = F::load(batch.row(k, i) + s);
+        total = total + input_cost(m, u);
+        take_step(m, u, x);
+      }
+      total.store(costs + s);
+      hit.store(collided + s);
+    }
+  }
+};
+
+double bound_of(const std::vector<double>& values, int input, double otherwise) {
+  if (values.empty()) return otherwise;
+  return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(input)];
+}
+
+/// Makes `values` one for each of `count`: none is 0 for all, and one value holds for all.
+void spread(std::vector<double>& values, int count, const char* name) {
+  if (values.empty()) values.push_back(0);
+  if (values.size() == 1) values.resize(static_cast<std::size_t>(count), values[0]);
+  if (static_cast<int>(values.size()) != count)
+    throw std::invalid_argument(std::string("MlpProblem.") + name + ": has " + std::to_string(values.size()) +
+                                " values, must have 1 or " + std::to_string(count));
+  for (const double value : values)
+    if (!std::isfinite(value))
+      throw std::invalid_argument(std::string("MlpProblem.") + name + ": must be finite");
+}
+
+}  // namespace
+
+NetworkProblem::NetworkProblem(Parts parts) : parts_(std::move(parts)) {
+  NetworkModel& m = parts_.model;
+  const MlpParameters p = parameters_of(parts_.network);
+  const int entering = p.layers.empty() ? 0 : p.layers.front().inputs;
+  m.states = p.layers.empty() ? 0 : p.layers.back().outputs;
+  m.inputs = entering - m.states;
+  if (m.states < 1 || m.inputs < 1 || entering > most)
+    throw std::invalid_argument(
+        "MlpProblem.network: maps " + std::to_string(entering) + " values to " + std::to_string(m.states) +
+        ", must map a state and the inputs of a step, at most 64 values, to the next state");
+  m.network = slalom::detail::MlpNetwork(p, entering, m.states);
+  m.residual = p.residual;
+  spread(m.goal, m.states, "goal");
+  spread(m.state_weights, m.states, "state_weights");
+  spread(m.terminal_weights, m.states, "terminal_weights");
+  spread(m.input_weights, m.inputs, "input_weights");
+  if (!m.discs.empty() && m.states < 2)
+    throw std::invalid_argument("MlpProblem.discs: need a state of at least 2 values, x and y first");
+  for (std::vector<double>* bound : {&parts_.input_min, &parts_.input_max})
+    if (bound->size() > 1) spread(*bound, m.inputs, "input_min, input_max");
+  if (!(parts_.dt >= 0 && std::isfinite(parts_.dt)))
+    throw std::invalid_argument("MlpProblem.dt: " + std::to_string(parts_.dt) +
+                                " must be finite and at least 0 (0: not known)");
+  state_.resize(static_cast<std::size_t>(m.states));
+}
+
+double NetworkProblem::input_min(int input) const {
+  return bound_of(parts_.input_min, input, AnyProblem::input_min(input));
+}
+double NetworkProblem::input_max(int input) const {
+  return bound_of(parts_.input_max, input, AnyProblem::input_max(input));
+}
+
+void NetworkProblem::set_state(std::span<const double> state) {
+  std::transform(state.begin(), state.end(), state_.begin(), [](double v) { return static_cast<float>(v); });
+}
+
+std::vector<double> NetworkProblem::step(std::span<const double> state, std::span<const double> input, int) {
+  std::vector<double> x(state.begin(), state.end());
+  take_step(parts_.model, input.data(), x.data());
+  return x;
+}
+
+Prediction NetworkProblem::predict(std::span<const double> state, std::span<const double> inputs) {
+  const NetworkModel& m = parts_.model;
+  std::vector<double> x(state.begin(), state.end());
+  Prediction result{x, 0, false, {}};
+  const auto add = [&](const char* name, double value) {
+    result.cost += value;
+    result.add(name, value);
+  };
+  const auto nu = static_cast<std::size_t>(m.inputs);
+  for (;; inputs = inputs.subspan(nu)) {
+    const bool last = inputs.empty();
+    const auto cost = state_cost(m, last ? m.terminal_weights : m.state_weights, x.data());
+    add(last ? "terminal" : "state", cost.distance);
+    add("discs", cost.discs);
+    result.collided = result.collided || cost.collided;
+    if (last) return result;
+    add("input", input_cost(m, inputs.data()));
+    take_step(m, inputs.data(), x.data());
+    result.states.insert(result.states.end(), x.begin(), x.end());
+  }
+}
+
+void NetworkProblem::evaluate(const SequenceBatch& batch, int first, int count, float* costs,
+                              std::uint8_t* collided) const noexcept {
+  simd::dispatch<NetworkRollout>(parts_.model, state_.data(), batch, first, count, costs, collided);
+}
+
+MlpParameters parameters_of(const py::object& network) {
+  const auto values = [](const py::object& array, py::ssize_t dimensions) {
+    const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
+    if (!numbers || numbers.ndim() != dimensions)
+      throw std::invalid_argument("MlpProblem.network: an array has a wrong number of dimensions");
+    return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
+  };
+  if (!py::hasattr(network, "layers") || !py::hasattr(network, "activation"))
+    throw py::type_error("MlpProblem.network: " + py::repr(network).cast<std::string>() +
+                         " must be a slalom.mlp.Mlp");
+  MlpParameters p;
+  for (const py::handle& layer : network.attr("layers")) {
+    const auto pair = layer.cast<std::pair<py::array, py::object>>();
+    MlpParameters::Layer made{0, 0, values(pair.first, 2), values(pair.second, 1)};
+    made.outputs = static_cast<int>(pair.first.shape(0));
+    made.inputs = static_cast<int>(pair.first.shape(1));
+    p.layers.push_back(std::move(made));
+  }
+  p.activation = activation_of(network.attr("activation").cast<std::string>());
+  p.input_mean = values(network.attr("input_mean"), 1);
+  p.input_scale = values(network.attr("input_scale"), 1);
+  p.output_mean = values(network.attr("output_mean"), 1);
+  p.output_scale = values(network.attr("output_scale"), 1);
+  p.residual = network.attr("residual").cast<bool>();
+  return p;
+}
+
+}  // namespace slalom::python

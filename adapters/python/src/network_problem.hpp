@@ -1,0 +1,63 @@
+#pragma once
+
+#include "keywords.hpp"
+#include "problem.hpp"
+#include "slalom/core/network/mlp.hpp"
+
+namespace slalom::python {
+
+/// The dynamics of a network and a cost of few parts.
+struct NetworkModel {
+  /// A disc in the plane of the first two states.
+  struct Disc {
+    double x = 0, y = 0, radius = 0;
+  };
+  slalom::detail::MlpNetwork network{1, 1};  ///< the state after a step, of state and inputs
+  bool residual = false;                     ///< whether it gives the change of the state instead
+  int states = 0, inputs = 0;                ///< together at most 64
+  std::vector<double> goal, state_weights, terminal_weights;  ///< one for each state
+  std::vector<double> input_weights;                          ///< one for each input
+  std::vector<Disc> discs;
+  double disc_weight = 0;  ///< cost of a state within a disc
+};
+
+/// A problem of an `NetworkModel`. Its rollouts run in SIMD lanes, though sizes are known only at run time.
+class NetworkProblem final : public AnyProblem, public BatchEvaluator {
+ public:
+  /// The model, and all that Python gave.
+  struct Parts {
+    py::object network;
+    NetworkModel model;
+    double dt = 0;                             ///< s; 0: unknown
+    std::vector<double> input_min, input_max;  ///< one value, one for each input, or none
+  };
+
+  /// Throws std::invalid_argument with the rule that a part breaks.
+  explicit NetworkProblem(Parts parts);
+
+  std::unique_ptr<AnyProblem> clone() const override { return std::make_unique<NetworkProblem>(*this); }
+  int states() const noexcept override { return parts_.model.states; }
+  int inputs() const noexcept override { return parts_.model.inputs; }
+  const BatchEvaluator& evaluator() const noexcept override { return *this; }
+  double time_step() const noexcept override { return parts_.dt; }
+  double input_min(int input) const override;
+  double input_max(int input) const override;
+  void set_state(std::span<const double> state) override;
+  std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override;
+  Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
+  void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
+                std::uint8_t* collided) const noexcept override;
+
+  const Parts& parts() const noexcept { return parts_; }
+  /// Replaces the parts; throws as the constructor does.
+  void set_parts(Parts parts) { *this = NetworkProblem(std::move(parts)); }
+
+ private:
+  Parts parts_;
+  std::vector<float> state_;
+};
+
+/// The parameters of a network, from a slalom.mlp.Mlp.
+MlpParameters parameters_of(const py::object& network);
+
+}  // namespace slalom::python

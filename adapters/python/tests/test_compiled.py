@@ -1,0 +1,189 @@
+"""Problems that are compiled at run time, networks as problems, and batches of solves."""
+
+import copy
+import pickle
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import slalom
+from slalom.mlp import Mlp
+
+ROOT = Path(__file__).resolve().parents[3]
+README = (ROOT / "README.md").read_text()
+PENDULUM = re.search(r"```cpp\n#include <slalom/slalom.hpp>\n\n(struct Pendulum.*?\n};)", README, re.S)[1]
+needs_compiler = pytest.mark.skipif(not shutil.which("c++"), reason="no C++ compiler")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("cache")
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        yield folder / "slalom"
+
+
+@needs_compiler
+def test_the_pendulum_of_the_readme_is_compiled_once(cache):
+    pendulum = slalom.compile(PENDULUM)
+    controller = slalom.SvgMppi(pendulum, horizon=60, samples=2048, input_min=-5, input_max=5)
+    plan = controller.solve([0.1, 0], elapsed=0.02)
+    assert plan.ok and plan.states.shape == (61, 2) and list(plan.cost_terms) == ["stage", "terminal"]
+    x = np.array([0.5, 0.2])
+    rate = 0.2 + 0.02 * (9.81 * np.sin(0.5) + 1)
+    assert pendulum.step(x, [1.0]) == pytest.approx([0.5 + 0.02 * rate, rate])
+    compiled = [(file, file.stat().st_mtime_ns) for file in cache.iterdir()]
+    slalom.compile(PENDULUM)
+    assert len(compiled) == 1 and compiled == [(file, file.stat().st_mtime_ns) for file in cache.iterdir()]
+
+
+@needs_compiler
+def test_parameters_of_a_compiled_problem():
+    source = PENDULUM.replace("double dt = 0.02;", "double dt = 0.02, weight{1}; std::array<double, 2> pair{1, 2};"
+                              "double input_min = -5, input_max = 5, input_levels = 3;")
+    assert source != PENDULUM
+    pendulum = slalom.compile(source, dt=0.01)
+    assert pendulum.dt == 0.01 and pendulum.parameters == {"dt": 0.01, "weight": 1, "pair": [1, 2],
+                                                            "input_min": -5, "input_max": 5, "input_levels": 3}
+    controller = slalom.Mppi(pendulum, horizon=20)
+    plans = [controller.solve([0.3, 0], elapsed=0.01).inputs.copy() for _ in range(3)]
+    assert np.isin(plans, [-5, 0, 5]).all() and len(np.unique(plans)) > 1
+    assert controller.options["variance"] == 1
+    controller.problem.pair = [3, 4]
+    assert controller.problem.pair == [3, 4] and pendulum.pair == [1, 2]
+    assert isinstance(controller.problem, slalom.CompiledProblem) and "weight" in dir(controller.problem)
+    for each in copy.copy(controller).problem, pickle.loads(pickle.dumps(controller.problem)):
+        assert each.pair == [3, 4] and each.dt == 0.01
+    with pytest.raises(AttributeError, match="no parameter 'mass'; it has: dt, weight, pair, input_min"):
+        controller.problem.mass = 3
+    with pytest.raises(ValueError, match="pair: has 1 values, must have 2"):
+        controller.problem.pair = 3
+
+
+@needs_compiler
+def test_headers_are_compiled_again_when_they_change(tmp_path, cache):
+    header, part = tmp_path / "pendulum.hpp", tmp_path / "gravity.hpp"
+    header.write_text('#include "gravity.hpp"\nnamespace mine {\n' + PENDULUM.replace("9.81", "gravity") + "\n}\n")
+    speeds = []
+    for gravity in 9.81, 1.62:
+        part.write_text(f"static constexpr double gravity = {gravity};\n")
+        speeds.append(slalom.compile(header, "mine::Pendulum").step([0.5, 0], [0])[1])
+    assert speeds == pytest.approx([0.02 * g * np.sin(0.5) for g in (9.81, 1.62)])
+
+
+@needs_compiler
+def test_mistakes_of_compiled_problems_have_the_compilers_words(monkeypatch):
+    with pytest.raises(slalom.CompileError, match="slalom: the problem needs .*stage_cost"):
+        slalom.compile(PENDULUM.replace("stage_cost", "cost"))
+    with pytest.raises(slalom.CompileError, match="<source>:.*error: .*speed"):
+        slalom.compile(PENDULUM.replace("x.rate", "x.speed", 1))
+    with pytest.raises(ValueError, match="no problem: a struct"):
+        slalom.compile("struct Nothing { int inputs; };")
+    with pytest.raises(ValueError, match="must be one of One, Two"):
+        slalom.compile("".join(f"struct {name} {{ static constexpr int inputs = 1; }};" for name in ("One", "Two")))
+    with pytest.raises(FileNotFoundError):
+        slalom.compile("no_such_header.hpp")
+    monkeypatch.setenv("CXX", "no-such-compiler")
+    with pytest.raises(slalom.CompileError, match="no C.. compiler found .no-such-compiler.*set CXX"):
+        slalom.compile(PENDULUM)
+
+
+def network(activation="tanh", residual=True):
+    random = np.random.default_rng(0)
+    layers = [(random.normal(size=(16, 3)), random.normal(size=16)), (random.normal(size=(2, 16)) / 16, np.zeros(2))]
+    return Mlp(layers, activation, input_mean=[0.1, 0.2, 0], input_scale=[1, 2, 1], output_scale=[0.5, 1],
+               residual=residual)
+
+
+PARTS = {"goal": [1, 0], "state_weights": [1, 0.1], "terminal_weights": 2, "input_weights": 0.01, "dt": 0.1,
+         "input_min": -2, "input_max": 2}
+
+
+@pytest.mark.parametrize("activation", ["tanh", "relu", "softplus", "silu"])
+def test_a_network_as_a_problem_is_that_of_callables(activation):
+    mlp = network(activation, residual=activation != "relu")
+
+    def cost(x, u):
+        away = x - np.float32([1, 0])
+        return away[:, 0] ** 2 + np.float32(0.1) * away[:, 1] ** 2 + np.float32(0.01) * u[:, 0] ** 2
+
+    def terminal_cost(x):
+        return 2 * np.sum((x - np.float32([1, 0])) ** 2, axis=1)
+
+    callables = slalom.Problem(lambda x, u: mlp(np.concatenate([x, u], axis=1)), cost, terminal_cost, states=2,
+                               inputs=1, dt=0.1, input_min=-2, input_max=2)
+    compiled = slalom.MlpProblem(mlp, **PARTS)
+    plans = [slalom.Mppi(p, horizon=12, samples=200).solve([0.2, -0.3]) for p in (compiled, callables)]
+    assert np.allclose(plans[0].costs, plans[1].costs, rtol=1e-4)
+    assert np.allclose(plans[0].inputs, plans[1].inputs, atol=1e-4)
+    assert plans[0].cost == pytest.approx(plans[1].cost, rel=1e-5)
+    assert sum(plans[0].cost_terms.values()) == pytest.approx(plans[0].cost)
+    assert np.allclose(compiled.step([0.2, -0.3], [1]), callables.step([0.2, -0.3], [1]), atol=1e-5)
+
+
+def test_a_network_as_a_problem_goes_round_discs_and_is_changed_between_solves():
+    steps = Mlp([(np.float32([[0, 0, 0.1, 0], [0, 0, 0, 0.1]]), np.zeros(2))], residual=True)  # a point that is moved
+    problem = slalom.MlpProblem(steps, goal=[2, 0], state_weights=1, terminal_weights=10, discs=[(1, 0.05, 0.4)],
+                                disc_weight=100, dt=0.1, input_min=-1, input_max=1)
+    controller = slalom.SvgMppi(problem, horizon=40)
+    plan = controller.solve([0, 0])
+    assert not plan.collided and 0 < plan.collided_share < 1
+    assert problem.collides([1, 0]) and not problem.collides([0, 0])
+    controller.problem.discs = []
+    controller.problem.goal = [0, 2]
+    assert controller.solve([0, 0]).collided_share == 0 and problem.discs == [(1, 0.05, 0.4)]
+    again = pickle.loads(pickle.dumps(problem))
+    assert again.discs == problem.discs and again.goal == [2, 0] and repr(again).startswith("slalom.MlpProblem(")
+
+
+@pytest.mark.parametrize("make, error, text", [
+    (lambda: slalom.MlpProblem(3), TypeError, "must be a slalom.mlp.Mlp"),
+    (lambda: slalom.MlpProblem(Mlp([(np.zeros((2, 2)), np.zeros(2))])), ValueError, "maps 2 values to 2, must map"),
+    (lambda: slalom.MlpProblem(network(), goal=[1, 2, 3]), ValueError, "goal: has 3 values, must have 1 or 2"),
+    (lambda: slalom.MlpProblem(network(), state_weights=np.nan), ValueError, "state_weights: must be finite"),
+    (lambda: slalom.MlpProblem(network(), gaol=1), TypeError, "unknown argument 'gaol'"),
+    (lambda: slalom.MlpProblem(network(), dt=-1), ValueError, "dt: -1.* must be finite and at least 0"),
+])
+def test_mistakes_of_networks_as_problems(make, error, text):
+    with pytest.raises(error, match=text):
+        make()
+
+
+def test_a_batch_of_solves_gives_the_plans_of_single_solves():
+    one = slalom.Mppi(slalom.Pendulum(), horizon=10, samples=128, input_min=-5, input_max=5)
+    states = [[0.1 * i, 0] for i in range(7)]
+    for threads in 1, 2:
+        batch, single = ([copy.copy(one) for _ in states] for _ in range(2))
+        for _ in range(2):  # the second solve starts from each controller's own last plan
+            plans = slalom.solve_batch(batch, states, elapsed=0.02, threads=threads)
+            for plan, controller, x in zip(plans, single, states):
+                assert np.array_equal(plan.inputs, controller.solve(x, elapsed=0.02).inputs)
+    with pytest.raises(ValueError, match="states: has 1 states, must have 7, one for each controller"):
+        slalom.solve_batch(batch, states[:1])
+    with pytest.raises(ValueError, match="elapsed: -1.* must be finite"):
+        slalom.solve_batch(batch, states, elapsed=-1)
+    with pytest.raises(RuntimeError, match="another thread is using it"):
+        slalom.solve_batch([one, one], states[:2])
+
+
+def test_exceptions_of_callables_leave_a_batch():
+    def cost(x, u):
+        if x[0, 0] > 1:
+            raise ArithmeticError("too far")
+        return x[:, 0] ** 2
+
+    problem = slalom.Problem(lambda x, u: x + u, cost, states=1, inputs=1)
+    batch = [slalom.Mppi(problem, horizon=2, samples=8, variance=0) for _ in range(2)]
+    with pytest.raises(ArithmeticError, match="too far"):
+        slalom.solve_batch(batch, [[0.5], [2]], threads=2)
+    assert slalom.solve_batch(batch, [[0.5], [0.1]])[1].ok
+
+
+def test_the_package_needs_no_compiler_to_be_imported():
+    subprocess.run([sys.executable, "-c", "import slalom; slalom.Mppi(slalom.Pendulum())"], check=True,
+                   env={"PATH": "/nowhere", "PYTHONPATH": str(Path(slalom.__file__).parents[1])})
