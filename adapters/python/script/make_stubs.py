@@ -20,6 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 def translate(kind, argument):
     """The Python type for a type in a signature of pybind11, of an argument or of a result."""
     kind = re.sub(r"(slalom\.)?(_slalom|_driving)\.", "", kind)
+    if kind == "List[object]" and argument:
+        return "Sequence[Any]"
     if kind.startswith("numpy.ndarray") or kind.startswith("List[") and argument:
         return "ArrayLike" if argument else "NDArray[Any]"
     if kind.startswith("Union["):
