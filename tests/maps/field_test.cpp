@@ -222,7 +222,7 @@ TEST(Field, RejectsWhatCannotBeAMap) {
   EXPECT_EQ(message({0, 2, 1, {}}, {}), "field.width: 0: must be at least 1");
   EXPECT_EQ(message({2, 2, 0, {}}, {1, 2, 3, 4}), "field.resolution: 0: must be finite and above 0");
   EXPECT_EQ(message({2, 2, 1, {0, nan, 0}}, {1, 2, 3, 4}),
-            "field.origin (0, .nan, 0): x and y must be within 1e7 m of 0, yaw within 1e6 rad");
+            "field.origin (0, .nan, 0): must have x and y within 1e7 m of 0 and a yaw within 1e6 rad");
   EXPECT_EQ(message({3, 2, 1, {}}, {1, 2, 3, 4}), "field: number of samples: 4: must be 2 x 3");
   EXPECT_EQ(message({2, 2, 1, {}}, {1, 2, nan, 4}),
             "field: sample in row 1, column 0: nan: must be a finite float32 value");

@@ -111,7 +111,7 @@ TEST_F(CommandLine, HelpFitsTheTerminalAndHasExamples) {
     EXPECT_EQ(text.find(" in ["), std::string::npos) << "a rule of the parser: " << text;
   }
   const std::string help = timed("course --help").output;
-  EXPECT_NE(help.find("  --out TEXT                Required. Output folder"), std::string::npos) << help;
+  EXPECT_NE(help.find("  --out TEXT              Required. Output folder"), std::string::npos) << help;
 }
 
 TEST_F(CommandLine, AFullStandardOutputIsAnError) {

@@ -202,7 +202,7 @@ TEST_F(DriveCommand, RejectsInvalidArguments) {
   expect_refused("drive --set guide_weight=heavy", {"'heavy'", "must be one of"});
   expect_refused("drive --set variance=[0.1,0.2,0.3]", {"variance", "3 values"});
   expect_refused("drive --start 0,0", {"--start", "x,y,yaw"});
-  expect_refused("drive --start 0,0,nan", {"--start", "finite"});
+  expect_refused("drive --start 0,0,nan", {"--start", "within 1e7 m"});
   expect_refused("drive --course wren --start 1e6,0,0", {"start", "on the map"});
   expect_refused("drive --obstacles 900", {"parked cars could be placed"});
   expect_refused("drive --evaluation published --latency-ms 5", {"latency", "published"});

@@ -14,7 +14,7 @@ struct PoseLimits {
   static constexpr double position = 1e7;  ///< m, largest magnitude of a coordinate
   static constexpr double yaw = 1e6;       ///< rad, largest magnitude of a yaw
   /// The rule in words, for messages.
-  static constexpr const char* rule = "x and y must be within 1e7 m of 0, yaw within 1e6 rad";
+  static constexpr const char* rule = "must have x and y within 1e7 m of 0 and a yaw within 1e6 rad";
 };
 
 /// Whether a point is finite and within PoseLimits.
