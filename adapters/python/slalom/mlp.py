@@ -8,6 +8,8 @@ from typing import Any, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _slalom
+
 Array = NDArray[Any]
 
 _ACTIVATIONS = ("tanh", "relu", "softplus", "silu")
@@ -78,13 +80,9 @@ class Mlp:
 
     @classmethod
     def load(cls, file: str | os.PathLike[str]) -> Mlp:
-        """The network that `save` wrote."""
-        with np.load(file, allow_pickle=False) as arrays:
-            count = sum(name.startswith("weights_") for name in arrays)
-            layers = [(arrays[f"weights_{i}"], arrays[f"biases_{i}"]) for i in range(count)]
-            normalisation = {name: arrays[name] for name in ("input_mean", "input_scale", "output_mean", "output_scale")
-                             if name in arrays}
-            return cls(layers, str(arrays["activation"]), residual=bool(arrays.get("residual", False)), **normalisation)
+        """The network that `save` wrote, read as `slalom::load_mlp` does. Raises slalom.IoError."""
+        read = getattr(_slalom, "_read_mlp")(os.fspath(file))
+        return cls(activation=_ACTIVATIONS[read.pop("activation")], **read)
 
 
 def train_mlp(inputs: ArrayLike, outputs: ArrayLike, *, hidden: Sequence[int] = (32, 32), activation: str = "tanh",

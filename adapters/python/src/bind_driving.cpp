@@ -96,7 +96,7 @@ void bind_planner(py::module_& module) {
         evaluation::LapResult lap;
         {
           const py::gil_scoped_release unlock;
-          lap = evaluation::run_lap(setup, seed);
+          lap = evaluation::run_lap(setup, seed, [](const auto&) { check_signals(); });
         }
         return lap_dict(lap);
       },

@@ -2,6 +2,7 @@
 
 #include "callable_problem.hpp"
 #include "controller.hpp"
+#include "slalom/core/network/mlp.hpp"
 #include "slalom/problems/arm.hpp"
 #include "slalom/problems/car.hpp"
 #include "slalom/problems/cart_pole.hpp"
@@ -83,6 +84,20 @@ std::span<const double> checked(const std::vector<double>& values, int count, co
     throw std::invalid_argument(std::string(what) + ": has " + std::to_string(values.size()) +
                                 " values, must have " + std::to_string(count));
   return values;
+}
+
+/// The arguments of slalom.mlp.Mlp; the activation as a number.
+py::dict read_mlp(const std::string& file) {
+  const MlpParameters p = load_mlp(file);
+  py::list layers;
+  for (const auto& [inputs, outputs, weights, biases] : p.layers)
+    layers.append(py::make_tuple(py::array_t<double>({outputs, inputs}, weights.data()),
+                                 py::array_t<double>(outputs, biases.data())));
+  const auto given = [](const std::vector<double>& v) { return v.empty() ? py::none() : py::cast(v); };
+  return py::dict("layers"_a = layers, "activation"_a = static_cast<int>(p.activation),
+                  "input_mean"_a = given(p.input_mean), "input_scale"_a = given(p.input_scale),
+                  "output_mean"_a = given(p.output_mean), "output_scale"_a = given(p.output_scale),
+                  "residual"_a = p.residual);
 }
 
 }  // namespace
@@ -179,6 +194,7 @@ void bind_problems(py::module_& module) {
       module, "Car",
       "A car that steers and accelerates among parked cars. State: x, y (m), yaw (rad), "
       "speed (m/s); inputs: steering angle (rad), acceleration (m/s^2).");
+  module.def("_read_mlp", &read_mlp);
 }
 
 }  // namespace slalom::python

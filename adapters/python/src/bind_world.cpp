@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "driving.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
@@ -106,17 +108,21 @@ void bind_simulated_world(py::module_& module) {
       .def(
           "step",
           [](sim::World& self, const std::vector<std::array<double, 2>>& commands, int steps) {
+            if (commands.size() != self.cars())
+              throw py::value_error("commands: has " + std::to_string(commands.size()) + ", must have " +
+                                    std::to_string(self.cars()) + ", one for each car");
+            if (steps < 0) throw py::value_error("steps: " + std::to_string(steps) + " must be at least 0");
             std::vector<slalom::Command> all;
-            for (const auto& c : commands) all.push_back({c[0], c[1]});
-            sim::StepStatus status = sim::StepStatus::ok;
-            {
-              const py::gil_scoped_release unlock;
-              for (int k = 0; k < steps; ++k) status = self.step(all);
+            for (const auto& c : commands) {
+              if (!std::isfinite(c[0]) || !std::isfinite(c[1]))
+                throw py::value_error("commands: must be finite");
+              all.push_back({c[0], c[1]});
             }
-            if (status == sim::StepStatus::missing_command)
-              throw py::value_error("commands: must have one for each car");
-            if (status == sim::StepStatus::non_finite_command)
-              throw py::value_error("commands: must be finite");
+            const py::gil_scoped_release unlock;
+            for (int k = 0; k < steps; ++k) {
+              self.step(all);
+              if (k % 64 == 63) check_signals();
+            }
           },
           py::arg("commands"), py::arg("steps") = 1,
           "Moves by `steps` time steps; a command is (steering angle rad, speed m/s).")

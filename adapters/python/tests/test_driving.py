@@ -1,3 +1,5 @@
+import signal
+
 import numpy as np
 import pytest
 import slalom
@@ -90,8 +92,30 @@ def test_errors_name_the_mistake():
         slalom.Planner(course, options={"samples": 0})
     world = slalom.World(course)
     world.reset(0, [course.start])
-    with pytest.raises(ValueError, match="commands"):
-        world.step([])
+    for commands in ([], [(0, 1), (0, 1)], [(0, float("nan"))]):
+        with pytest.raises(ValueError, match="commands"):
+            world.step(commands)
+    with pytest.raises(ValueError, match="steps: -1 must be at least 0"):
+        world.step([(0, 1)], steps=-1)
+    assert world.time == 0.0
+
+
+@pytest.mark.parametrize("call", ["step", "drive_lap"])
+def test_a_signal_ends_a_long_call(call):
+    course = slalom.Course("wren")
+    world = slalom.World(course)
+    world.reset(0, [course.start])
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            if call == "step":
+                world.step([(0, 0)], steps=10**9)
+            else:
+                slalom.drive_lap(course, "mppi", options={"samples": 64, "world.rounds": 100})
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def test_a_world_takes_the_options_of_the_simulator():

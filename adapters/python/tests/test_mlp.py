@@ -1,5 +1,8 @@
+import os
+
 import numpy as np
 import pytest
+import slalom
 from slalom.mlp import Mlp, train_mlp
 
 
@@ -34,6 +37,19 @@ def test_a_network_is_stored_and_read(tmp_path):
         assert arrays["weights_0"].shape == (8, 3) and arrays["biases_2"].shape == (2,)
         assert str(arrays["activation"]) == "tanh" and arrays["residual"]
     assert np.array_equal(Mlp.load(tmp_path / "network.npz")(x), network(x))
+
+
+def test_files_have_the_limits_of_load_mlp(tmp_path):
+    network = Mlp([(np.zeros((2, 3)), np.zeros(2))])
+    network.save(tmp_path / "network.npz")
+    with np.load(tmp_path / "network.npz") as arrays:
+        np.savez_compressed(tmp_path / "small.npz", **arrays)
+    (tmp_path / "large.npz").write_bytes(b"")
+    os.truncate(tmp_path / "large.npz", (16 << 20) + 1)
+    os.mkfifo(tmp_path / "pipe.npz")
+    for name, text in [("small", "compressed"), ("large", "at most 16777216"), ("pipe", "regular file"), ("none", "exist")]:
+        with pytest.raises(slalom.IoError, match=f"{name}.npz: .*{text}"):
+            Mlp.load(tmp_path / f"{name}.npz")
 
 
 def test_mistakes_are_named():
