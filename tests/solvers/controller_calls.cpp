@@ -114,7 +114,8 @@ void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& 
   require((plan.status == Status::non_finite_state) == !finite,
           "the status says whether the state was finite");
   check_plan(plan, low, high, controller.problem());
-  for (int i = 0; told && finite && i < controller.evaluator().inputs(); ++i) {
+  const bool repeats = !finite || plan.status == Status::invalid_time;  // the last plan
+  for (int i = 0; told && !repeats && i < controller.evaluator().inputs(); ++i) {
     const double before = controller.bounds().nearest(static_cast<std::size_t>(i), (*told)[i]);
     check_rate(detail::input_step(controller.problem(), i), before, plan.inputs[0][i]);
   }
