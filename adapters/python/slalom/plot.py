@@ -12,7 +12,7 @@ _MOST_LINES = 60  # samples that are drawn
 def plan(plan: Any) -> Any:
     """A matplotlib figure of a plan: samples, guides and inputs within their bounds, predicted states, costs and weights
     of the samples, and the cost by term. `figure.savefig("plan.png")` writes it to a file."""
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure  # type: ignore[import]
 
     inputs = plan.inputs.shape[1]
     figure = Figure(figsize=(11, 2.2 * (inputs + 2)), layout="constrained")

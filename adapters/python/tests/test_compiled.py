@@ -50,10 +50,10 @@ def test_parameters_of_a_compiled_problem():
     pendulum = slalom.compile(source, dt=0.01)
     assert pendulum.dt == 0.01 and pendulum.parameters == {"dt": 0.01, "weight": 1, "pair": [1, 2],
                                                             "input_min": -5, "input_max": 5, "input_levels": 3}
-    controller = slalom.Mppi(pendulum, horizon=20)
+    controller = slalom.Mppi(pendulum, horizon=20, temperature=0.1, variance=16)
     plans = [controller.solve([0.3, 0], elapsed=0.01).inputs.copy() for _ in range(3)]
     assert np.isin(plans, [-5, 0, 5]).all() and len(np.unique(plans)) > 1
-    assert controller.options["variance"] == 1
+    assert controller.options["variance"] == 16
     controller.problem.pair = [3, 4]
     assert controller.problem.pair == [3, 4] and pendulum.pair == [1, 2]
     assert isinstance(controller.problem, slalom.CompiledProblem) and "weight" in dir(controller.problem)
