@@ -51,6 +51,8 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   options.guides.restart_variance = variances(base, 0.4);
   options.guides.step = variances(base, 0.06);  // about a third of a step to the samples' mean
   options.guides.gradient_temperature = options.temperature;
+  options.batches = 1;
+  options.guides.count = 4;
   options.guides.iterations = 2;
   options.guides.gradient_samples = 64;
   return options;
