@@ -108,10 +108,7 @@ double LapSetup::length() const {
   const sim::LapPath& path = *environment->track->lap_path();
   if (!ends_with_path(*this)) return settings.rounds * path.length();
   const maps::Pose from = start();
-  const double arc = path.project({from.x, from.y}).arc, end = environment->course.length;
-  // Beyond the end of an open path lies the way back to its beginning, where the first point itself may
-  // project.
-  return end - (arc > end ? 0 : arc) - finish_tolerance;
+  return environment->course.length - path.project({from.x, from.y}).arc - finish_tolerance;
 }
 
 sim::WorldOptions world_options(const LapSetup& setup) {

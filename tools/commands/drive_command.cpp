@@ -49,7 +49,7 @@ class LongestStand {
   }
 
   double duration = 0;               ///< s
-  maps::Pose place;                  ///< of the centre of gravity
+  maps::Pose place;                  ///< pose of the centre of gravity
   double progress = 0;               ///< share of the lap
   bool every_plan_collides = false;  ///< or it reversed, most of the time
 

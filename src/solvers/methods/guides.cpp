@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "solvers/methods/gaussian_fit.hpp"
-#include "solvers/sampling/seek_temperature.hpp"
 
 namespace slalom::detail {
 
@@ -34,28 +33,9 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
     std::fill_n(gradient, v.rows, 0.0f);
     return false;
   }
-  const auto weigh = [&](double temperature) {
-    return kernels::exponential_weights(totals, totals, least, static_cast<float>(temperature), block,
-                                        weights);
-  };
-  double temperature = s.temperature;
-  if (!(temperature > 0)) {
-    double excess = 0;
-    int counted = 0;
-    for (int i = block.first; i < block.first + samples; ++i) {
-      if (!(totals[i] < infinite)) continue;
-      excess += static_cast<double>(totals[i]) - static_cast<double>(least);
-      ++counted;
-    }
-    const auto effective_size = [&](double t) {
-      const WeightSums<float> sums = weigh(t);
-      const double weight = static_cast<double>(sums.weight);
-      return weight * weight / static_cast<double>(sums.squared);
-    };
-    const double wanted = std::max(default_effective_size(samples), 1.0);
-    temperature = excess > 0 ? seek_temperature(wanted, excess / counted, 0, effective_size) : 1;
-  }
-  const double sum = weigh(temperature).weight;
+  const double sum =
+      kernels::exponential_weights(totals, totals, least, s.temperature, block, weights).weight;
+  const double temperature = s.temperature;
   const double floor = s.subtract_minimum ? s.floor : s.floor * std::exp(least / temperature);
   kernels::weighted_sums(v, weights, s.centre, block, gradient);
   for (int r = 0; r < v.rows; ++r) {
@@ -74,7 +54,6 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       rows_(options.horizon * inputs),
       low_(low.begin(), low.end()),
       high_(high.begin(), high.end()),
-      shape_(options.noise.pinned ? NoiseShape(options.noise, options.horizon, inputs) : NoiseShape()),
       theta_(count_, rows_),
       shifted_(count_, rows_),
       guides_(count_, rows_),
@@ -111,8 +90,7 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
 }
 
 void Guides::restart(RandomKey key) noexcept {
-  fill_normal(ends_, 0, shape_.pinned() ? padded(count_) : count_, key);
-  if (shape_.pinned()) shape_.apply(ends_, {0, padded(count_)});
+  fill_normal(ends_, 0, count_, key);
   for (int g = 0; g < count_; ++g) {
     for (int r = 0; r < rows_; ++r) {
       const float z = ends_[r][g];
@@ -151,15 +129,13 @@ void Guides::take_in(const BatchEvaluator& evaluator, const float* solution) noe
   best_ = static_cast<int>(std::min_element(first, last) - first);
 }
 
-/// The deviations are pinned noise, or piecewise linear between normal values at knots a third of the horizon
-/// apart.
+/// The deviations are smooth: piecewise linear between normal values at knots a third of the horizon apart.
 void Guides::restart_others(RandomKey key) noexcept {
   if (!options_.guides.restart || count_ == 1) return;
   std::copy_n(theta_[best_], rows_, shifted_[0]);
   std::copy_n(shifted_[0], rows_, theta_[0]);
   best_ = 0;
   fill_normal(ends_, 0, padded(count_), key);
-  if (shape_.pinned()) shape_.apply(ends_, {0, padded(count_)});
   const auto knot = [&](int k, int input, int g) -> double { return ends_.at(k, input, g); };
   for (int g = 1; g < count_; ++g) {
     for (int r = 0; r < rows_; ++r) {
@@ -169,8 +145,7 @@ void Guides::restart_others(RandomKey key) noexcept {
       const double part = position - k;
       // A horizon of fewer than four steps has no fourth knot and needs none.
       const int next = std::min(k + 1, options_.horizon - 1);
-      const double deviation = shape_.pinned() ? knot(step, input, g)
-                                               : (1 - part) * knot(k, input, g) + part * knot(next, input, g);
+      const double deviation = (1 - part) * knot(k, input, g) + part * knot(next, input, g);
       const double value = theta_[0][r] + std::sqrt(options_.guides.restart_variance[input]) * deviation;
       theta_[g][r] = std::clamp<double>(value, low_[r], high_[r]);
     }
@@ -194,7 +169,6 @@ std::span<const float> Guides::path_costs() const noexcept {
 /// Fills the block of each guide with its gradient samples and the guide itself.
 void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
   fill_normal(batch_, first * block_, (last - first) * block_, key);
-  if (shape_.pinned()) shape_.apply(batch_, {first * block_, (last - first) * block_});
   const Rows rows = rows_of(batch_);
   const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * gradient_samples_);
   for (int g = first; g < last; ++g) {
@@ -244,7 +218,7 @@ void Guides::step(int g, int iteration) noexcept {
 void Guides::begin_move(const float* solution, const float* nominal, int shares) noexcept {
   for (int r = 0; r < rows_; ++r) {
     const double inverse =
-        weight_temperature() *
+        options_.guides.gradient_temperature *
         inverse_variance<double>(weight_variance_[r], reproduction().inverse_variance_offset);
     const double u = solution[r], n = nominal[r];
     solution_[r] = solution[r];
@@ -291,18 +265,11 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
   return iterations_;
 }
 
-float Guides::cost(const BatchEvaluator& evaluator, const float* sequence) noexcept {
-  ends_.set_sample(0, std::span<const float>(sequence, rows_));
-  evaluator.evaluate(ends_, 0, 1, end_costs_.data(), end_collided_.data());
-  kernels::make_finite({0, padded(1)}, end_costs_.data());
-  return end_costs_[0];
-}
-
 /// Computes q* (equation (5)) at points of the paths: exp(-S / lambda), multiplied by the density around the
 /// nominal sequence if the fit target is the optimal density. The sum over the points is 1.
-void Guides::densities(double temperature, std::span<const int> points) noexcept {
+void Guides::densities(std::span<const int> points) noexcept {
   const bool with_prior = reproduction().fit_target == FitTarget::optimal_density;
-  if (!with_prior) temperature = reproduction().fit_temperature;
+  const double temperature = with_prior ? options_.temperature : reproduction().fit_temperature;
   double largest = -std::numeric_limits<double>::infinity();
   log_error_ = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -312,7 +279,8 @@ void Guides::densities(double temperature, std::span<const int> points) noexcept
     if (with_prior) {
       for (int r = 0; r < rows_; ++r) {
         const double difference = theta[r] - theta_[best_][r];
-        logarithm -= 0.5 * difference * difference * distance_weight_[r] / weight_temperature();
+        logarithm -=
+            0.5 * difference * difference * distance_weight_[r] / options_.guides.gradient_temperature;
       }
     }
     density_[i] = logarithm;
@@ -335,16 +303,15 @@ double Guides::fit_row(int r, std::span<const int> points) noexcept {
   return reproduction().fit_standard_deviation ? std::sqrt(variance) : variance;
 }
 
-void Guides::fit_variance(double temperature, float* variance) noexcept {
+void Guides::fit_variance(float* variance) noexcept {
   int count = 0;
   for (int l = 0; l < iterations_; ++l)
     for (int g = 0; g < count_; ++g)
       if (reproduction().fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
   const std::span<const int> points(fit_points_.data(), count);
-  const bool has_temperature = temperature > 0 || reproduction().fit_target == FitTarget::state_cost;
-  const bool known = has_temperature && best_cost_ < infinite && count > 0;
+  const bool known = best_cost_ < infinite && count > 0;
   if (known) {
-    densities(temperature, points);
+    densities(points);
     fit_weights(density_.data(), count, square_.data(), logarithm_.data());
   }
   for (int r = 0; r < rows_; ++r) {

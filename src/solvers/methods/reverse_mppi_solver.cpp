@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 
-#include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
@@ -277,8 +276,7 @@ class ReverseMppiSolver final : public SolverBase {
 std::unique_ptr<Solver> make_solver(const ReverseMppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, ReverseMppiOptions::method, inputs);
-  return std::make_unique<ReverseMppiSolver>(detail::with_variances(options, inputs), inputs,
-                                             std::move(pool));
+  return std::make_unique<ReverseMppiSolver>(options, inputs, std::move(pool));
 }
 
 }  // namespace slalom

@@ -10,7 +10,6 @@
 #include "slalom/maps/ros_map.hpp"
 #include "vehicle/course/course_csv.hpp"
 #include "vehicle/course/course_yaml.hpp"
-#include "vehicle/racing/cell_regions.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -214,26 +213,6 @@ void move_to_local_origin(Course& course) {
   course.origin = {course.origin.x + shift.x, course.origin.y + shift.y};
   complete_course(course, course.closed);
   if (!starts_at_first) course.start = start;
-}
-
-maps::OccupancyGrid reachable_map(const Course& course) {
-  maps::OccupancyGrid map = course.map;
-  const detail::CellRegions free(map.width, map.height, false,
-                                 [&](int x, int y) { return map.at(x, y) == maps::Occupancy::free; });
-  std::vector<char> reached(free.regions().size(), 0);
-  for (const Waypoint& point : course.waypoints) {
-    const maps::Point cell = in_cells(map, {point.x, point.y});
-    const int column = static_cast<int>(std::floor(cell.x)), row = static_cast<int>(std::floor(cell.y));
-    if (!map.contains(column, row)) continue;
-    if (const int region = free.at(column, row); region >= 0) reached[static_cast<std::size_t>(region)] = 1;
-  }
-  for (int row = 0; row < map.height; ++row)
-    for (int column = 0; column < map.width; ++column) {
-      const int region = free.at(column, row);
-      if (region >= 0 && !reached[static_cast<std::size_t>(region)])
-        map.at(column, row) = maps::Occupancy::unknown;
-    }
-  return map;
 }
 
 void cap_speed(Course& course, double max_speed) {

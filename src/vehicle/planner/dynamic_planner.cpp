@@ -108,7 +108,9 @@ class DynamicPlanner final : public PlannerBase {
   }
 
   /// Lets plans keep no wider margins than the narrowest place of the next `reach` m has, and pass it slowly.
+  /// A moving car close ahead is no narrow place: the car keeps its margins and may overtake.
   void fit_margins(const maps::Pose& scan_pose, double reach) noexcept {
+    if (obstacles_.one_drives_ahead(scan_pose, origin_)) return;
     const WidestWay way = passage_.search(obstacles_.clearance_map(), scan_pose, field_.nearest(), reach);
     conditions_.margin_share = way.margin_share;
     conditions_.soft_share = way.soft_share;

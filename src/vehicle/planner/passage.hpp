@@ -75,7 +75,7 @@ class Passage {
   static constexpr double station = 0.1;  ///< m along the path
   static constexpr int steepest = 2;  ///< ways by which a way may move sideways from one station to the next
   static constexpr double leeway = 0.06;      ///< m, to each side, that a way has to steer in
-  static constexpr double least_share = 0.2;  ///< of a margin
+  static constexpr double least_share = 0.2;  ///< share of a margin
   static constexpr double braking = 4;        ///< m/s^2
   static constexpr double usual_room = 0.2;   ///< m around the body, from which on the speed is not limited
   static constexpr double slowest = 0.8, slope = 15;  ///< m/s; 1/s: speed per room beyond the least margin

@@ -13,28 +13,6 @@ namespace {
 
 constexpr double max_corridor_points = 1e5;
 
-/// Throws std::invalid_argument where two parts of a corridor that lead in opposite directions overlap: no
-/// wall is between them. Widths may be a tenth too large.
-void check_walls(const Corridor& corridor) {
-  constexpr double exact = 0.9;
-  const auto& line = corridor.centre_line;
-  for (std::size_t i = 0; i < line.size(); ++i)
-    for (std::size_t k = i + 1; k < line.size(); ++k) {
-      const maps::Point way{line[k].x - line[i].x, line[k].y - line[i].y}, &here = corridor.normal[i],
-                                                                           &there = corridor.normal[k];
-      const double apart = std::hypot(way.x, way.y), side = here.x * way.x + here.y * way.y;
-      const auto& widths = side > 0 ? corridor.left : corridor.right;
-      if (apart >= exact * (widths[i] + widths[k]) || here.x * there.x + here.y * there.y > -0.5) continue;
-      if (std::abs(side) < 0.8 * apart) continue;
-      throw std::invalid_argument("centre_line: its walls cross: the parts at (" + std::to_string(line[i].x) +
-                                  ", " + std::to_string(line[i].y) + ") and (" + std::to_string(line[k].x) +
-                                  ", " + std::to_string(line[k].y) + ") are " + std::to_string(apart) +
-                                  " m apart, and their widths to this side are " + std::to_string(widths[i]) +
-                                  " and " + std::to_string(widths[k]) +
-                                  " m; together they must be at most their distance");
-    }
-}
-
 }  // namespace
 
 Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std::vector<double>& left,
@@ -64,7 +42,6 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
     corridor.right.push_back((1 - t) * right[row] + t * right[next]);
   }
   corridor.normal = detail::normals(corridor.centre_line, closed);
-  check_walls(corridor);
   return corridor;
 }
 

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "slalom/slalom.hpp"
-#include "solvers/closed_form.hpp"
 #include "solvers/methods/guides.hpp"
 #include "solvers/problems.hpp"
 
@@ -38,7 +37,7 @@ class Waiting final : public BatchEvaluator {
 };
 
 TEST(GuidePath, HasTheCostsOfItsPoints) {
-  SvgMppiOptions options = testing::closed_form(1);
+  SvgMppiOptions options;
   options.horizon = 20;
   options.guides.step = 20;
   options.guides.gradient_variance = 0.1;

@@ -5,7 +5,6 @@
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
-#include "solvers/closed_form.hpp"
 #include "solvers/problems.hpp"
 
 /// The centre of the samples of `svg_mppi`: docs/algorithms/svg-mppi.md.
@@ -21,7 +20,7 @@ auto spring() {
 }
 
 SvgMppiOptions options(SampleCentre centre) {
-  SvgMppiOptions o = testing::closed_form(temperature);
+  SvgMppiOptions o;
   o.horizon = sample_steps;
   o.samples = 60000;
   o.temperature = temperature;
