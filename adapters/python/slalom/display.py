@@ -47,7 +47,7 @@ def install(solvers: ModuleType) -> None:
         elif cls is solvers.RiskEvaluator:
             _constructed(cls, lambda risk: ((risk.problem, risk.randomize), risk.options))
         elif cls is solvers.CompiledProblem:
-            _constructed(cls, lambda problem: ((problem.library,), problem.parameters))
+            _constructed(cls, lambda problem: ((problem.file,), problem.parameters))
         elif cls is solvers.MlpProblem:
             _constructed(cls, lambda problem: ((problem.network,), {name: getattr(problem, name)
                                                                     for name in _settable(solvers.MlpProblem)}))

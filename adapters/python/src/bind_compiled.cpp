@@ -42,12 +42,12 @@ void set_attribute(CompiledProblem& problem, const std::string& name, const py::
 }
 
 /// Loads the library of a compiled problem, which stays loaded. Throws ImportError if that fails.
-std::unique_ptr<CompiledProblem> load(const std::string& library, const py::kwargs& keywords) {
-  void* const loaded = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+std::unique_ptr<CompiledProblem> load(const std::string& file, const py::kwargs& keywords) {
+  void* const loaded = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* const make = loaded ? dlsym(loaded, "slalom_make_problem") : nullptr;
   if (!make) throw py::import_error(dlerror());
   std::unique_ptr<CompiledProblem> problem(reinterpret_cast<CompiledProblem* (*)()>(make)());
-  problem->library = library;
+  problem->file = file;
   for (const auto& [key, value] : keywords)
     set_attribute(*problem, key.cast<std::string>(), py::reinterpret_borrow<py::object>(value));
   return problem;
@@ -132,8 +132,8 @@ void bind_compiled(py::module_& module) {
   py::class_<CompiledProblem, AnyProblem>(
       module, "CompiledProblem",
       "A problem struct that `slalom.compile` has compiled. Its parameters are attributes.")
-      .def(py::init(&load), py::arg("library"))
-      .def_readonly("library", &CompiledProblem::library, "the file that it was loaded from")
+      .def(py::init(&load), py::arg("file"))
+      .def_readonly("file", &CompiledProblem::file, "the file that it was loaded from")
       .def_property_readonly(
           "parameters",
           [](CompiledProblem& self) {

@@ -77,7 +77,7 @@ class CompiledProblem : public AnyProblem {
  public:
   /// The problem's members that can be changed between solves.
   virtual std::vector<Parameter> parameters() { return {}; }
-  std::string library;  ///< the file that it was loaded from
+  std::string file;  ///< the file that it was loaded from
 };
 
 /// A problem struct.

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 export default async function (h) {
   const { page } = h;
 
-  await h.test("a slow browser pauses at the tick that it shows, and frames do not pile up", async () => {
+  await h.test("a slow browser pauses at the newest tick and shows it, and frames do not pile up", async () => {
     const tools = await page.context().newCDPSession(page);
     await tools.send("Emulation.setCPUThrottlingRate", { rate: 6 });
     await h.play();
@@ -17,16 +17,11 @@ export default async function (h) {
       measure();
     });
     await h.until(() => slalom.received > window.from + 10); // long enough that frames would pile up
-    const tick = await page.evaluate(() => {
-      const shown = slalom.scalar("tick");
-      document.getElementById("play").click();
-      return shown;
-    });
+    await page.evaluate(() => document.getElementById("play").click());
     await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
     const seen = await h.state();
     assert.ok((await page.evaluate(() => window.most)) <= 2, "at most two frames wait in the page");
-    const lag = (seen.tick - tick) * seen.control_period;
-    assert.ok(Math.abs(lag) <= 0.3, `the pause holds ${lag.toFixed(2)} s after the tick shown`);
+    assert.equal(seen.tick, seen.newest, "the pause shows the newest tick");
     await tools.send("Emulation.setCPUThrottlingRate", { rate: 1 });
     await h.play();
   });

@@ -47,7 +47,7 @@ export default async function (h) {
     await wait(() => slalom.state.tick === 30);
     const there = await replay.evaluate(() => slalom.scalar("tick"));
     await replay.click("#step");
-    await wait((t) => slalom.scalar("tick") > t, there);
+    await wait((t) => slalom.scalar("tick") === t + 2, there);
     await replay.selectOption("#rate", "4");
     await replay.click("#play");
     await wait(() => slalom.state.tick > 35);
