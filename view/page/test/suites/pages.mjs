@@ -4,27 +4,30 @@ import assert from "node:assert/strict";
 export default async function (h) {
   const { page } = h;
 
-  await h.test("a slow browser pauses at the newest tick and shows it, and frames do not pile up", async () => {
-    const tools = await page.context().newCDPSession(page);
-    await tools.send("Emulation.setCPUThrottlingRate", { rate: 6 });
-    await h.play();
-    await page.evaluate(() => {
-      Object.assign(window, { from: slalom.received, most: 0 });
-      const measure = () => {
-        window.most = Math.max(window.most, slalom.waiting);
-        requestAnimationFrame(measure);
-      };
-      measure();
-    });
-    await h.until(() => slalom.received > window.from + 10); // long enough that frames would pile up
-    await page.evaluate(() => document.getElementById("play").click());
-    await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
-    const seen = await h.state();
-    assert.ok((await page.evaluate(() => window.most)) <= 2, "at most two frames wait in the page");
-    assert.equal(seen.tick, seen.newest, "the pause shows the newest tick");
-    await tools.send("Emulation.setCPUThrottlingRate", { rate: 1 });
-    await h.play();
-  });
+  await h.test(
+    "a slow browser pauses at the newest tick and shows it, and frames do not pile up",
+    async () => {
+      const tools = await page.context().newCDPSession(page);
+      await tools.send("Emulation.setCPUThrottlingRate", { rate: 6 });
+      await h.play();
+      await page.evaluate(() => {
+        Object.assign(window, { from: slalom.received, most: 0 });
+        const measure = () => {
+          window.most = Math.max(window.most, slalom.waiting);
+          requestAnimationFrame(measure);
+        };
+        measure();
+      });
+      await h.until(() => slalom.received > window.from + 10); // long enough that frames would pile up
+      await page.evaluate(() => document.getElementById("play").click());
+      await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
+      const seen = await h.state();
+      assert.ok((await page.evaluate(() => window.most)) <= 2, "at most two frames wait in the page");
+      assert.equal(seen.tick, seen.newest, "the pause shows the newest tick");
+      await tools.send("Emulation.setCPUThrottlingRate", { rate: 1 });
+      await h.play();
+    },
+  );
 
   await h.test("one page drives; another watches, and takes over", async () => {
     const other = await h.open(page.url());
