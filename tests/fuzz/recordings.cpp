@@ -1,4 +1,4 @@
-// Recordings in JSON lines, from which a car is identified, and in MCAP.
+// Recordings in MCAP: those from which a car is identified, and those that are replayed.
 #include <cmath>
 #include <sstream>
 
@@ -14,33 +14,36 @@ namespace {
 
 /// A drive in curves, of a car that does what it is told.
 std::string drive(int ticks) {
-  std::string text = R"({"type":"recording","version":1})"
-                     "\n";
+  std::ostringstream stream;
+  view::mcap::Writer writer(stream, "slalom", 4096);
+  const auto channel =
+      writer.add_channel("/tick", "json", writer.add_schema("slalom.Tick", "jsonschema", "{}"));
   double x = 0, y = 0, yaw = 0;
   for (int i = 0; i < ticks; ++i) {
     const double time = 0.05 * i, steer = 0.3 * std::sin(2 * time);
-    text += Json{{"type", "tick"},
-                 {"time", time},
-                 {"odometry", Json::array({x, y, yaw, 2.0})},
-                 {"command", Json::array({steer, 2.0})}}
-                .dump() +
-            "\n";
+    writer.add_message(channel, static_cast<std::uint64_t>(i) * 50000000,
+                       Json{{"time", time},
+                            {"odometry_x", x},
+                            {"odometry_y", y},
+                            {"odometry_yaw", yaw},
+                            {"odometry_speed", 2.0},
+                            {"command_steer", steer}}
+                           .dump());
     x += 0.1 * std::cos(yaw);
     y += 0.1 * std::sin(yaw);
     yaw += 0.1 * std::tan(steer) / 0.33;
   }
-  return text + R"({"type":"lap_end"})" + "\n";
+  writer.finish();
+  return std::move(stream).str();
 }
 
-const Target json_recording_target(
-    "json_recording", 1 << 15,
+const Target driven_recording_target(
+    "driven_recording", 1 << 15,
     []() -> Seeds {
-      return {drive(230), drive(5),
-              "{\"type\":\"recording\"}\n{\"type\":\"tick\",\"time\":0,\"odometry\":[null,1,2,3],\"command\":"
-              "[0]}\n"};
+      return {drive(230), drive(5)};
     },
     [](std::string_view bytes) {
-      const auto samples = tools::read_driven_samples(scratch_file("drive.jsonl", bytes));
+      const auto samples = tools::read_driven_samples(scratch_file("drive.mcap", bytes));
       try {
         testing::check_identification(vehicle::identify(samples));
         return true;

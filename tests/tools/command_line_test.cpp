@@ -39,7 +39,7 @@ class CommandLine : public testing::EvaluationFolder {
             "course '" SLALOM_COURSES "/wren/map.yaml' --out " + out,
             "drive --course wren --method mppi --set samples=32 --json " + out,
             "eval --check ev --again 0",
-            "identify lap.jsonl --json " + out,
+            "identify lap.mcap --json " + out,
             evaluation(out),
             "explain --method mppi --solves 1 --json " + out,
             "options",
@@ -128,7 +128,6 @@ TEST_F(CommandLine, AFullStandardOutputIsAnError) {
 TEST_F(CommandLine, AStandardOutputThatIsClosedIsAnErrorAndLosesNothing) {
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
   ASSERT_EQ(timed("drive --course wren --method mppi --set samples=32 --record lap.mcap").status, 0);
-  ASSERT_EQ(timed("drive --course wren --method mppi --set samples=32 --record lap.jsonl").status, 0);
   const auto open = short_runs("open"), closed = short_runs("closed"), broken = short_runs("broken");
   for (std::size_t i = 0; i < open.size(); ++i) {
     for (const char* name : {"open", "closed", "broken"}) fs::remove_all(folder_ / name);
@@ -150,37 +149,38 @@ TEST_F(CommandLine, AStandardOutputThatIsClosedIsAnErrorAndLosesNothing) {
 
 TEST_F(CommandLine, AFileDoesNotTakeThePlaceOfAClosedStream) {
   for (const std::string closed : {" >&-", " 2>&-", " <&-", " <&- >&- 2>&-"}) {
-    timed("drive --course wren --method mppi --set samples=32 --record lap.jsonl" + closed);
-    const std::string recording = content(folder_ / "lap.jsonl");
+    timed("drive --course wren --method mppi --set samples=32 --record lap.mcap" + closed);
+    const std::string recording = content(folder_ / "lap.mcap");
     EXPECT_EQ(recording.find("lap 1:"), std::string::npos) << closed;
-    EXPECT_EQ(recording.rfind("{\"type\":\"recording\"", 0), 0u) << closed;
+    EXPECT_EQ(recording.rfind("\x89MCAP", 0), 0u) << closed;
   }
 }
 
 TEST_F(CommandLine, ChecksItsOutputFilesFirst) {
   std::ofstream(folder_ / "kept.json") << "kept";
-  std::ofstream(folder_ / "lap.jsonl") << "{}\n";
+  std::ofstream(folder_ / "lap.mcap") << "{}\n";
   for (const std::string arguments :
-       {"drive --course wren --json kept.json --plot ", "drive --course wren --record new.jsonl --json ",
-        "bench --json ", "explain --plot ", "replay lap.jsonl --html ", "identify lap.jsonl --json ",
+       {"drive --course wren --json kept.json --plot ", "drive --course wren --record new.mcap --json ",
+        "bench --json ", "explain --plot ", "replay lap.mcap --html ", "identify lap.mcap --json ",
         "eval --out e --json "})
     refuses(arguments + "nodir/x.png", {"slalom: nodir/x.png: cannot be written: No such file"});
   refuses("explain --json .", {".: cannot be written: is a folder"});
   EXPECT_EQ(content(folder_ / "kept.json"), "kept");
-  EXPECT_FALSE(fs::exists(folder_ / "new.jsonl"));
+  EXPECT_FALSE(fs::exists(folder_ / "new.mcap"));
   EXPECT_FALSE(fs::exists(folder_ / "e"));
 }
 
 TEST_F(CommandLine, RejectsOneFileForTwoOutputs) {
-  std::ofstream(folder_ / "in.jsonl") << "{}\n";
-  refuses("drive --course wren --json same.out --record same.out", {"--json", "--record", "same.out"}, 2);
+  std::ofstream(folder_ / "in.mcap") << "{}\n";
+  refuses("drive --course wren --json same.mcap --record same.mcap", {"--json", "--record", "same.mcap"}, 2);
   refuses("drive --course wren --json a.png --plot ./a.png", {"--json", "--plot", "a.png"}, 2);
-  refuses("identify in.jsonl --json in.jsonl", {"recording", "--json", "in.jsonl"}, 2);
-  EXPECT_EQ(content(folder_ / "in.jsonl"), "{}\n");
+  refuses("identify in.mcap --json in.mcap", {"recording", "--json", "in.mcap"}, 2);
+  EXPECT_EQ(content(folder_ / "in.mcap"), "{}\n");
   refuses("drive --course wren --record -", {"--record", "only --json accepts -"}, 2);
   refuses("explain --plot -", {"--plot", "only --json accepts -"}, 2);
+  refuses("drive --course wren --record lap.jsonl", {"--record: 'lap.jsonl' must end in .mcap"}, 2);
   refuses("explain --plot x.jpg", {"--plot: 'x.jpg' must end in .png, .svg or .pdf"}, 2);
-  EXPECT_FALSE(fs::exists(folder_ / "x.jpg") || fs::exists(folder_ / "same.out"));
+  EXPECT_FALSE(fs::exists(folder_ / "x.jpg") || fs::exists(folder_ / "same.mcap"));
   EXPECT_EQ(timed("explain --method mppi --solves 1 --json /dev/null --plot /dev/null").status, 0);
 }
 

@@ -81,11 +81,11 @@ TEST_F(CourseCommand, AnOpenLineMakesAnOpenCourse) {
 
 TEST_F(CourseCommand, ARecordedDriveIsALineToDriveAlong) {
   ASSERT_EQ(program("drive --course wren --method mppi --config default_kinematic --set mppi.samples=500 "
-                    "--record lap.jsonl")
+                    "--record lap.mcap")
                 .status,
             0);
   const std::string map = SLALOM_COURSES "/wren/map.yaml";
-  const auto run = course("'" + map + "' --line lap.jsonl --out made --json s.json");
+  const auto run = course("'" + map + "' --line lap.mcap --out made --json s.json");
   ASSERT_EQ(run.status, 0) << run.output;
   EXPECT_EQ(summary()["closed"], true);
   EXPECT_NEAR(summary()["centre_line_length_m"].get<double>(), 34, 1.5);

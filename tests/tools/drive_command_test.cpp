@@ -6,6 +6,7 @@
 
 #include "slalom/maps/ros_map.hpp"
 #include "tools/program_test.hpp"
+#include "view/recording/mcap_reader.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -97,11 +98,11 @@ TEST_F(DriveCommand, FinishesLapsAndWritesJson) {
 
 TEST_F(DriveCommand, GivesTheSameBytesForTheSameSeedAndAnyThreads) {
   const auto cleaned = [&](const std::string& arguments) {
-    EXPECT_EQ(drive(arguments + " --obstacles 2 --laps 2 --json out.json --record out.jsonl").status, 0);
+    EXPECT_EQ(drive(arguments + " --obstacles 2 --laps 2 --json out.json --record out.mcap").status, 0);
     json d = result("out.json");
     d.erase("solve_ms");
     d["settings"].erase("threads");
-    return std::pair(d.dump(), content(folder_ / "out.jsonl"));
+    return std::pair(d.dump(), content(folder_ / "out.mcap"));
   };
   const auto first = cleaned("--threads 1");
   EXPECT_EQ(cleaned("--threads 1"), first);
@@ -113,9 +114,9 @@ TEST_F(DriveCommand, OpponentsWithPlannersHaveTheOptionsOfTheFileAndAreRecorded)
   const std::string among =
       "--opponents 1 --set world.planning_opponents=1 --set world.opponent_gap=3 --set world.tracking=exact ";
   const auto cleaned = [&](const std::string& arguments) {
-    const auto run = drive(among + arguments + " --json out.json --record out.jsonl");
+    const auto run = drive(among + arguments + " --json out.json --record out.mcap");
     EXPECT_EQ(run.status, 0) << run.output;
-    return content(folder_ / "out.jsonl");
+    return content(folder_ / "out.mcap");
   };
   const std::string first = cleaned("--threads 1");
   EXPECT_EQ(cleaned("--threads 2"), first);
@@ -139,20 +140,17 @@ TEST_F(DriveCommand, WritesOnlyJsonToStandardOutput) {
 }
 
 TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
-  ASSERT_EQ(drive("--json out.json --record out.jsonl --plot out.png").status, 0);
-  std::ifstream stream(folder_ / "out.jsonl");
-  std::vector<json> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(json::parse(line));
-  const int steps = result("out.json")["laps"][0]["steps"];
-  ASSERT_EQ(lines.size(), static_cast<std::size_t>(steps) + 3);
-  EXPECT_EQ(lines[0]["type"], "recording");
-  EXPECT_EQ(lines[1]["type"], "lap");
-  EXPECT_EQ(lines[2]["type"], "tick");
-  EXPECT_EQ(lines[2]["ranges"].size(), 1080u);
-  EXPECT_EQ(lines[2]["inputs"].size(), 40u) << "20 steps of steering and acceleration";
-  EXPECT_EQ(lines[2]["predicted"].size(), 21u);
-  EXPECT_EQ(lines.back()["type"], "lap_end");
-  EXPECT_EQ(lines.back()["result"], result("out.json")["laps"][0]);
+  ASSERT_EQ(drive("--json out.json --record out.mcap --plot out.png").status, 0);
+  std::vector<json> ticks;
+  view::mcap::read_records((folder_ / "out.mcap").string(), false,
+                           {.message =
+                                [&](const view::mcap::MessageView& message) {
+                                  if (message.topic == "/tick") ticks.push_back(json::parse(message.data));
+                                },
+                            .attachment = {}});
+  ASSERT_EQ(ticks.size(), result("out.json")["laps"][0]["steps"]);
+  EXPECT_EQ(ticks[0]["plan"].size(), 21u);
+  EXPECT_NEAR(ticks.back()["time"].get<double>(), result("out.json")["laps"][0]["time_s"], 0.05);
   EXPECT_EQ(content(folder_ / "out.png").substr(1, 3), "PNG");
 }
 
@@ -206,7 +204,7 @@ TEST_F(DriveCommand, RejectsInvalidArguments) {
   expect_refused("drive --course wren --start 1e6,0,0", {"start", "on the map"});
   expect_refused("drive --obstacles 900", {"parked cars could be placed"});
   expect_refused("drive --evaluation published --latency-ms 5", {"latency", "published"});
-  expect_refused("drive --record /proc/none/x", {"/proc/none/x", "cannot be written"});
+  expect_refused("drive --record /proc/none/x.mcap", {"/proc/none/x.mcap", "cannot be written"});
 }
 
 TEST_F(DriveCommand, RejectsAStartInAWall) {

@@ -207,11 +207,11 @@ TEST_F(EvalCommand, WritesASummary) {
 TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
   ASSERT_EQ(run(small(2) + "--out one").status, 0);
   const ProgramRun lap = run("replay one --method svg_mppi --lap 1 --course " SLALOM_COURSES
-                             "/wren --plot lap.png --record lap.jsonl");
+                             "/wren --plot lap.png --record lap.mcap");
   EXPECT_EQ(lap.status, 0) << lap.output;
   EXPECT_TRUE(contains(lap.output, "bit for bit")) << lap.output;
   EXPECT_TRUE(fs::exists(folder_ / "lap.png"));
-  EXPECT_GT(count_lines(folder_ / "lap.jsonl"), 50u);
+  EXPECT_GT(fs::file_size(folder_ / "lap.mcap"), 50'000u);
   EXPECT_TRUE(contains(run("replay one --lap 0").output, "must name one of these"));
   EXPECT_TRUE(contains(run("replay one --method mppi --lap 2").output, "--lap"));
   EXPECT_NE(run("replay one --method mppi --lap 0 --course " SLALOM_COURSES "/stag").status, 0);

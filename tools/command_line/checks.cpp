@@ -72,6 +72,7 @@ void check_output(const std::string& name, const std::string& file) {
   if (name == "--plot" && !extension.empty() && extension != ".png" && extension != ".svg" &&
       extension != ".pdf")
     throw CommandLineError(name, file, "must end in .png, .svg or .pdf");
+  if (name == "--record" && extension != ".mcap") throw CommandLineError(name, file, "must end in .mcap");
   require_writable(file);
 }
 

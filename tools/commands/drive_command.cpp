@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/statistics.hpp"
@@ -75,14 +76,14 @@ class DriveJob {
     settings_["timeout_s"] = setup_.timeout();
     settings_["control_period_s"] = setup_.control_period();
     if (!arguments.record.empty())
-      recording_ = make_recording(arguments.record, {.arguments = arguments.scenario,
-                                                     .scenario = scenario_,
-                                                     .method = arguments.method,
-                                                     .seed = arguments.seed,
-                                                     .control_period = setup_.control_period(),
-                                                     .settings = settings_,
-                                                     .everything = arguments.record_all,
-                                                     .times = arguments.record_times});
+      recording_.emplace(arguments.record, RecordingFacts{.arguments = arguments.scenario,
+                                                          .scenario = scenario_,
+                                                          .method = arguments.method,
+                                                          .seed = arguments.seed,
+                                                          .control_period = setup_.control_period(),
+                                                          .settings = settings_,
+                                                          .everything = arguments.record_all,
+                                                          .times = arguments.record_times});
   }
 
   /// The exit status.
@@ -107,7 +108,7 @@ class DriveJob {
  private:
   void drive(int lap, const std::atomic<bool>& interrupted) {
     const std::uint64_t seed = evaluation::lap_seed(arguments_.seed, lap, scenario_.lap.obstacles);
-    if (recording_) recording_->begin_lap(lap + 1, seed);
+    if (recording_) recording_->begin_lap(seed);
     driven_ = {};
     LongestStand stand;
     LapResult result;
@@ -219,7 +220,7 @@ class DriveJob {
   Scenario scenario_;
   evaluation::LapSetup setup_;
   Json settings_;
-  std::unique_ptr<Recording> recording_;
+  std::optional<Recording> recording_;
   DrivenLine driven_;
   std::vector<LapResult> laps_;
 };
@@ -234,16 +235,15 @@ void declare_drive(Subcommand& command) {
   command.option("--seed", arguments->seed, "Seed of lap 1; lap k has SEED + (k - 1) (obstacles + 5)");
   command.option("--laps", arguments->laps, "Number of laps; each starts from standstill", {1, 100000});
   command.json(arguments->json, "the results");
-  const Option record = command.option(
-      "--record", arguments->record,
-      "Record every control step to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
+  const Option record =
+      command.option("--record", arguments->record, "Record every control step to this MCAP file");
   command
       .flag("--record-all", arguments->record_all,
-            "Record all candidates, guides and the map of costs, of every control step; only in MCAP")
+            "Record all candidates, guides and the map of costs, of every control step")
       .needs(record);
   command
       .flag("--record-times", arguments->record_times,
-            "Also record wall-clock times, which differ from run to run; only in MCAP")
+            "Also record wall-clock times, which differ from run to run")
       .needs(record);
   command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG, SVG or PDF");
   command.examples({"drive --course eel --obstacles 5 --laps 3 --plot lap.png",

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "slalom/core/files/write_file.hpp"
@@ -56,17 +57,17 @@ int replay_lap(const ReplayArguments& arguments) {
   const Evaluation evaluation = rebuild_evaluation(stored, arguments.course, scenario);
   const LapSetup setup = lap_setup(evaluation, index);
   const std::uint64_t seed = lap_seed(evaluation.seed0, arguments.lap, experiment.obstacles);
-  std::unique_ptr<Recording> recording;
+  std::optional<Recording> recording;
   if (!arguments.record.empty()) {
     const auto settings = parse_json(stored.settings);
     const ScenarioArguments told = evaluation_arguments(stored, arguments.course);
-    recording = make_recording(arguments.record, {.arguments = told,
-                                                  .scenario = scenario,
-                                                  .method = experiment.method,
-                                                  .seed = seed,
-                                                  .control_period = setup.control_period(),
-                                                  .settings = settings});
-    recording->begin_lap(arguments.lap, seed);
+    recording.emplace(arguments.record, RecordingFacts{.arguments = told,
+                                                       .scenario = scenario,
+                                                       .method = experiment.method,
+                                                       .seed = seed,
+                                                       .control_period = setup.control_period(),
+                                                       .settings = settings});
+    recording->begin_lap(seed);
   }
   DrivenLine driven;
   const LapResult lap = run_lap(setup, seed, [&](const ControlStep& tick) {
@@ -151,9 +152,8 @@ void declare_replay(Subcommand& command) {
   command.option("--scenario", arguments->scenario, "Evaluation: pt or oa");
   command.option("--course", arguments->course, "Evaluation: course folder, if it is not found by name");
   command.option("--plot", arguments->plot, "Evaluation: write a picture of the lap to this PNG, SVG or PDF");
-  const Option record = command.option(
-      "--record", arguments->record,
-      "Evaluation: record the lap to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
+  const Option record =
+      command.option("--record", arguments->record, "Evaluation: record the lap to this MCAP file");
   for (Option served : {host, port}) served.excludes(html).excludes(record);
   command.examples({"replay lap.mcap", "replay OUT --lap 3 --method svg_mppi --plot lap.png"});
   command.action([arguments, &command] { return replay(*arguments, command); });

@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t max_bytes = std::uintmax_t{1} << 32;  // size of a recording
-constexpr std::size_t max_line = std::size_t{1} << 22;         // bytes of a line, without its end
 constexpr double spacing = 0.1;                                // m between the points that are kept
 constexpr double meeting = 1.0;                                // m, within which a lap ends where it began
 constexpr double min_lap = 10;                                 // m
@@ -48,14 +47,6 @@ std::vector<std::string> files_of(const std::string& recording) {
     if (file.extension() == ".mcap" || file.extension() == ".db3") files.push_back(file.string());
   if (files.empty()) throw IoError(recording, 0, "is a folder without files of rosbag2 (.mcap, .db3)");
   return files;
-}
-
-/// An element of a tick's list, NaN where it is null.
-double entry(const Json& tick, const char* key, std::size_t index) {
-  const Json& values = member(tick, key);
-  if (!values.is_array() || values.size() <= index || !(values[index].is_number() || values[index].is_null()))
-    throw std::invalid_argument("key '" + std::string(key) + "' must be a list of numbers");
-  return values[index].is_null() ? std::numeric_limits<double>::quiet_NaN() : values[index].get<double>();
 }
 
 /// The control step of a message of the topic /tick.
@@ -86,35 +77,6 @@ void read_mcap(const std::string& file, std::vector<vehicle::DrivenSample>& samp
   if (!refused.empty()) throw IoError(file, 0, "has a message that cannot be read: " + refused);
 }
 
-std::vector<vehicle::DrivenSample> read_json_lines(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw cannot_open(file);
-  std::vector<vehicle::DrivenSample> samples;
-  std::string buffer(max_line + 1, '\0');
-  int number = 1;
-  for (; stream.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++number) {
-    const bool is_whole = !stream.eof();
-    const std::string_view line(buffer.data(), static_cast<std::size_t>(stream.gcount()) - is_whole);
-    try {
-      const Json record = parse_json(line);
-      const auto type = member<std::string>(record, "type");
-      if (number == 1 && type != "recording") throw IoError(file, 1, "must be the first line of a recording");
-      if (type != "tick") continue;
-      samples.push_back({member<double>(record, "time"), entry(record, "odometry", 0),
-                         entry(record, "odometry", 1), entry(record, "odometry", 2),
-                         entry(record, "odometry", 3), entry(record, "command", 0)});
-    } catch (const std::invalid_argument& error) {
-      if (!is_whole && number > 1)
-        throw IoError(file, number, "the recording was cut in this line; remove it");
-      throw IoError(file, number, std::string("must be a record of a recording: ") + error.what());
-    }
-  }
-  if (stream.bad()) throw IoError(file, number, "cannot be read");
-  if (!stream.eof())
-    throw IoError(file, number, "is longer than " + std::to_string(max_line) + " bytes: it is not a record");
-  return samples;
-}
-
 }  // namespace
 
 std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& recording, std::string* topics) {
@@ -127,7 +89,7 @@ std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& record
     else if (magic.starts_with("\x89MCAP"))
       read_mcap(file, samples, bag);
     else
-      return read_json_lines(file);
+      throw IoError(file, 0, "is neither a recording in MCAP nor a bag of rosbag2");
   }
   if (!samples.empty()) return samples;
   try {

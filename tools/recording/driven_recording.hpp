@@ -6,10 +6,9 @@
 #include "slalom/vehicle/model/identification.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
 
-/// Recordings that are read back: JSON lines and MCAP of `slalom drive` (docs/recording.md), and bags of
-/// rosbag2 in MCAP or sqlite3, as a file or the folder that it writes. All throw IoError with file and line:
-/// also if a file is not a regular one (a pipe could block for ever) or larger than 4 GiB, or has a line
-/// longer than 4 MiB.
+/// Recordings that are read back: those of `slalom drive` (docs/recording.md), and bags of rosbag2 in MCAP or
+/// sqlite3, as a file or the folder that it writes. All throw IoError with the file: also if it is not a
+/// regular one (a pipe could block for ever) or larger than 4 GiB.
 namespace slalom::tools {
 
 /// Reads the control steps of a recording. Of a bag, `topics` receives which topics were used (RosDrive).

@@ -1,25 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "slalom/evaluation/lap.hpp"
 #include "tools/scenario/scenario.hpp"
+#include "view/protocol/frame.hpp"
+#include "view/protocol/messages.hpp"
+#include "view/recording/recorder.hpp"
 
 namespace slalom::tools {
-
-/// A recording of laps. The same settings and seed give the same bytes.
-class Recording {
- public:
-  virtual ~Recording() = default;
-  virtual void begin_lap(int number, std::uint64_t seed) = 0;
-  virtual void add(const evaluation::ControlStep& tick) = 0;
-  virtual void end_lap(const evaluation::LapResult& lap, int number) = 0;
-  /// Throws IoError if anything could not be written.
-  virtual void close() = 0;
-};
 
 struct RecordingFacts {
   const ScenarioArguments& arguments;
@@ -28,12 +21,36 @@ struct RecordingFacts {
   std::uint64_t seed = 0;
   double control_period = 0;               ///< s
   const nlohmann::ordered_json& settings;  ///< kept in the recording
-  bool everything = false;                 ///< RecorderOptions::everything, MCAP only
-  bool times = false;                      ///< with figures of the wall clock, MCAP only
+  bool everything = false;                 ///< RecorderOptions::everything
+  bool times = false;                      ///< with figures of the wall clock
 };
 
-/// Begins a recording: in MCAP if the file's name ends in .mcap, otherwise in JSON lines (docs/recording.md).
-/// Throws IoError.
-std::unique_ptr<Recording> make_recording(const std::string& file, const RecordingFacts& facts);
+/// A recording of laps in MCAP (docs/recording.md), as the live view records. The same settings and seed give
+/// the same bytes.
+class Recording {
+ public:
+  /// Begins the file. Throws IoError.
+  Recording(const std::string& file, const RecordingFacts& facts);
+
+  void begin_lap(std::uint64_t seed);
+  void add(const evaluation::ControlStep& tick);
+  void end_lap(const evaluation::LapResult& lap, int number);
+  /// Ends the file. Throws IoError if anything could not be written.
+  void close();
+
+ private:
+  void tell_state();
+
+  std::string file_, further_arguments_;
+  std::shared_ptr<const evaluation::Environment> environment_;
+  vehicle::Configuration configuration_;
+  view::Choices choices_;
+  view::DriveState state_;
+  double control_period_;
+  int ticks_ = 0;
+  std::ofstream stream_;
+  view::FrameEncoder encoder_;
+  view::Recorder recorder_;
+};
 
 }  // namespace slalom::tools
