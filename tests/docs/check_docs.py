@@ -6,6 +6,7 @@ usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | patches R
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -86,22 +87,22 @@ def translation_unit(text, name, before):
 
 def check_cpp(root, *compiler):
     errors = []
-    preamble = (Path(__file__).parent / "preamble.hpp").read_text()
-    for page in pages(root):
-        found = blocks(page, "cpp")
-        if not found:
-            continue
-        names = [f"block_{line}" for line, _ in found]
-        parts = [translation_unit(text, names[i], names[:i]) for i, (_, text) in enumerate(found)]
-        source = "\n".join([preamble, *(p[0] for p in parts), *(p[1] for p in parts)])
-        with tempfile.TemporaryDirectory() as folder:
+    flags = ["-std=c++20", "-O1", f"-I{root}/include"]
+    with tempfile.TemporaryDirectory() as folder:
+        preamble = Path(shutil.copy(Path(__file__).parent / "preamble.hpp", folder))
+        subprocess.run([*compiler, *flags, "-x", "c++-header", preamble, "-o", f"{preamble}.gch"], check=True)
+        for page in pages(root):
+            found = blocks(page, "cpp")
+            if not found:
+                continue
+            names = [f"block_{line}" for line, _ in found]
+            parts = [translation_unit(text, names[i], names[:i]) for i, (_, text) in enumerate(found)]
             file = Path(folder) / (page.stem + ".cpp")
-            file.write_text(source)
-            made = subprocess.run([*compiler, "-std=c++20", "-O1", "-fsyntax-only", f"-I{root}/include", str(file)],
-                                  capture_output=True, text=True)
-        print(f"{page.relative_to(root)}: {len(found)} blocks of C++")
-        if made.returncode:
-            errors.append(f"{page}: does not compile\n{made.stderr[:3000]}")
+            file.write_text("\n".join([*(p[0] for p in parts), *(p[1] for p in parts)]))
+            made = subprocess.run([*compiler, *flags, "-include", preamble, "-fsyntax-only", file], capture_output=True, text=True)
+            print(f"{page.relative_to(root)}: {len(found)} blocks of C++")
+            if made.returncode:
+                errors.append(f"{page}: does not compile\n{made.stderr[:3000]}")
     return errors
 
 

@@ -1,4 +1,4 @@
-// What the code blocks of the documentation stand on: names that a reader brings along.
+// Names that code blocks of the documentation use and that a reader brings along.
 #include <array>
 #include <cstdint>
 #include <memory>

@@ -119,36 +119,6 @@ TEST_P(VehicleModelContract, RolloutsCostWhatIsPredicted) {
   EXPECT_LE(differing, 2) << "a position at an edge between two cells of a map may be in either";
 }
 
-TEST_P(VehicleModelContract, HasVariantsOfTheWorldOrRejectsThem) {
-  VehicleOptions options = options_of(GetParam());
-  options.risk = {.variants = 5, .measure = RiskMeasure::worst};
-  if (GetParam() != "single_track") {
-    EXPECT_EQ(message_of([&] { make_vehicle_model(options); }),
-              "vehicle.risk_variants: 5 must be 1 for vehicle.model '" + GetParam() +
-                  "', which has no variants of the world");
-    return;
-  }
-  constexpr int steps = 20, samples = 64, middle = 32;
-  SequenceBatch batch(steps, 2, samples);
-  for (int k = 0; k < samples; ++k)
-    for (int t = 0; t < steps; ++t) batch.at(t, 0, k) = static_cast<float>(0.01 * (k - middle));
-  const auto costs_of = [&](VehicleModel& model) {
-    model.set_maps({field_.view(), clearance_.view(), {5, 0.2, 0.1}});
-    model.set_start({{5, 0.2, 0.1}, 6, 0.05}, 6);
-    std::vector<float> costs(samples);
-    std::vector<std::uint8_t> collided(samples);
-    model.evaluator().evaluate(batch, 0, samples, costs.data(), collided.data());
-    return costs;
-  };
-  const std::vector<float> nominal = costs_of(*model_), worst = costs_of(*make_vehicle_model(options));
-  int higher = 0;
-  for (std::size_t k = 0; k < samples; ++k) {
-    EXPECT_GE(worst[k], nominal[k]);
-    higher += worst[k] > nominal[k];
-  }
-  EXPECT_GT(higher, samples / 2) << "friction and stiffness matter at 6 m/s";
-}
-
 TEST_P(VehicleModelContract, IsDrivenByThePlanner) {
   Configuration configuration;
   set_option(configuration, "vehicle.model", GetParam());

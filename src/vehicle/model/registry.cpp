@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "slalom/core/option_access.hpp"
-#include "slalom/core/risk/risk_evaluator.hpp"
 #include "slalom/vehicle/model/problem_model.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
@@ -19,29 +18,14 @@ auto with_model(const VehicleOptions& options, Use&& use) {
   return use.template operator()<i>();
 }
 
-/// A vehicle model of the problem that this evaluator rolls out.
-template <class P, class Evaluator>
-std::unique_ptr<VehicleModel> make_model(Evaluator evaluator) {
-  if constexpr (DynamicVehicleProblem<P>) {
-    return std::make_unique<DynamicProblemModel<P, Evaluator>>(std::move(evaluator));
-  } else {
-    return std::make_unique<ProblemModel<P, Evaluator>>(std::move(evaluator));
-  }
-}
-
 template <std::size_t i>
 std::unique_ptr<VehicleModel> make_indexed(const VehicleOptions& options, simd::Target target) {
   using Model = VehicleModels::At<i>;
   const auto make = [&]<class P>(P problem) -> std::unique_ptr<VehicleModel> {
-    if constexpr (RandomizableProblem<P>) {
-      if (options.risk.variants > 1)
-        return make_model<P>(RiskEvaluator<P>(std::move(problem), options.risk, target));
-    } else if (options.risk.variants > 1) {
-      throw std::invalid_argument("vehicle.risk_variants: " + std::to_string(options.risk.variants) +
-                                  " must be 1 for vehicle.model '" + Model::name +
-                                  "', which has no variants of the world");
-    }
-    return make_model<P>(ProblemEvaluator<P>(std::move(problem), target));
+    if constexpr (DynamicVehicleProblem<P>)
+      return std::make_unique<DynamicProblemModel<P>>(std::move(problem), target);
+    else
+      return std::make_unique<ProblemModel<P>>(std::move(problem), target);
   };
   if constexpr (requires { Model::with_problem(options, std::get<i>(options.own), make); }) {
     return Model::with_problem(options, std::get<i>(options.own), make);

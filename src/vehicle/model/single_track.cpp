@@ -52,12 +52,6 @@ double SingleTrackDynamics::lagged(double steer, double command, double dt) cons
   return steer + (command - steer) * (1 - std::exp(-dt / steer_time_constant_));
 }
 
-void SingleTrackDynamics::scale_stiffness(double factor) noexcept {
-  for (Coefficient* const part : {&front_stiffness_, &rear_stiffness_, &front_transfer_, &rear_transfer_,
-                                  &front_sharpness_, &rear_sharpness_})
-    *part = Coefficient(double(*part) * factor);
-}
-
 SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
     : dynamics_(options, own),
       own_(own),
@@ -102,11 +96,6 @@ SingleTrack::State<double> SingleTrack::start(const VehicleStart& start, double)
           start.steer,
           start.yaw_rate,
           start.speed * std::sin(start.slip)};
-}
-
-void SingleTrack::randomize(RandomStream& random) noexcept {
-  friction_ = Coefficient(double(friction_) * std::exp(own_.friction_deviation * random.normal()));
-  dynamics_.scale_stiffness(std::exp(own_.cornering_deviation * random.normal()));
 }
 
 VehicleStart SingleTrack::advance(const VehicleStart& start, const Command& command, double duration,

@@ -19,7 +19,6 @@ Planner planner_of(const std::string& model, Objective objective) {
   PlannerOptions options;
   if (model == "single_track") {
     car.own_of<SingleTrackOptions>().objective = objective;
-    car.risk.variants = 3;
     options.sight_deceleration = 4;
     options.time_behind = 2;
   }

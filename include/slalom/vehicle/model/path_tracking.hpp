@@ -3,7 +3,6 @@
 #include <array>
 #include <concepts>
 
-#include "slalom/core/random.hpp"
 #include "slalom/vehicle/model/model_options.hpp"
 #include "slalom/vehicle/model/obstacle_cost.hpp"
 #include "slalom/vehicle/model/tracking_cost.hpp"
@@ -94,10 +93,6 @@ class PathTracking {
     obstacles_.set_map(maps.obstacles, maps.robot);
     others_ = maps.others;
   }
-
-  /// Randomizes the motion model, if it can (see RandomizableProblem).
-  void randomize(RandomStream& random) noexcept requires requires(Motion& m) { m.randomize(random); }
-  { motion_.randomize(random); }
 
   /// Sets the conditions of the next rollouts.
   void set_conditions(const DrivingConditions& now) noexcept requires requires(Motion& m) {

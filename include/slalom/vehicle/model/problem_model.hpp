@@ -11,16 +11,15 @@ namespace slalom::vehicle {
 namespace detail {
 
 /// The functions that ProblemModel and DynamicProblemModel have in common.
-template <VehicleProblem P, class Evaluator, class Interface>
+template <VehicleProblem P, class Interface>
 class ProblemModelBase : public Interface {
+  using Evaluator = ProblemEvaluator<P>;
   using State = typename Evaluator::State;  ///< the problem's state in double
 
  public:
   /// A vehicle model of `problem`, whose rollouts use the instruction set `target`.
   explicit ProblemModelBase(P problem, simd::Target target = simd::active_target())
       : evaluator_(std::move(problem), target) {}
-  /// A vehicle model whose rollouts are those of `evaluator`.
-  explicit ProblemModelBase(Evaluator evaluator) : evaluator_(std::move(evaluator)) {}
 
   int inputs() const noexcept override { return P::inputs; }
   /// The properties of the model.
@@ -97,25 +96,22 @@ class ProblemModelBase : public Interface {
 /// float32 rollouts are as exact at UTM coordinates (5e6 m) as near the origin.
 ///
 ///     Planner planner(options, std::make_unique<ProblemModel<MyProblem>>(MyProblem{}), path, solver);
-///
-/// `Evaluator` rolls out: a ProblemEvaluator, or a RiskEvaluator, whose cost is that of several variants of
-/// the world. `predict` uses the problem itself.
-template <VehicleProblem P, class Evaluator = ProblemEvaluator<P>>
-class ProblemModel final : public detail::ProblemModelBase<P, Evaluator, VehicleModel> {
+template <VehicleProblem P>
+class ProblemModel final : public detail::ProblemModelBase<P, VehicleModel> {
  public:
-  using detail::ProblemModelBase<P, Evaluator, VehicleModel>::ProblemModelBase;
+  using detail::ProblemModelBase<P, VehicleModel>::ProblemModelBase;
 
   std::unique_ptr<VehicleModel> clone() const override { return std::make_unique<ProblemModel>(*this); }
 };
 
 /// The same for the problem of a car whose tyres slip.
-template <DynamicVehicleProblem P, class Evaluator = ProblemEvaluator<P>>
-class DynamicProblemModel final : public detail::ProblemModelBase<P, Evaluator, DynamicVehicleModel> {
-  using Base = detail::ProblemModelBase<P, Evaluator, DynamicVehicleModel>;
+template <DynamicVehicleProblem P>
+class DynamicProblemModel final : public detail::ProblemModelBase<P, DynamicVehicleModel> {
+  using Base = detail::ProblemModelBase<P, DynamicVehicleModel>;
   using Base::evaluator_, Base::start_;
 
  public:
-  using detail::ProblemModelBase<P, Evaluator, DynamicVehicleModel>::ProblemModelBase;
+  using detail::ProblemModelBase<P, DynamicVehicleModel>::ProblemModelBase;
 
   std::unique_ptr<VehicleModel> clone() const override {
     return std::make_unique<DynamicProblemModel>(*this);

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "slalom/core/random.hpp"
 #include "slalom/maps/command.hpp"
 #include "slalom/vehicle/model/single_track_dynamics.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
@@ -42,10 +41,6 @@ class SingleTrack {
     slowest_ = -conditions.reverse;
     fastest_ = conditions.reverse > 0 ? 0.0 : conditions.top_speed;
   }
-
-  /// Multiplies friction and cornering stiffness by log-normal factors of the deviations in the options: a
-  /// variant of the world (see RandomizableProblem).
-  void randomize(RandomStream& random) noexcept;
 
   /// The car `duration` (s) later on ground of this friction, where this command acts all the time; with a
   /// speed that is not finite it rolls.

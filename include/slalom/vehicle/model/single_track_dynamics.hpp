@@ -44,9 +44,6 @@ class SingleTrackDynamics {
   /// The friction in the options.
   double friction() const noexcept { return double(friction_); }
 
-  /// Multiplies the cornering stiffness of all tyres.
-  void scale_stiffness(double factor) noexcept;
-
   /// The acceleration (m/s^2, to either side) that tyres which turn the car leave for drive and brakes: with
   /// lateral acceleration v r no more than `usable_grip` of friction times gravity is used, and a part is
   /// always left to slow down: a tenth, or where plans seek the shortest time, a third.

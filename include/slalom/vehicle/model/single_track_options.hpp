@@ -44,8 +44,6 @@ struct SingleTrackOptions {
   double speed_share = 1;
   double braking_share = 1;
   double grip_weight = 300;
-  double friction_deviation = 0.1;
-  double cornering_deviation = 0.1;
   double collision_ahead_cost = 100;
 
   bool operator==(const SingleTrackOptions&) const = default;
@@ -99,14 +97,6 @@ void visit_options(Options& o, Visit&& visit) {
                           0.1, 1});
   visit(o.grip_weight, {"grip_weight", "",
                         "model `single_track`: cost of the square of the share above usable_grip", 0, 1e6});
-  visit(o.friction_deviation, {"friction_deviation", "",
-                               "model `single_track`: standard deviation of the logarithm of the friction in "
-                               "the variants of the world",
-                               0, 1});
-  visit(o.cornering_deviation, {"cornering_deviation", "",
-                                "model `single_track`: standard deviation of the logarithm of the cornering "
-                                "stiffness in the variants of the world",
-                                0, 1});
   visit(o.collision_ahead_cost, {"collision_ahead_cost", "",
                                  "model `single_track`: cost of a plan that ends where the car cannot stop "
                                  "before an obstacle, times the share of its energy that is left there",

@@ -4,7 +4,6 @@
 #include <string_view>
 #include <type_traits>
 
-#include "slalom/core/risk/risk_options.hpp"
 #include "slalom/vehicle/model/registry.hpp"
 
 namespace slalom::vehicle {
@@ -24,7 +23,6 @@ VehicleModelId vehicle_model(std::string_view name);
 struct VehicleOptions : PathTrackingOptions {
   VehicleModelId model{};
   VehicleModels::Options own;  ///< each model's own options
-  RiskOptions risk;            ///< rollouts in several variants of the world, for models that have them
 
   /// The own options of a registered model, by their type.
   template <class Options>
@@ -45,7 +43,6 @@ void visit_options(Options& o, Visit&& visit) {
   using Shared = std::conditional_t<std::is_const_v<Options>, const PathTrackingOptions, PathTrackingOptions>;
   visit(o.model, {"model", "", "how the car moves, and what its inputs are"});
   visit_options(static_cast<Shared&>(o), visit);
-  visit_options(o.risk, visit);
   std::apply([&](auto&... own) { (visit_options(own, visit), ...); }, o.own);
 }
 
