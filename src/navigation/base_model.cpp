@@ -24,8 +24,8 @@ class BaseModelOf final : public BaseModel {
              double elapsed) noexcept override {
     controller_.problem().set_maps(maps);
     controller_.set_previous_input(Base::input(velocity));
-    const auto plan =
-        controller_.solve({pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw}, {.elapsed = elapsed});
+    const auto plan = controller_.solve(
+        {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress}, {.elapsed = elapsed});
     const Motion<double> motion = base_.template motion<double>(plan.inputs[0]);
     command_ = {motion.forward, motion.left, motion.turn};
     for (std::size_t i = 0; i < plan_.size(); ++i)

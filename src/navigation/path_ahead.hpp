@@ -66,6 +66,11 @@ class PathAhead {
       if (is_closed(i)) return i;
     return points().size();
   }
+  /// Whether a point is closed: the body has no room there, or it is in a closed place.
+  bool is_closed(std::size_t i) const noexcept {
+    return (planner_.knows(costmap_, place(i)) && !planner_.has_room(costmap_, place(i))) ||
+           places_.contain(place(i));
+  }
   /// Whether a detour may end at a point: the path is open from there on for a while, or to its end.
   bool can_rejoin(std::size_t point) const noexcept {
     const std::size_t last = std::min(points().size() - 1, point + guide_.points_for(min_rejoin));
@@ -87,12 +92,6 @@ class PathAhead {
  private:
   std::span<const maps::Pose> points() const noexcept { return guide_.points(); }
   maps::Point place(std::size_t i) const noexcept { return {points()[i].x, points()[i].y}; }
-  /// Whether a point is closed: the body has no room there, or it is in a closed place.
-  bool is_closed(std::size_t i) const noexcept {
-    return (planner_.knows(costmap_, place(i)) && !planner_.has_room(costmap_, place(i))) ||
-           places_.contain(place(i));
-  }
-
   const PathGuide& guide_;
   const PathPlanner& planner_;
   const ClosedPlaces& places_;

@@ -22,11 +22,21 @@ void set(SolverOptions& options, const char* name, const Type& value) {
 void set_shared(SolverOptions& options, const BaseOptions& base) {
   set(options, "horizon", 56);
   set(options, "samples", 2000);
-  set(options, "temperature", 0.03);
+  set(options, "temperature", 0.1);
   set(options, "variance", variances(base, 0.4));
   set(options, "gradient_variance", variances(base, 0.1));
-  set(options, "noise_exponent", PerInput(1));
+  set(options, "noise_exponent", PerInput(4));
+  set(options, "noise_pinned", true);
   set(options, "control_cost_discount", 1.0);
+}
+
+/// The rollouts of a solve with these options, divided by its samples. Those of icem decrease from iteration
+/// to iteration.
+int rollouts_per_sample(const SolverOptions& options) {
+  const int* const iterations = options.find<int>("iterations");
+  const int* const gradient_samples = options.find<int>("gradient_samples");
+  if (!iterations) return 1;
+  return gradient_samples ? 1 + *iterations * *gradient_samples : *iterations;
 }
 
 }  // namespace
@@ -37,10 +47,11 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   SvgMppiOptions options = *shared.get_if<SvgMppiOptions>();
   options.variance_min = variances(base, 0.15);
   options.variance_max = variances(base, 0.4);
-  options.guides.variance = options.guides.restart_variance = variances(base, 0.4);
-  options.guides.step = options.guides.gradient_variance;
+  options.guides.variance = variances(base, 0.05);
+  options.guides.restart_variance = variances(base, 0.4);
+  options.guides.step = variances(base, 0.06);  // about a third of a step to the samples' mean
   options.guides.gradient_temperature = options.temperature;
-  options.guides.iterations = 5;
+  options.guides.iterations = 2;
   options.guides.gradient_samples = 64;
   return options;
 }
@@ -55,6 +66,11 @@ SolverOptions method_options(std::string_view method, const BaseOptions& base) {
   if (method == SvgMppiOptions::method) return svg_mppi_options(base);
   SolverOptions options = solver_options(method);
   set_shared(options, base);
+  const SvgMppiOptions svg_mppi = svg_mppi_options(base);
+  const GuideOptions& guides = svg_mppi.guides;
+  set(options, "samples",
+      (svg_mppi.samples + guides.count * guides.iterations * guides.gradient_samples) /
+          rollouts_per_sample(options));
   return options;
 }
 

@@ -70,10 +70,10 @@ TEST(MppiImport, ChangesWhatHasAnotherScaleOrName) {
   expect_words(
       imported.report,
       {"FollowPath.plugin: nav2_mppi_controller::MPPIController: changed to plugin: slalom_nav2",
-       "FollowPath.temperature: 0.6: changed to temperature: 0.06 (costs have another scale;",
+       "FollowPath.temperature: 0.6: changed to temperature: 0.2 (costs have another scale;",
        "threshold_to_consider: 0.8: changed to costs.goal_reach: 0.8 (the name here)",
        "GoalAngleCritic.cost_weight: 3.0: dropped (the cost has another scale: costs.goal_heading)"});
-  expect_words(imported.yaml, {"\n  temperature: 0.06\n", "\n  costs:\n    goal_reach: 0.8\n"});
+  expect_words(imported.yaml, {"\n  temperature: 0.2\n", "\n  costs:\n    goal_reach: 0.8\n"});
 }
 
 TEST(MppiImport, TakesTheLeastAcceleration) {

@@ -66,7 +66,7 @@ inline void check(const NavigationResult& result, const BaseOptions& base) {
 
 struct NavigatorTally {
   long updates = 0, corrections = 0;
-  long statuses[7] = {};
+  long statuses[10] = {};
 };
 
 /// One navigator and a few dozen updates. Throws Finding.

@@ -49,7 +49,7 @@ TEST(NavigatorCheck, EveryCommandIsValidForAnyInput) {
     }
   }
   std::printf("[ calls    ] %ld updates, %ld corrections;", tally.updates, tally.corrections);
-  for (int i = 0; i < 7; ++i)
+  for (int i = 0; i < 10; ++i)
     std::printf(" %s %ld", name(static_cast<NavigationStatus>(i)), tally.statuses[i]);
   std::printf("\n");
   for (const NavigationStatus status : {NavigationStatus::following, NavigationStatus::braking,

@@ -297,7 +297,15 @@ TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
   EXPECT_NEAR((*cem.find<PerInput>("variance"))[0], 0.64, 1e-12);
   EXPECT_NEAR((*cem.find<PerInput>("variance"))[1], 1.44, 1e-12);
   EXPECT_NEAR((*sv_mpc.find<PerInput>("gradient_variance"))[1], 0.09, 1e-12);
-  EXPECT_EQ(*sv_mpc.find<double>("temperature"), 0.03);
+  EXPECT_EQ(*sv_mpc.find<double>("temperature"), 0.1);
+  // As many rollouts in a solve as svg_mppi makes, so that the method keeps the control period.
+  const SvgMppiOptions usual = svg_mppi_options(base);
+  const int rollouts =
+      usual.samples + usual.guides.count * usual.guides.iterations * usual.guides.gradient_samples;
+  EXPECT_EQ(*method_options("mppi", base).find<int>("samples"), rollouts);
+  EXPECT_LE(
+      *sv_mpc.find<int>("samples") * *sv_mpc.find<int>("iterations") * *sv_mpc.find<int>("gradient_samples"),
+      rollouts);
   EXPECT_TRUE(method_options("svg_mppi", base).get_if<SvgMppiOptions>());
   EXPECT_THROW(method_options("dwa", base), std::invalid_argument);
 }

@@ -65,6 +65,20 @@ TEST(NoiseShape, SamplesHaveTheCorrelationOfTheirInput) {
   }
 }
 
+TEST(NoiseShape, PinnedNoiseContinuesAZeroBeforeTheFirstStep) {
+  const int steps = 12, samples = 40000;
+  NoiseShape shape({.exponent = 4, .pinned = true}, steps, 1);
+  EXPECT_TRUE(shape.pinned());
+  const SequenceBatch z = shaped(shape, steps, 1, samples);
+  const std::vector<double> c = coloured_correlation(4, steps + 1);
+  // The covariance of a normal vector given that its entry before the first one is 0.
+  for (std::size_t s = 0; s < 12; ++s)
+    for (std::size_t t = 0; t <= s; ++t)
+      EXPECT_NEAR(moment(z, static_cast<int>(s), static_cast<int>(t), 0), c[s - t] - c[s + 1] * c[t + 1],
+                  6 / std::sqrt(samples))
+          << s << " " << t;
+}
+
 TEST(NoiseShape, WhiteningTwiceSolvesForTheCorrelation) {
   const int steps = 9;
   NoiseShape shape({.exponent = {1.7, 0.0}}, steps, 2);

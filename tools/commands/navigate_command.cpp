@@ -32,27 +32,10 @@ struct NamedDriver {
   bool detours;
 };
 
-/// The rollouts of a solve of svg_mppi with these options: its samples and those of the guides' steps.
-int rollouts(const SvgMppiOptions& o) {
-  return o.samples + o.guides.count * o.guides.iterations * o.guides.gradient_samples;
-}
-
-/// The rollouts of a solve of another method, divided by its samples.
-int rollouts_per_sample(const SolverOptions& options) {
-  const int* const iterations = options.find<int>("iterations");
-  const int* const gradient_samples = options.find<int>("gradient_samples");
-  if (!iterations) return 1;
-  return gradient_samples ? 1 + *iterations * *gradient_samples : *iterations;
-}
-
 RoomDriver driver_of(const NamedDriver& named, const RoomScenario& scenario) {
   RoomDriver driver;
   driver.navigator.find_detours = named.detours;
   driver.solver = navigation::method_options(named.method, scenario.base);
-  if (driver.solver.get_if<SvgMppiOptions>()) return driver;
-  // As many rollouts in a solve as svg_mppi has; those of icem decrease from iteration to iteration.
-  if (int* const samples = driver.solver.find<int>("samples"))
-    *samples = rollouts(navigation::svg_mppi_options(scenario.base)) / rollouts_per_sample(driver.solver);
   return driver;
 }
 

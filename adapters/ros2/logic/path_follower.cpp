@@ -26,6 +26,12 @@ std::string why_of(nav::NavigationStatus status) {
   switch (status) {
     case nav::NavigationStatus::blocked:
       return "the path is blocked and there is no way round";
+    case nav::NavigationStatus::goal_occupied:
+      return "the goal is occupied";
+    case nav::NavigationStatus::stuck:
+      return "the robot makes no progress";
+    case nav::NavigationStatus::commands_ignored:
+      return "the velocity of the robot does not follow the commands";
     case nav::NavigationStatus::no_path:
       return "the robot is off the costmap";
     case nav::NavigationStatus::bad_input:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 #include "slalom/core/math.hpp"
 #include "slalom/core/options.hpp"
@@ -38,6 +39,9 @@ struct BaseOptions {
   double max_acceleration = 2.5;
   double max_turn_acceleration = 3.2;
   double min_turning_radius = 0.2;
+  double delay_forward = 0;
+  double delay_sideways = 0;
+  double delay_turn = 0;
 };
 
 template <class Options, class Visit>
@@ -55,6 +59,11 @@ void visit_options(Options& o, Visit&& visit) {
         {"max_turn_acceleration", "rad/s^2", "largest change of the yaw rate", 0.01, 100});
   visit(o.min_turning_radius,
         {"min_turning_radius", "m", "smallest radius of a circle that an Ackermann base drives", 0.01, 100});
+  visit(o.delay_forward,
+        {"delay_forward", "s",
+         "time until a speed forward is driven: dead time, and the time constant of a lag", 0, 2});
+  visit(o.delay_sideways, {"delay_sideways", "s", "the same for a speed to either side", 0, 2});
+  visit(o.delay_turn, {"delay_turn", "s", "the same for a yaw rate", 0, 2});
 }
 
 /// The motion of a step: speeds in the robot's frame.
@@ -117,5 +126,12 @@ struct AckermannBase {
  private:
   Coefficient largest_curvature_;  ///< 1/m
 };
+
+/// Whether a base turns while it goes anywhere.
+template <class Base>
+inline constexpr bool turns_while_driving = Base::inputs == 3;
+/// Whether a base turns only while it drives.
+template <class Base>
+inline constexpr bool steers = std::is_same_v<Base, AckermannBase>;
 
 }  // namespace slalom::navigation

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <stdexcept>
@@ -102,13 +103,17 @@ class BodyCheck {
 struct NavigationMaps {
   GridView<1> distances;  ///< distances of the costmap
   GridView<1> prices;     ///< prices of the costmap
-  /// For every cell the nearest point of the path: x, y relative to `origin` (m), yaw (rad),
-  /// and length of the path (m) from the beginning of the window.
+  /// The part of the path's present leg around the robot. It is looked up at (0, -s), where s (m) is the
+  /// length from its beginning: x, y relative to `origin` (m), direction of travel (rad), and s.
   GridView<4> path;
   maps::Point origin;                  ///< m, near the robot: states are relative to it
-  double window_length = 0;            ///< m, of the path in the window
-  bool goal_in_window = false;         ///< whether the path in the window ends at the goal
-  maps::Pose goal;                     ///< map frame
+  double progress = 0;                 ///< m from the beginning of that part to the robot
+  double window_length = 0;            ///< m, of that part
+  bool backward = false;               ///< whether the leg is driven in reverse
+  bool turns = false;                  ///< whether the robot turns on the spot, at `end`
+  bool ends_leg = false;               ///< whether that part ends where the leg does
+  bool ends_at_goal = false;           ///< whether that part ends at the goal
+  maps::Pose end;                      ///< end of that part, map frame; a turn ends at exactly this yaw
   maps::MovingObstaclesView others{};  ///< moving obstacles, map frame
 };
 
@@ -120,6 +125,7 @@ class NavigationProblem {
   template <class T>
   struct State {
     T x, y, yaw;  ///< m, m, rad
+    T progress;   ///< m along the path in the maps
   };
   static constexpr int inputs = Base::inputs;  ///< inputs of a step
   /// Names of the terms of the cost of a step.
@@ -142,26 +148,36 @@ class NavigationProblem {
         base_(limits),
         body_(footprint, resolution),
         costs_(costs, step),
-        step_(step) {}
+        step_(step),
+        reach_(farthest_projection * step *
+               std::max({limits.max_forward, limits.max_reverse, limits.max_sideways})) {}
 
   /// Sets the maps of the next rollouts, which the maps and the data of their views must outlive.
   void set_maps(const NavigationMaps& maps) noexcept {
     distances_ = maps.distances.relative_to(maps.origin.x, maps.origin.y);
     prices_ = maps.prices.relative_to(maps.origin.x, maps.origin.y);
-    path_ = maps.path.relative_to(maps.origin.x, maps.origin.y);
+    path_ = maps.path;
     window_length_ = maps.window_length;
-    goal_x_ = maps.goal.x - maps.origin.x;
-    goal_y_ = maps.goal.y - maps.origin.y;
-    goal_sine_ = std::sin(maps.goal.yaw);
-    goal_cosine_ = std::cos(maps.goal.yaw);
+    direction_ = maps.backward ? -1.0 : 1.0;
+    end_x_ = maps.end.x - maps.origin.x;
+    end_y_ = maps.end.y - maps.origin.y;
+    end_yaw_ = maps.end.yaw;
     others_ = maps.others.relative_to(maps.origin);
-    goal_weight_ = maps.goal_in_window ? costs_.goal_heading : Coefficient(0);
+    // A base that cannot turn on the spot must come to the end of a leg in its direction.
+    const bool exact = steers<Base> && maps.ends_leg;
+    path_weight_ = exact ? exact_path * static_cast<double>(costs_.path) : static_cast<double>(costs_.path);
+    heading_weight_ = maps.turns ? 0.0 : (exact ? exact_heading : 1.0) * static_cast<double>(costs_.heading);
+    turning_weight_ = (exact ? 0.0 : 1.0) * static_cast<double>(costs_.turning);
+    turn_weight_ = maps.turns ? costs_.goal_heading : Coefficient(0);
+    near_goal_ = maps.ends_at_goal ? Coefficient(1) : Coefficient(0);
   }
 
   /// The values that the maps hold at a state.
   template <class T>
   struct Seen {
-    CellValues<T> foot;              ///< nearest point of the path
+    CellValues<T> foot;              ///< point of the path
+    T along, aside;                  ///< m, position from that point along the direction of travel, and left
+    T path_sine, path_cosine;        ///< sine and cosine of that direction
     BodyCheck::Contact<T> obstacle;  ///< nearest obstacle
     T price;                         ///< 1 in a priced cell
     T sine, cosine;                  ///< sine and cosine of the yaw
@@ -171,51 +187,62 @@ class NavigationProblem {
   SLALOM_INLINE_CALLS Seen<T> look_up(const State<T>& x) const {
     Seen<T> seen;
     sin_cos(x.yaw, seen.sine, seen.cosine);
-    seen.foot = slalom::look_up(path_, x.x, x.y);
+    seen.foot = slalom::look_up(path_, T(0), T(0) - x.progress);
+    sin_cos(seen.foot.c, seen.path_sine, seen.path_cosine);
+    const T dx = x.x - seen.foot.a, dy = x.y - seen.foot.b;
+    seen.along = dx * seen.path_cosine + dy * seen.path_sine;
+    seen.aside = dy * seen.path_cosine - dx * seen.path_sine;
     seen.price = slalom::look_up(prices_, x.x, x.y);
     seen.obstacle = body_.check(distances_, x.x, x.y, seen.sine, seen.cosine);
     return seen;
   }
 
-  /// State after one step.
+  /// State after one step. The progress is that of the projection on the path, found anew from the last one.
   template <class T>
   SLALOM_INLINE_CALLS State<T> step(const State<T>& x, const Seen<T>& seen, const Input<T, inputs>& u) const {
     const Motion<T> motion = base_.motion(u);
     const T forward = motion.forward * T(step_), left = motion.left * T(step_);
-    return {x.x + forward * seen.cosine - left * seen.sine, x.y + forward * seen.sine + left * seen.cosine,
-            x.yaw + motion.turn * T(step_)};
+    const T dx = forward * seen.cosine - left * seen.sine, dy = forward * seen.sine + left * seen.cosine;
+    const T projected = seen.foot.d + seen.along + dx * seen.path_cosine + dy * seen.path_sine;
+    const T progress = clamp(projected, x.progress - T(reach_), x.progress + T(reach_));
+    return {x.x + dx, x.y + dy, x.yaw + motion.turn * T(step_), clamp(progress, T(0), T(window_length_))};
   }
 
   /// Cost of step `k`.
   template <class T>
   SLALOM_INLINE_CALLS CostTerms<T, 8> stage_cost(const State<T>& x, const Seen<T>& seen,
                                                  const Input<T, inputs>& u, int k) const {
-    const OnPath<T> on_path = along_path(x, seen);
-    const T to_goal = sqrt(square(x.x - T(goal_x_)) + square(x.y - T(goal_y_)));
-    const T near = max(T(1) - to_goal * T(costs_.per_goal_reach), T(0));
-    const T goal_error = T(1) - (seen.cosine * T(goal_cosine_) + seen.sine * T(goal_sine_));
+    const T to_end = sqrt(square(x.x - T(end_x_)) + square(x.y - T(end_y_)));
+    const T near = max(T(1) - to_end * T(costs_.per_goal_reach), T(0)) * T(near_goal_);
+    const T facing = turns_while_driving<Base> ? near : T(0);
+    const T heading_error =
+        T(1) - T(direction_) * (seen.cosine * seen.path_cosine + seen.sine * seen.path_sine);
+    const T turn_left = abs(x.yaw - T(end_yaw_));
     const Motion<T> motion = base_.motion(u);
-    const T moving = T(costs_.reverse) * max(T(0) - motion.forward, T(0)) +
-                     T(costs_.sideways) * abs(motion.left) + T(costs_.turning) * square(motion.turn) +
+    const T moving = T(costs_.reverse) * max(T(0) - T(direction_) * motion.forward, T(0)) +
+                     T(costs_.sideways) * abs(motion.left) + T(turning_weight_) * square(motion.turn) +
                      T(costs_.unknown) * seen.price;
     const Cost<T> met = others_.cost(x.x, x.y, seen.sine, seen.cosine, k);
-    return {{T(costs_.progress) * on_path.left, T(costs_.path) * min(on_path.squared, T(costs_.max_squared)),
-             T(costs_.heading) * (T(1) - near) * on_path.heading_error,
-             T(costs_.clearance) * (T(1) - near) *
-                 exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
-             moving, T(goal_weight_) * near * goal_error,
-             select(seen.obstacle.collided, T(costs_.collision), T(0)), met.value},
-            mask_t<T>(seen.obstacle.collided | met.collided)};
+    return {
+        {T(costs_.progress) * left(seen), T(path_weight_) * min(square(seen.aside), T(costs_.max_squared)),
+         T(heading_weight_) * (T(1) - facing) * heading_error,
+         T(costs_.clearance) * (T(1) - near) *
+             exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
+         moving, (T(turn_weight_) + T(costs_.facing) * facing) * turn_left,
+         select(seen.obstacle.collided, T(costs_.collision), T(0)), met.value},
+        mask_t<T>(seen.obstacle.collided | met.collided)};
   }
 
   /// Cost of the last state.
   template <class T>
-  SLALOM_INLINE_CALLS Cost<T> terminal_cost(const State<T>& x, const Seen<T>& seen) const {
-    return {T(costs_.final_progress) * along_path(x, seen).left, seen.obstacle.collided};
+  SLALOM_INLINE_CALLS Cost<T> terminal_cost(const State<T>&, const Seen<T>& seen) const {
+    return {T(costs_.final_progress) * left(seen), seen.obstacle.collided};
   }
 
  private:
   static constexpr double farthest = 5;  ///< m of clearance; keeps the exponential in range
+  static constexpr double exact_path = 10, exact_heading = 5;  ///< factors of weights, see set_maps
+  static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
 
   /// Weights times the duration of a step, as rollouts use them.
   struct Weights {
@@ -232,36 +259,28 @@ class NavigationProblem {
           turning(o.turning * step),
           unknown(o.unknown * step),
           goal_heading(o.goal_heading * step),
+          facing(0.5 * o.heading * step),
           per_goal_reach(1 / o.goal_reach),
           collision(o.collision * step) {}
     Coefficient progress, final_progress, path, max_squared, heading, clearance, falloff, reverse, sideways,
-        turning, unknown, goal_heading, per_goal_reach, collision;
+        turning, unknown, goal_heading, facing, per_goal_reach, collision;
   };
 
+  /// m to the end of the window: along the path, and from the side of it.
   template <class T>
-  struct OnPath {
-    T left;           ///< m to the end of the window: along the path, and from the side of it
-    T squared;        ///< m^2, distance from the path
-    T heading_error;  ///< 1 - cos(yaw error)
-  };
-  template <class T>
-  SLALOM_INLINE_CALLS OnPath<T> along_path(const State<T>& x, const Seen<T>& seen) const {
-    T sine, cosine;
-    sin_cos(seen.foot.c, sine, cosine);
-    const T dx = x.x - seen.foot.a, dy = x.y - seen.foot.b;
-    const T along = T(window_length_) - seen.foot.d - (dx * cosine + dy * sine);
-    const T squared = square(dy * cosine - dx * sine);
-    return {sqrt(square(along) + squared), squared, T(1) - (seen.cosine * cosine + seen.sine * sine)};
+  SLALOM_INLINE_CALLS T left(const Seen<T>& seen) const {
+    return sqrt(square(T(window_length_) - seen.foot.d - seen.along) + square(seen.aside));
   }
 
   Base base_;
   BodyCheck body_;
   Weights costs_;
-  Coefficient step_;
+  Coefficient step_, reach_;
   GridView<1> distances_, prices_;
   GridView<4> path_;
   maps::MovingObstaclesView others_;
-  Coefficient window_length_, goal_x_, goal_y_, goal_sine_, goal_cosine_, goal_weight_;
+  Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, path_weight_, heading_weight_,
+      turning_weight_, turn_weight_, near_goal_;
 };
 
 }  // namespace slalom::navigation

@@ -20,8 +20,9 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base);
 /// The options of `mppi` for such a base.
 MppiOptions mppi_options(const BaseOptions& base);
 /// The options of any method of the registry: those of the options above that the method has, and the
-/// method's defaults for the others. Throws std::invalid_argument that lists the names if the method is
-/// unknown.
+/// method's defaults for the others. The number of samples is such that a solve takes about as many rollouts
+/// as one of `svg_mppi`, so that every method keeps the control period. Throws std::invalid_argument that
+/// lists the names if the method is unknown.
 SolverOptions method_options(std::string_view method, const BaseOptions& base);
 
 /// Options of a Navigator, besides those of its solver.
@@ -36,6 +37,7 @@ struct NavigatorOptions {
   double look_ahead = 6;
   double patience = 0.3;
   double stuck_after = 4;
+  double goal_room = 0.3;
 };
 
 template <class Options, class Visit>
@@ -52,19 +54,26 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.patience,
         {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
   visit(o.stuck_after,
-        {"stuck_after", "s", "time without progress after which the way ahead counts as closed", 0.1, 3600});
+        {"stuck_after", "s",
+         "time without progress after which the robot tries another way; after five of them it is stuck", 0.1,
+         3600});
+  visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
 }
 
 /// The behaviour of a navigator.
 enum class NavigationStatus {
-  following,     ///< follows the path
-  detour,        ///< follows a way around the place where the path is blocked
-  braking,       ///< the plan soon meets a fixed or moving obstacle: the robot brakes
-  blocked,       ///< the path is blocked and there is no way round: the robot stands
-  goal_reached,  ///< the robot stands at the goal
-  no_path,       ///< no path was set, or the robot is off the costmap: the robot stands
-  bad_input,     ///< a pose or velocity is not finite or absurdly large, a time is negative or not finite, or
-                 ///< the costmap has another size or resolution: it brakes, or stands
+  following,         ///< follows the path
+  detour,            ///< follows a way around the place where the path is blocked
+  braking,           ///< the plan soon meets a fixed or moving obstacle: the robot brakes
+  blocked,           ///< the path is blocked and there is no way round: the robot stands
+  goal_occupied,     ///< something is on the goal: the robot has driven up to it, and stands
+  stuck,             ///< no progress for five times `stuck_after`: the robot stands until there is a new path
+  commands_ignored,  ///< the velocity stays near 0 although the commands do not: the robot or its odometry
+                     ///< stands
+  goal_reached,      ///< the robot stands at the goal
+  no_path,           ///< no path was set, or the robot is off the costmap: the robot stands
+  bad_input,  ///< a pose or velocity is not finite or absurdly large, a time is negative or not finite, or
+              ///< the costmap has another size or resolution: it brakes, or stands
 };
 /// The name of a status, as it is written in results.
 constexpr const char* name(NavigationStatus status) noexcept {
@@ -77,6 +86,12 @@ constexpr const char* name(NavigationStatus status) noexcept {
       return "braking";
     case NavigationStatus::blocked:
       return "blocked";
+    case NavigationStatus::goal_occupied:
+      return "goal_occupied";
+    case NavigationStatus::stuck:
+      return "stuck";
+    case NavigationStatus::commands_ignored:
+      return "commands_ignored";
     case NavigationStatus::goal_reached:
       return "goal_reached";
     case NavigationStatus::no_path:
@@ -95,8 +110,8 @@ struct NavigationResult {
   Velocity command;
   int corrections = 0;   ///< values of it that the final check changed
   double remaining = 0;  ///< m of path to the goal
-  /// Predicted poses, map frame; the first is now. Empty unless the status is `following`, `detour` or
-  /// `braking`; with `braking` the plan is not followed.
+  /// Predicted poses, map frame; the first is now. Empty unless the status is `following`, `detour`,
+  /// `commands_ignored` or `braking`; with `braking` the plan is not followed.
   std::span<const maps::Pose> plan;
   std::span<const maps::Pose> path;  ///< path that is followed, with the present detour
 };
@@ -125,9 +140,13 @@ class Navigator {
   Navigator(Navigator&&) noexcept;         ///< the navigator moved from may only be destroyed or assigned to
   Navigator& operator=(Navigator&&) noexcept;  ///< moves
 
-  /// The path to follow, in the map frame: positions from near the robot to the goal. The yaw of the last
-  /// pose is the heading at the goal; that of the others is not used. Throws std::invalid_argument unless
-  /// there is at least one pose, all are within maps::PoseLimits, and the path is at most 49 km long.
+  /// The path to follow, in the map frame, from near the robot to the goal. The yaw of the last pose is the
+  /// heading at the goal. Those of the others count if each is within 60 degrees of the direction of the path
+  /// or of its opposite: there the robot reverses. Otherwise the robot drives forward; an Ackermann base
+  /// reverses after cusps. The robot stops at cusps, and at corners of more than 60 degrees, where it turns
+  /// on the spot if it can. The goal is the end of the path, even if the path passes there before. The same
+  /// path again does not change the progress along it. Throws std::invalid_argument unless there is at least
+  /// one pose, all are within maps::PoseLimits, and the path is at most 49 km long.
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time

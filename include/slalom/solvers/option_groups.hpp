@@ -12,6 +12,7 @@ namespace slalom {
 /// `visit_noise_options` below describes the fields.
 struct NoiseOptions {
   PerInput exponent = 0;
+  bool pinned = false;
   int knots = 0;
 };
 
@@ -56,6 +57,10 @@ void visit_noise_options(Options& o, Visit&& visit) {
   visit(o.exponent, {"noise_exponent", "",
                      "power 1/f^beta of the noise along the steps, per input; 0: white, 1: pink, 2: Brownian",
                      0, 4, "beta"});
+  visit(o.pinned,
+        {"noise_pinned", "",
+         "noise with an exponent begins at 0, so that sequences continue the last input; with 4 they are "
+         "smooth"});
   visit(o.knots,
         {"noise_knots", "",
          "knots along the horizon between which the noise is interpolated; 0: none, independent steps", 0, 64,

@@ -54,6 +54,7 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       rows_(options.horizon * inputs),
       low_(low.begin(), low.end()),
       high_(high.begin(), high.end()),
+      shape_(options.noise.pinned ? NoiseShape(options.noise, options.horizon, inputs) : NoiseShape()),
       theta_(count_, rows_),
       shifted_(count_, rows_),
       guides_(count_, rows_),
@@ -90,7 +91,8 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
 }
 
 void Guides::restart(RandomKey key) noexcept {
-  fill_normal(ends_, 0, count_, key);
+  fill_normal(ends_, 0, shape_.pinned() ? padded(count_) : count_, key);
+  if (shape_.pinned()) shape_.apply(ends_, {0, padded(count_)});
   for (int g = 0; g < count_; ++g) {
     for (int r = 0; r < rows_; ++r) {
       const float z = ends_[r][g];
@@ -129,13 +131,15 @@ void Guides::take_in(const BatchEvaluator& evaluator, const float* solution) noe
   best_ = static_cast<int>(std::min_element(first, last) - first);
 }
 
-/// The deviations are smooth: piecewise linear between normal values at knots a third of the horizon apart.
+/// The deviations are pinned noise, or piecewise linear between normal values at knots a third of the horizon
+/// apart.
 void Guides::restart_others(RandomKey key) noexcept {
   if (!options_.guides.restart || count_ == 1) return;
   std::copy_n(theta_[best_], rows_, shifted_[0]);
   std::copy_n(shifted_[0], rows_, theta_[0]);
   best_ = 0;
   fill_normal(ends_, 0, padded(count_), key);
+  if (shape_.pinned()) shape_.apply(ends_, {0, padded(count_)});
   const auto knot = [&](int k, int input, int g) -> double { return ends_.at(k, input, g); };
   for (int g = 1; g < count_; ++g) {
     for (int r = 0; r < rows_; ++r) {
@@ -145,7 +149,8 @@ void Guides::restart_others(RandomKey key) noexcept {
       const double part = position - k;
       // A horizon of fewer than four steps has no fourth knot and needs none.
       const int next = std::min(k + 1, options_.horizon - 1);
-      const double deviation = (1 - part) * knot(k, input, g) + part * knot(next, input, g);
+      const double deviation = shape_.pinned() ? knot(step, input, g)
+                                               : (1 - part) * knot(k, input, g) + part * knot(next, input, g);
       const double value = theta_[0][r] + std::sqrt(options_.guides.restart_variance[input]) * deviation;
       theta_[g][r] = std::clamp<double>(value, low_[r], high_[r]);
     }
@@ -169,6 +174,7 @@ std::span<const float> Guides::path_costs() const noexcept {
 /// Fills the block of each guide with its gradient samples and the guide itself.
 void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
   fill_normal(batch_, first * block_, (last - first) * block_, key);
+  if (shape_.pinned()) shape_.apply(batch_, {first * block_, (last - first) * block_});
   const Rows rows = rows_of(batch_);
   const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * gradient_samples_);
   for (int g = first; g < last; ++g) {

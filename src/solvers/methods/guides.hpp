@@ -5,6 +5,7 @@
 
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/kernels/kernels.hpp"
+#include "solvers/sampling/noise_shape.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::detail {
@@ -109,6 +110,7 @@ class Guides {
   int rows_;              ///< values of a control sequence
   std::vector<float> low_, high_;  ///< bounds [row]
 
+  NoiseShape shape_;                ///< shape of pinned noise; of other noise, guides are not correlated
   Matrix<double> theta_, shifted_;  ///< [guide][row]
   Matrix<float> guides_;            ///< theta as float32
   SequenceBatch batch_;             ///< one block for each guide

@@ -99,7 +99,7 @@ std::vector<double> knot_weights(int steps, int knots) {
 
 NoiseShape::NoiseShape(const NoiseOptions& options, int steps, int inputs)
     : steps_(steps), inputs_(inputs), factor_(inputs), factor_float_(inputs) {
-  colour(options.exponent);
+  colour(options);
   if (options.knots > 0) interpolate(std::min(options.knots, steps));
   for (std::size_t i = 0; i < factor_.size(); ++i)
     factor_float_[i].assign(factor_[i].begin(), factor_[i].end());
@@ -112,12 +112,17 @@ void NoiseShape::check_length(const char* option) const {
                               std::to_string(longest) + " steps; the horizon is " + std::to_string(steps_));
 }
 
-void NoiseShape::colour(const PerInput& exponent) {
+void NoiseShape::colour(const NoiseOptions& options) {
   for (int i = 0; i < inputs_; ++i) {
-    if (!(exponent[i] > 0)) continue;
+    if (!(options.exponent[i] > 0)) continue;
     check_length("noise_exponent");
-    factor_[i] = correlation_factor(coloured_correlation(exponent[i], steps_));
+    const int before = options.pinned ? 1 : 0;
+    const std::vector<double> factor =
+        correlation_factor(coloured_correlation(options.exponent[i], steps_ + before));
+    for (int t = before; t < steps_ + before; ++t)
+      factor_[i].insert(factor_[i].end(), &factor[triangle(t)] + before, &factor[triangle(t)] + t + 1);
     correlated_ = true;
+    pinned_ = options.pinned;
   }
 }
 

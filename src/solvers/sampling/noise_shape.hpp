@@ -21,6 +21,11 @@ namespace slalom::detail {
 ///     c(d) ~ sum_k max(min(k, N - k), 1)^-beta cos(2 pi k d / N),   c(0) = 1,   C[s][t] = c(|s - t|)
 ///     z <- L z   with   L L^T = C, L lower triangular
 ///
+/// *Pinned* coloured noise is the coloured noise of T + 1 steps whose first one, that of the input applied
+/// before the sequence, is 0: L is that of T + 1 steps without its first row and column. Its variance grows
+/// from step to step to about 1. With an exponent above 3 it is smooth, so that a robot whose inputs have
+/// limited rates can drive it.
+///
 /// *Interpolated between knots* (KMPPI of pytorch_mppi, UM-ARM-Lab): n normal values y at knots t_k, evenly
 /// over the horizon, and a squared exponential kernel K with the distance of the knots as its length:
 ///
@@ -37,6 +42,8 @@ class NoiseShape {
 
   /// Whether the noise of any input is correlated along the steps: coloured or interpolated.
   bool correlated() const noexcept { return correlated_; }
+  /// Whether it is pinned.
+  bool pinned() const noexcept { return pinned_; }
 
   /// Shapes the samples of a range of `z`, which holds white noise.
   void apply(SequenceBatch& z, Range range) const noexcept;
@@ -47,13 +54,13 @@ class NoiseShape {
 
  private:
   void check_length(const char* option) const;
-  void colour(const PerInput& exponent);
+  void colour(const NoiseOptions& options);
   void interpolate(int knots);
   void project_twice(double* sequence, int input) const noexcept;
 
   int steps_ = 0;
   int inputs_ = 0;
-  bool correlated_ = false;
+  bool correlated_ = false, pinned_ = false;
   int knots_ = 0;
   std::vector<double> projection_;                ///< W (W^T W)^-1, [step][knot]
   std::vector<std::vector<double>> factor_;       ///< L of each input, row by row; empty: white

@@ -1,0 +1,239 @@
+#include "navigation/way.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "navigation/path_yaws.hpp"
+#include "slalom/core/numbers/count.hpp"
+#include "slalom/maps/pose_limits.hpp"
+
+namespace slalom::navigation::detail {
+
+namespace {
+
+constexpr double longest_path = 1e6;   // steps of a path
+constexpr double search_period = 0.1;  // s between searches while there is no way
+constexpr double nearest_unseen =
+    0.5;  // m before a closed place, beside those of braking, at which its end is seen
+constexpr double least_period = 1e-3;   // s
+constexpr double progress_step = 0.1;   // m of progress after which the robot is not stuck
+constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
+constexpr double near_goal = 1;         // m before the goal, where a robot without progress approaches anew
+constexpr double real_progress = 0.5;   // m of progress after which former attempts do not count
+constexpr int max_attempts = 5;         // times without progress until the robot is stuck
+constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place
+constexpr double retry_after = 10;      // s without a way after which ways that were closed are tried again
+constexpr double around_joint = 0.2;    // m behind the end of a detour, where the path may have a corner
+constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
+
+}  // namespace
+
+Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps::GridGeometry& geometry,
+         double reach)
+    : options_(options),
+      footprint_(footprint),
+      guide_(reach),
+      planner_(geometry, footprint.half_width()),
+      legs_(options, footprint) {}
+
+bool Way::is_stuck() noexcept {
+  is_done_ = is_done_ || attempts_ >= max_attempts;
+  return attempts_ >= max_attempts;
+}
+
+bool Way::has_ended(const maps::Pose& robot) noexcept {
+  is_done_ = ends_at(robot);
+  return is_done_;
+}
+
+void Way::set_path(std::span<const maps::Pose> path) {
+  if (path.empty()) throw std::invalid_argument("path: no poses, must have at least one");
+  double length = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (!maps::is_plausible(path[i])) maps::check_pose("path: pose " + std::to_string(i), path[i]);
+    if (i > 0) length += distance(position(path[i]), position(path[i - 1]));
+  }
+  const auto same = [](const maps::Pose& a, const maps::Pose& b) {
+    return a.x == b.x && a.y == b.y && a.yaw == b.yaw;
+  };
+  if (!guide_.empty() && !is_done_ &&
+      std::equal(path.begin(), path.end(), given_.begin(), given_.end(), same))
+    return;
+  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > PathAhead::min_rejoin) {
+    chosen_.clear();
+    closed_.forget_dead_ends();
+  }
+  // A detour is at most as long as a path of the search, and goes on along the path.
+  const double longest = length + 2 * static_cast<double>(PathPlanner::max_points) * PathPlanner::spacing;
+  const std::size_t most = count(longest, PathGuide::spacing, longest_path, "path") + path.size() + 8;
+  guide_.reserve(most);
+  poses_.reserve(most);
+  chosen_.reserve(most);
+  given_.assign(path.begin(), path.end());
+  is_done_ = false;
+  poses_.assign(path.begin(), path.end());
+  set_yaws(poses_, options_.base.kind == BaseKind::ackermann);
+  follow(poses_);
+  detour_left_ = lowest_remaining_ = infinity;
+  without_way_ = since_search_ = without_progress_ = 0;
+  attempts_ = 0;
+}
+
+void Way::clear() noexcept {
+  guide_.clear();
+  given_.clear();
+  chosen_.clear();
+  closed_.forget_dead_ends();
+  detour_left_ = min_remaining_ = lowest_remaining_ = infinity;
+  without_way_ = since_search_ = since_meeting_ = without_progress_ = 0;
+  attempts_ = 0;
+  stop_ = no_stop;
+}
+
+/// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth`
+/// metres.
+void Way::follow(std::span<const maps::Pose> path, double smooth) noexcept {
+  guide_.set(path, options_.base.kind != BaseKind::ackermann, smooth);
+  legs_.restart();
+  min_remaining_ = infinity;
+  stop_ = no_stop;
+}
+
+bool Way::ends_at(const maps::Pose& pose) const noexcept {
+  const maps::Pose& goal = guide_.goal();
+  return guide_.on_last_leg() && guide_.remaining() <= 2 * options_.goal_distance &&
+         distance(position(pose), position(goal)) <= options_.goal_distance &&
+         std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle;
+}
+
+/// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
+/// of the path. Returns false and keeps the path if there is none that costs less than `most` (m).
+bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept {
+  planner_.read(costmap, chosen_, closed_.all());
+  if (!planner_.search_from(position(pose))) return false;
+  const std::span<const maps::Pose> path = guide_.points();
+  double least = most;
+  std::size_t best = path.size();
+  for (std::size_t i = closed + 1; i < path.size(); ++i) {
+    const double left = guide_.step() * static_cast<double>(path.size() - 1 - i);
+    const double cost = planner_.cost_to(position(path[i])) + left;
+    if (cost >= least || !ahead(costmap).can_rejoin(i)) continue;
+    least = cost;
+    best = i;
+  }
+  if (best == path.size()) return false;
+  const std::span<const maps::Point> way = planner_.path_to(position(path[best]));
+  poses_.clear();
+  for (const maps::Point& point : way) poses_.push_back({point.x, point.y, 0});
+  const std::size_t joint = poses_.size();
+  poses_.insert(poses_.end(), path.begin() + static_cast<std::ptrdiff_t>(best), path.end());
+  double length = 0;
+  for (std::size_t i = 0; i < joint && i + 1 < poses_.size(); ++i) {
+    poses_[i].yaw = std::atan2(poses_[i + 1].y - poses_[i].y, poses_[i + 1].x - poses_[i].x);
+    length += distance(position(poses_[i]), position(poses_[i + 1]));
+  }
+  poses_.back() = guide_.goal();
+  detour_left_ = guide_.step() * static_cast<double>(path.size() - 1 - best);
+  follow(poses_, length + around_joint);
+  chosen_.assign(guide_.points().begin(), guide_.points().end());
+  return true;
+}
+
+/// Takes a way past somebody on the path, as around an obstacle at the place where they meet. If there is
+/// none, the plans alone avoid them.
+void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
+                        double elapsed) noexcept {
+  since_meeting_ += elapsed;
+  if (since_meeting_ < search_period) return;
+  const auto place = others.meeting(guide_.points().subspan(guide_.nearest()), guide_.step());
+  if (!place) return;
+  since_meeting_ = 0;
+  const ClosedPlaces::Meeting meeting(closed_, *place);
+  const std::size_t closed = ahead(costmap).first_closed(options_.look_ahead);
+  if (closed < guide_.points().size()) find_way(pose, costmap, closed, guide_.remaining() + longest_way_past);
+}
+
+/// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
+bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& others,
+               double elapsed) noexcept {
+  watch_progress(pose, costmap, others, elapsed);
+  stop_ = no_stop;
+  const std::size_t closed = ahead(costmap).first_closed(options_.look_ahead);
+  if (closed == guide_.points().size()) {
+    without_way_ = 0;
+    avoid_meeting(pose, costmap, others, elapsed);
+    return true;
+  }
+  since_search_ += elapsed;
+  if (without_way_ == 0 || since_search_ >= search_period) {
+    since_search_ = 0;
+    if (find_way(pose, costmap, closed, infinity)) {
+      without_way_ = 0;
+      return true;
+    }
+  }
+  if (waits_at_goal(costmap, closed)) {
+    without_way_ = 0;
+    return true;
+  }
+  // A costmap that moves with the robot may show the end of the closed place once the robot is nearer.
+  const BaseOptions& base = options_.base;
+  const double braking = base.max_forward * base.max_forward / (2 * base.max_acceleration);
+  if (ahead(costmap).opens_off_the_map(closed, nearest_unseen + braking)) {
+    without_way_ = least_period;
+    return true;
+  }
+  without_way_ += std::max(elapsed, least_period);
+  if (without_way_ > retry_after && closed_.has_dead_ends()) {
+    closed_.forget_dead_ends();
+    without_way_ = 0;
+  }
+  return without_way_ < options_.patience;
+}
+
+/// Whether the goal is closed; then the robot drives up to it.
+bool Way::waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept {
+  const std::size_t last = guide_.points().size() - 1;
+  if (!ahead(costmap).is_closed(last) || closed_.contain(position(guide_.points()[last]))) return false;
+  const std::size_t room =
+      guide_.points_for(footprint_.circumscribed_radius() - footprint_.half_width() + options_.goal_room);
+  stop_ = closed > room ? closed - room : 0;
+  return true;
+}
+
+/// Where the robot makes no progress, it goes on to the next leg, approaches the goal anew, or takes the
+/// place ahead for a dead end.
+void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
+                         double elapsed) noexcept {
+  const double remaining = guide_.remaining() + progress_turn * std::abs(legs_.turn_left());
+  const bool waits = without_way_ > 0 || stop_ != no_stop || others.are_near(position(robot));
+  if (remaining < lowest_remaining_ - real_progress) {
+    lowest_remaining_ = remaining;
+    attempts_ = 0;
+  }
+  if (waits || remaining < min_remaining_ - progress_step) {
+    min_remaining_ = std::min(min_remaining_, remaining);
+    without_progress_ = 0;
+    return;
+  }
+  without_progress_ += elapsed;
+  if (without_progress_ < options_.stuck_after) return;
+  without_progress_ = 0;
+  min_remaining_ = infinity;
+  ++attempts_;
+  if (guide_.leg().turns && !guide_.on_last_leg()) {
+    legs_.skip(guide_, robot, costmap);
+  } else if (guide_.remaining() < near_goal) {
+    poses_.assign({robot, guide_.goal()});
+    set_yaws(poses_, false);
+    follow(poses_);
+  } else {
+    const std::size_t ahead = guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);
+    const std::span<const maps::Pose> path = guide_.points();
+    closed_.add_dead_end(position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]));
+  }
+}
+
+}  // namespace slalom::navigation::detail

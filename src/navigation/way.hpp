@@ -1,0 +1,88 @@
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "navigation/leg_change.hpp"
+#include "navigation/others.hpp"
+#include "navigation/path_ahead.hpp"
+#include "navigation/path_guide.hpp"
+#include "slalom/core/reserved_vector.hpp"
+#include "slalom/navigation/path_planner.hpp"
+
+namespace slalom::navigation::detail {
+
+/// The path that the robot follows, with detours where it is blocked, and the progress on it.
+class Way {
+ public:
+  /// For costmaps of this size, and plans that reach so far (m).
+  Way(const NavigatorOptions& options, const Footprint& footprint, const maps::GridGeometry& geometry,
+      double reach);
+
+  /// As Navigator::set_path.
+  void set_path(std::span<const maps::Pose> path);
+  void clear() noexcept;
+  bool empty() const noexcept { return guide_.empty(); }
+
+  /// Moves on along the path.
+  void advance(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap,
+               double elapsed) noexcept {
+    legs_.update(guide_, robot, velocity, costmap, elapsed, poses_);
+  }
+  /// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
+  bool keep(const maps::Pose& robot, const Costmap& costmap, const Others& others, double elapsed) noexcept;
+
+  /// Whether the robot is at the end of the path, within the tolerances. If it is, the same path may be set
+  /// again.
+  bool has_ended(const maps::Pose& robot) noexcept;
+  /// Whether a robot there would be.
+  bool ends_at(const maps::Pose& robot) const noexcept;
+  /// Whether the robot has made no progress for so long that it gives up.
+  bool is_stuck() noexcept;
+  bool is_detour() const noexcept { return guide_.remaining() > detour_left_; }
+  /// Whether the robot has come as near to an occupied goal as it may.
+  bool is_at_stop() const noexcept {
+    return stop_ != no_stop && guide_.nearest() + guide_.points_for(options_.goal_distance) >= stop_;
+  }
+
+  double remaining() const noexcept { return guide_.remaining(); }                 ///< m
+  std::span<const maps::Pose> points() const noexcept { return guide_.points(); }  ///< the path
+  /// Sets the part of the path around the robot in `maps`.
+  void write(const maps::Pose& robot, NavigationMaps& maps) noexcept {
+    guide_.write(robot, legs_.turn_left(), stop_, maps);
+  }
+
+ private:
+  PathAhead ahead(const Costmap& costmap) const noexcept { return {guide_, planner_, closed_, costmap}; }
+  void follow(std::span<const maps::Pose> path, double smooth = 0) noexcept;
+  bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
+  void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
+                     double elapsed) noexcept;
+  bool waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept;
+  void watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
+                      double elapsed) noexcept;
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  NavigatorOptions options_;
+  Footprint footprint_;
+  PathGuide guide_;
+  PathPlanner planner_;
+  LegChange legs_;
+  ReservedVector<maps::Pose> given_;   ///< the path that was set
+  ReservedVector<maps::Pose> poses_;   ///< a path that is being made
+  ReservedVector<maps::Pose> chosen_;  ///< the last detour, which later searches prefer
+  ClosedPlaces closed_;
+  double detour_left_ = infinity;       ///< m of path left where the detour ends
+  double without_way_ = 0;              ///< s since the path is blocked and no way round was found
+  double since_search_ = 0;             ///< s
+  double since_meeting_ = 0;            ///< s
+  double min_remaining_ = infinity;     ///< m
+  double without_progress_ = 0;         ///< s
+  double lowest_remaining_ = infinity;  ///< m, at the last real progress
+  int attempts_ = 0;                    ///< times without progress since then
+  bool is_done_ = false;                ///< whether the end was reached, or the robot is stuck
+  std::size_t stop_ = no_stop;          ///< point of the path before an occupied goal
+};
+
+}  // namespace slalom::navigation::detail

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "navigation/grids.hpp"
+#include "slalom/navigation/navigator.hpp"
+
+/// Goals, cusps and corners: whole drives of a robot that moves as it is told.
+namespace slalom::navigation {
+namespace {
+
+constexpr double period = 0.05;  // s
+constexpr double pi = std::numbers::pi;
+
+/// A room of 10 x 6 m with its corner at the origin.
+struct Drive {
+  explicit Drive(BaseKind kind, double half_length = 0.35, double width = 0.5)
+      : body(Footprint::rectangle(half_length, half_length, width)) {
+    options.base.kind = kind;
+    options.base.min_turning_radius = 0.4;
+    costmap.update(grid);
+    navigator.emplace(body, options, costmap);
+  }
+  void start(const maps::Pose& from, const std::vector<maps::Pose>& to, std::uint64_t seed = 1) {
+    pose = from;
+    path = to;
+    navigator->reset(seed);
+    navigator->set_path(path);
+  }
+  NavigationStatus step() {
+    const NavigationResult result =
+        navigator->update(pose, told_zero ? Velocity{} : velocity, costmap, period);
+    turn_changes.push_back(result.command.turn - velocity.turn);
+    on_their_way.push_back(result.command);
+    if (static_cast<int>(on_their_way.size()) > delay_periods) {
+      velocity = on_their_way.front();
+      on_their_way.pop_front();
+    }
+    const double yaw = pose.yaw + 0.5 * period * velocity.turn, c = std::cos(yaw), s = std::sin(yaw);
+    pose = {pose.x + period * (c * velocity.forward - s * velocity.left),
+            pose.y + period * (s * velocity.forward + c * velocity.left), pose.yaw + period * velocity.turn};
+    collided = collided || costmap.collides(body, pose);
+    const int now = velocity.forward > 0.03 ? 1 : velocity.forward < -0.03 ? -1 : 0;
+    reversals += now != 0 && last_direction != 0 && now != last_direction;
+    if (now != 0) last_direction = now;
+    remaining = result.remaining;
+    return result.status;
+  }
+  /// Drives until the goal is reached or for so long (s).
+  NavigationStatus drive(double duration) {
+    NavigationStatus status = NavigationStatus::following;
+    for (time = 0; time < duration && status != NavigationStatus::goal_reached; time += period)
+      status = step();
+    return status;
+  }
+  double goal_distance() const { return std::hypot(pose.x - path.back().x, pose.y - path.back().y); }
+
+  Footprint body;
+  NavigatorOptions options;
+  maps::OccupancyGrid grid = free_grid(0, 0, 10, 6);
+  Costmap costmap{grid.width, grid.height, grid.resolution};
+  std::optional<Navigator> navigator;
+  std::vector<maps::Pose> path;
+  maps::Pose pose;
+  Velocity velocity;
+  bool collided = false, told_zero = false;
+  int reversals = 0, last_direction = 0;
+  std::vector<double> turn_changes;
+  int delay_periods = 0;
+  std::deque<Velocity> on_their_way;  ///< commands that have not taken effect yet
+  double time = 0, remaining = 0;
+};
+
+TEST(LastMetre, EveryBaseReachesEveryHeading) {
+  for (const BaseKind kind : {BaseKind::differential, BaseKind::omnidirectional, BaseKind::ackermann})
+    for (const double heading : {3.1, 2.2, -1.5}) {
+      Drive drive(kind);
+      drive.start({4, 3, 0}, {{4, 3, 0}, {7, 3, heading}}, 3);
+      EXPECT_EQ(drive.drive(20), NavigationStatus::goal_reached) << static_cast<int>(kind) << " " << heading;
+      EXPECT_LE(drive.goal_distance(), drive.options.goal_distance + 1e-9);
+      EXPECT_LE(std::abs(maps::wrap_angle(drive.pose.yaw - heading)), drive.options.goal_angle + 1e-9);
+      EXPECT_FALSE(drive.collided);
+    }
+}
+
+TEST(LastMetre, ACarReversesIntoABayWithOneChangeOfDirection) {
+  Drive drive(BaseKind::ackermann, 0.35, 0.5);
+  // Along the aisle past the bay, back on an arc of 1 m radius, and straight in.
+  std::vector<maps::Pose> path;
+  for (double x = 1; x < 5; x += 0.1) path.push_back({x, 3, 0});
+  for (double angle = 0; angle < pi / 2; angle += 0.05)
+    path.push_back({5 - std::sin(angle), 2 + std::cos(angle), angle});
+  for (double y = 1.95; y > 1; y -= 0.05) path.push_back({4, y, pi / 2});
+  for (const double x : {2.9, 4.6}) fill(drive.grid, x, 0, x + 0.5, 2);
+  drive.costmap.update(drive.grid);
+  drive.start({1, 3, 0}, path);
+  EXPECT_EQ(drive.drive(40), NavigationStatus::goal_reached);
+  EXPECT_EQ(drive.reversals, 1);
+  EXPECT_FALSE(drive.collided);
+}
+
+TEST(LastMetre, TheGoalIsTheEndOfThePath) {
+  Drive drive(BaseKind::differential, 0.2, 0.4);
+  drive.start({1, 1, 0}, {{1, 1, 0}, {3, 1, pi / 2}, {3, 3, pi}, {1, 3, -pi / 2}, {1, 1, 0}});
+  EXPECT_EQ(drive.drive(40), NavigationStatus::goal_reached);
+  EXPECT_GT(drive.time, 8 / drive.options.base.max_forward);
+  // Past the dock and back into it.
+  drive.start({2, 1.5, 0}, {{2, 1.5, 0}, {5, 1.5, 0}, {4, 1.5, 0}});
+  EXPECT_EQ(drive.drive(40), NavigationStatus::goal_reached);
+  EXPECT_GT(drive.time, 4 / drive.options.base.max_forward);
+}
+
+TEST(LastMetre, RowsAreDrivenToTheirEnds) {
+  Drive drive(BaseKind::differential, 0.2, 0.4);
+  drive.start({1, 1, 0}, {{1, 1, 0}, {4, 1, 0}, {4, 1.6, 0}, {1, 1.6, pi}});
+  double from_corner = 1, from_second = 1;
+  for (int i = 0; i < 800; ++i) {
+    if (drive.step() == NavigationStatus::goal_reached) break;
+    from_corner = std::min(from_corner, std::hypot(drive.pose.x - 4, drive.pose.y - 1));
+    from_second = std::min(from_second, std::hypot(drive.pose.x - 4, drive.pose.y - 1.6));
+  }
+  EXPECT_LT(from_corner, 0.1);
+  EXPECT_LT(from_second, 0.1);
+  EXPECT_LT(drive.goal_distance(), 0.11);
+}
+
+TEST(LastMetre, CommandsOnAnEmptyPathAreSmooth) {
+  Drive drive(BaseKind::differential, 0.2, 0.4);
+  drive.start({1, 3, 0}, {{1, 3, 0}, {9, 3, 0}});
+  double aside = 0, squares = 0;
+  for (int i = 0; i < 280; ++i) {
+    drive.step();
+    aside = std::max(aside, std::abs(drive.pose.y - 3));
+  }
+  for (std::size_t i = 40; i < drive.turn_changes.size(); ++i) squares += std::pow(drive.turn_changes[i], 2);
+  EXPECT_LT(std::sqrt(squares / 240), 0.0236);  // rad/s; it was 0.155
+  EXPECT_LT(aside, 0.04);
+}
+
+TEST(LastMetre, DrivesUpToAnOccupiedGoalAndWaits) {
+  Drive drive(BaseKind::differential);
+  fill(drive.grid, 7.8, 2.8, 8.2, 3.2);
+  drive.costmap.update(drive.grid);
+  drive.start({1, 3, 0}, {{1, 3, 0}, {8, 3, 0}});
+  EXPECT_EQ(drive.drive(18), NavigationStatus::goal_occupied);
+  const double room = 7.8 - (drive.pose.x + 0.35);
+  EXPECT_GT(room, drive.options.goal_room - 0.05);
+  EXPECT_LT(room, drive.options.goal_room + 0.25);
+  drive.grid = free_grid(0, 0, 10, 6);
+  drive.costmap.update(drive.grid);
+  EXPECT_EQ(drive.drive(10), NavigationStatus::goal_reached);
+}
+
+TEST(LastMetre, ADelayThatIsToldCostsItsDurationAndLittleMore) {
+  double without = 0;
+  for (const int periods : {0, 10}) {
+    Drive drive(BaseKind::differential);
+    drive.delay_periods = periods;
+    drive.options.base.delay_forward = drive.options.base.delay_turn = periods * period;
+    drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+    drive.start({1, 3, 0}, {{1, 3, 0}, {6, 3, 0}});
+    EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached);
+    EXPECT_EQ(drive.reversals, 0);
+    if (periods == 0) without = drive.time;
+    EXPECT_LT(drive.time, without + 1);
+  }
+}
+
+TEST(LastMetre, SaysThatCommandsAreIgnored) {
+  Drive drive(BaseKind::differential);
+  drive.told_zero = true;
+  drive.start({1, 3, 0}, {{1, 3, 0}, {8, 3, 0}});
+  drive.drive(1);
+  EXPECT_EQ(drive.step(), NavigationStatus::commands_ignored);
+}
+
+TEST(LastMetre, ARobotThatCannotReverseTurnsRoundInACorridorAtOnce) {
+  Drive drive(BaseKind::differential);
+  drive.options.base.max_reverse = 0;
+  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+  fill(drive.grid, 0, 0, 10, 2.55);
+  fill(drive.grid, 0, 3.5, 10, 6);
+  drive.costmap.update(drive.grid);
+  drive.start({5, 3.025, 0}, {{5, 3.025, pi}, {2, 3.025, pi}});
+  EXPECT_EQ(drive.drive(12), NavigationStatus::goal_reached);
+  EXPECT_FALSE(drive.collided);
+}
+
+}  // namespace
+}  // namespace slalom::navigation
