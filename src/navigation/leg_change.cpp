@@ -48,14 +48,14 @@ double LegChange::free_turn(const maps::Pose& robot, double yaw, const Costmap& 
 void LegChange::turn_round(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
                            std::vector<maps::Pose>& buffer) const noexcept {
   const auto points = guide.points();
-  const double radius = wider * options_.base.min_turning_radius;
+  const Manoeuvre::Limits limits{wider * options_.base.min_turning_radius, options_.base.max_reverse > 0};
   const std::size_t last = std::min(guide.leg().last, guide.nearest() + guide.points_for(longest_change));
   double least = std::numeric_limits<double>::infinity();
   std::size_t best = 0;
   Manoeuvre found;
   for (std::size_t i = guide.nearest(); i <= last; i += join_stride) {
     const double saved = guide.step() * static_cast<double>(i - guide.nearest());
-    const Manoeuvre made = find_manoeuvre(robot, points[i], radius, least + saved, costmap, footprint_);
+    const Manoeuvre made = find_manoeuvre(robot, points[i], limits, least + saved, costmap, footprint_);
     if (!(made.cost() < least + saved)) continue;
     least = made.cost() - saved;
     best = i;
@@ -74,7 +74,7 @@ void LegChange::turn_round(PathGuide& guide, const maps::Pose& robot, const Cost
 void LegChange::face_goal(PathGuide& guide, const Costmap& costmap,
                           std::vector<maps::Pose>& buffer) const noexcept {
   const auto points = guide.points();
-  const double radius = wider * options_.base.min_turning_radius;
+  const Manoeuvre::Limits limits{wider * options_.base.min_turning_radius, options_.base.max_reverse > 0};
   const std::size_t most = guide.points_for(longest_change), last = points.size() - 1;
   const std::size_t first =
       std::max({guide.legs().back().first, guide.nearest(), last > most ? last - most : 0});
@@ -84,7 +84,7 @@ void LegChange::face_goal(PathGuide& guide, const Costmap& costmap,
   for (std::size_t i = first; i < last; i += join_stride) {
     const double saved = guide.step() * static_cast<double>(last - i);
     const Manoeuvre made =
-        find_manoeuvre(points[i], guide.goal(), radius, least + saved, costmap, footprint_);
+        find_manoeuvre(points[i], guide.goal(), limits, least + saved, costmap, footprint_);
     if (!(made.cost() < least + saved)) continue;
     least = made.cost() - saved;
     best = i;
@@ -101,28 +101,28 @@ void LegChange::face_goal(PathGuide& guide, const Costmap& costmap,
 void LegChange::place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
                       std::vector<maps::Pose>& buffer) const noexcept {
   if (guide.step() == 0 && distance(position(robot), position(guide.goal())) > 0.5 * options_.goal_distance) {
-    buffer.assign({robot, guide.goal()});  // a path of one pose
-    set_yaws(buffer, false);
-    guide.set(buffer, turns_on_the_spot());
+    set_straight(buffer, robot, guide.goal(), options_.base);  // a path of one pose
+    guide.set(buffer, turns_on_the_spot(options_.base));
   }
   guide.place(position(robot));
   const std::size_t ahead = std::min(guide.nearest() + guide.points_for(direction_ahead),
                                      std::max(guide.leg().last, std::size_t{1}) - 1);
   const double yaw = guide.points()[std::max(ahead, guide.leg().first)].yaw;
   const bool faces_away = !guide.leg().turns && std::abs(maps::wrap_angle(yaw - robot.yaw)) > wrong_way;
-  if (!turns_on_the_spot()) {
+  if (options_.base.kind == BaseKind::ackermann) {
     if (faces_away) turn_round(guide, robot, costmap, buffer);
     const double end = guide.legs().back().yaw;
     if (std::abs(maps::wrap_angle(guide.goal().yaw - end)) > 0.5 * options_.goal_angle)
       face_goal(guide, costmap, buffer);
     guide.place(position(robot));
-  } else if (faces_away && options_.base.kind == BaseKind::differential &&
+  } else if (faces_away && options_.base.kind == BaseKind::differential && turns_on_the_spot(options_.base) &&
              free_turn(robot, yaw, costmap) != 0) {
     guide.turn_first(yaw);
   }
 }
 
 void LegChange::begin_leg(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap) noexcept {
+  begun_ = true;
   standing_ = turn_left_ = 0;
   last_yaw_ = robot.yaw;
   if (!guide.leg().turns) return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "navigation/path_guide.hpp"
@@ -20,11 +21,12 @@ class LegChange {
               double elapsed, std::vector<maps::Pose>& buffer) noexcept;
   /// Goes on to the next leg before the end of this one.
   void skip(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap) noexcept;
+  /// Whether a leg has begun since the last call.
+  bool takes_leg() noexcept { return std::exchange(begun_, false); }
   /// The rest of a turn, rad; 0 on other legs.
   double turn_left() const noexcept { return turn_left_; }
 
  private:
-  bool turns_on_the_spot() const noexcept { return options_.base.kind != BaseKind::ackermann; }
   void place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
              std::vector<maps::Pose>& buffer) const noexcept;
   void turn_round(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
@@ -38,6 +40,7 @@ class LegChange {
   NavigatorOptions options_;
   Footprint footprint_;
   bool fresh_ = true;
+  bool begun_ = false;    ///< whether a leg has begun
   double turn_left_ = 0;  ///< rad
   double last_yaw_ = 0;   ///< rad, of the robot
   double standing_ = 0;   ///< s

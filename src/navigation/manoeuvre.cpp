@@ -1,5 +1,6 @@
 #include "navigation/manoeuvre.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -89,8 +90,9 @@ bool Manoeuvre::is_free(const maps::Pose& from, const Costmap& costmap,
   return visit_poses(*this, from, [&](const maps::Pose& pose) { return !costmap.collides(footprint, pose); });
 }
 
-Manoeuvre find_manoeuvre(const maps::Pose& from, const maps::Pose& to, double radius, double most,
-                         const Costmap& costmap, const Footprint& footprint) noexcept {
+Manoeuvre find_manoeuvre(const maps::Pose& from, const maps::Pose& to, const Manoeuvre::Limits& limits,
+                         double most, const Costmap& costmap, const Footprint& footprint) noexcept {
+  const double radius = limits.radius;
   const maps::Point relative = maps::inverse_transform(from, {to.x, to.y});
   const double x = relative.x / radius, y = relative.y / radius, yaw = maps::wrap_angle(to.yaw - from.yaw);
   Manoeuvre best;
@@ -109,6 +111,9 @@ Manoeuvre find_manoeuvre(const maps::Pose& from, const maps::Pose& to, double ra
                                {scale * found.v, side * found.third}}},
                              radius};
         const double cost = made.cost();
+        if (!limits.can_reverse && std::any_of(made.parts.begin(), made.parts.end(),
+                                               [](const Manoeuvre::Part& part) { return part.length < 0; }))
+          continue;
         if (cost >= least || !made.is_free(from, costmap, footprint)) continue;
         least = cost;
         best = made;

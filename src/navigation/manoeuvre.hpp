@@ -16,6 +16,11 @@ struct Manoeuvre {
     double length = 0;  ///< m, negative in reverse
     int steering = 0;   ///< 1 to the left, -1 to the right, 0 straight
   };
+  /// What the base can drive.
+  struct Limits {
+    double radius = 1;         ///< m, least of an arc
+    bool can_reverse = false;  ///< whether it drives backward
+  };
   std::array<Part, 3> parts;
   double radius = 1;  ///< m, of the arcs
 
@@ -30,7 +35,7 @@ struct Manoeuvre {
 /// The manoeuvre of least cost, below `most`, between two poses on which the body is free. Uses the words
 /// C S C and C|C|C of J. Reeds and L. Shepp, "Optimal paths for a car that goes both forwards and backwards",
 /// Pacific Journal of Mathematics 145 (1990). The cost is infinite if there is none.
-Manoeuvre find_manoeuvre(const maps::Pose& from, const maps::Pose& to, double radius, double most,
-                         const Costmap& costmap, const Footprint& footprint) noexcept;
+Manoeuvre find_manoeuvre(const maps::Pose& from, const maps::Pose& to, const Manoeuvre::Limits& limits,
+                         double most, const Costmap& costmap, const Footprint& footprint) noexcept;
 
 }  // namespace slalom::navigation::detail

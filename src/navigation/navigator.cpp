@@ -15,6 +15,7 @@ namespace slalom::navigation {
 namespace {
 
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
+constexpr int first_solves = 5;         // of the first plan on a leg
 constexpr double least_command = 0.05;  // m/s and rad/s, of commands that move a robot
 constexpr double share_followed = 0.2;  // least share of a command that a robot follows
 constexpr double ignored_after = 0.8;   // s
@@ -167,8 +168,7 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
     const bool is_there = way_.has_ended(now);
     return stand(is_there ? NavigationStatus::goal_reached : NavigationStatus::following, velocity, elapsed);
   }
-  if (options_.find_detours && !way_.keep(pose, costmap, others_, elapsed))
-    return stand(NavigationStatus::blocked, velocity, elapsed);
+  if (!way_.keep(pose, costmap, others_, elapsed)) return stand(NavigationStatus::blocked, velocity, elapsed);
   way_.advance(pose, velocity, costmap, 0);
   if (way_.is_at_stop()) return stand(NavigationStatus::goal_occupied, velocity, elapsed);
   NavigationResult result = plan(pose, velocity, costmap, elapsed);
@@ -183,8 +183,11 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
   maps_.prices = costmap.prices();
   maps_.others = others_.view();
   way_.write(pose, maps_);
-  model_->solve(maps_, pose, velocity, since_solve_);
-  since_solve_ = 0;
+  // The plan of another leg is no use on this one: its first plan takes several solves.
+  for (int solves = way_.takes_leg() ? first_solves : 1; solves > 0; --solves) {
+    model_->solve(maps_, pose, velocity, since_solve_);
+    since_solve_ = 0;
+  }
   NavigationResult result;
   if (plan_collides(costmap, velocity)) {
     result = stand(NavigationStatus::braking, velocity, elapsed);

@@ -1,5 +1,6 @@
 #include "navigation/path_yaws.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -27,7 +28,11 @@ double agreement(std::span<const maps::Pose> path, std::size_t i) {
   return i + 2 == path.size() || std::abs(begin) >= std::abs(end) ? begin : end;
 }
 
+/// Whether the yaws but the last, which is that of the goal, are those of a vehicle on the path. Planners
+/// that do not fill them in leave all the same.
 bool yaws_count(std::span<const maps::Pose> path) {
+  const auto differs = [&](const maps::Pose& pose) { return pose.yaw != path.front().yaw; };
+  if (std::none_of(path.begin(), path.end() - 1, differs)) return false;
   for (std::size_t i = 0; i + 1 < path.size(); ++i)
     if (is_way(path[i], path[i + 1]) && std::abs(agreement(path, i)) < aligned) return false;
   return true;
@@ -35,8 +40,9 @@ bool yaws_count(std::span<const maps::Pose> path) {
 
 }  // namespace
 
-void set_yaws(std::span<maps::Pose> path, bool reverses_at_cusps) noexcept {
-  const bool given = yaws_count(path);
+void set_yaws(std::span<maps::Pose> path, const BaseOptions& base) noexcept {
+  const bool given = base.max_reverse > 0 && yaws_count(path),
+             reverses_at_cusps = base.max_reverse > 0 && base.kind == BaseKind::ackermann;
   bool backward = false, begun = false;
   double before = 0;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
@@ -52,6 +58,12 @@ void set_yaws(std::span<maps::Pose> path, bool reverses_at_cusps) noexcept {
     }
     if (begun) path[i].yaw = before + (backward ? std::numbers::pi : 0);
   }
+}
+
+void set_straight(std::vector<maps::Pose>& path, const maps::Pose& robot, const maps::Pose& goal,
+                  const BaseOptions& base) noexcept {
+  path.assign({robot, goal});
+  if (base.max_reverse == 0) path[0].yaw = direction(robot, goal);
 }
 
 }  // namespace slalom::navigation::detail

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "slalom/navigation/navigator.hpp"
 #include "slalom/solvers/registry.hpp"
 
@@ -5,12 +7,17 @@ namespace slalom::navigation {
 
 namespace {
 
+constexpr double least_turn = 0.01;  // rad/s, limit that variances of a robot that does not turn have
+
 /// Variances whose standard deviations are a share of the limits of the base.
-PerInput variances(const BaseOptions& base, double share) {
+PerInput variances(const BaseOptions& base, double share, double share_of_turn) {
   const double forward = share * base.max_forward, left = share * base.max_sideways,
-               turn = share * base.max_turn;
+               turn = share_of_turn * std::max(base.max_turn, least_turn);
   if (base.kind == BaseKind::omnidirectional) return {forward * forward, left * left, turn * turn};
   return {forward * forward, turn * turn};
+}
+PerInput variances(const BaseOptions& base, double share) {
+  return variances(base, share, share);
 }
 
 template <class Type>
@@ -23,7 +30,7 @@ void set_shared(SolverOptions& options, const BaseOptions& base) {
   set(options, "horizon", 56);
   set(options, "samples", 2000);
   set(options, "temperature", 0.1);
-  set(options, "variance", variances(base, 0.4));
+  set(options, "variance", variances(base, 0.4, 0.2));
   set(options, "gradient_variance", variances(base, 0.1));
   set(options, "noise_exponent", PerInput(4));
   set(options, "noise_pinned", true);
@@ -46,7 +53,7 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   set_shared(shared, base);
   SvgMppiOptions options = *shared.get_if<SvgMppiOptions>();
   options.variance_min = variances(base, 0.15);
-  options.variance_max = variances(base, 0.4);
+  options.variance_max = variances(base, 0.4, 0.2);
   options.guides.variance = variances(base, 0.05);
   options.guides.restart_variance = variances(base, 0.4);
   options.guides.step = variances(base, 0.06);  // about a third of a step to the samples' mean

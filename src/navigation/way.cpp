@@ -74,7 +74,7 @@ void Way::set_path(std::span<const maps::Pose> path) {
   given_.assign(path.begin(), path.end());
   is_done_ = false;
   poses_.assign(path.begin(), path.end());
-  set_yaws(poses_, options_.base.kind == BaseKind::ackermann);
+  set_yaws(poses_, options_.base);
   follow(poses_);
   detour_left_ = lowest_remaining_ = infinity;
   without_way_ = since_search_ = without_progress_ = 0;
@@ -95,7 +95,7 @@ void Way::clear() noexcept {
 /// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth`
 /// metres.
 void Way::follow(std::span<const maps::Pose> path, double smooth) noexcept {
-  guide_.set(path, options_.base.kind != BaseKind::ackermann, smooth);
+  guide_.set(path, turns_on_the_spot(options_.base), smooth);
   legs_.restart();
   min_remaining_ = infinity;
   stop_ = no_stop;
@@ -105,7 +105,8 @@ bool Way::ends_at(const maps::Pose& pose) const noexcept {
   const maps::Pose& goal = guide_.goal();
   return guide_.on_last_leg() && guide_.remaining() <= 2 * options_.goal_distance &&
          distance(position(pose), position(goal)) <= options_.goal_distance &&
-         std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle;
+         (options_.base.max_turn == 0 ||
+          std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle);
 }
 
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
@@ -160,6 +161,7 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
                double elapsed) noexcept {
   watch_progress(pose, costmap, others, elapsed);
   stop_ = no_stop;
+  if (!options_.find_detours) return true;
   const std::size_t closed = ahead(costmap).first_closed(options_.look_ahead);
   if (closed == guide_.points().size()) {
     without_way_ = 0;
@@ -226,8 +228,7 @@ void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const 
   if (guide_.leg().turns && !guide_.on_last_leg()) {
     legs_.skip(guide_, robot, costmap);
   } else if (guide_.remaining() < near_goal) {
-    poses_.assign({robot, guide_.goal()});
-    set_yaws(poses_, false);
+    set_straight(poses_, robot, guide_.goal(), options_.base);
     follow(poses_);
   } else {
     const std::size_t ahead = guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);

@@ -45,6 +45,7 @@ class Way {
     return stop_ != no_stop && guide_.nearest() + guide_.points_for(options_.goal_distance) >= stop_;
   }
 
+  bool takes_leg() noexcept { return legs_.takes_leg(); }  ///< whether there is a new leg since the last call
   double remaining() const noexcept { return guide_.remaining(); }                 ///< m
   std::span<const maps::Pose> points() const noexcept { return guide_.points(); }  ///< the path
   /// Sets the part of the path around the robot in `maps`.

@@ -76,6 +76,44 @@ TEST(MppiImport, ChangesWhatHasAnotherScaleOrName) {
   expect_words(imported.yaml, {"\n  temperature: 0.2\n", "\n  costs:\n    goal_reach: 0.8\n"});
 }
 
+TEST(MppiImport, TakesMotionModelsThatArePlugins) {
+  const MppiImport imported = import(R"(
+      motion_model: "car"
+      car:
+        plugin: "mppi::AckermannMotionModel"
+        min_turning_r: 0.6
+      model_delay_vx: 0.2
+      model_delay_wz: 0.3
+      TrajectoryValidator:
+        plugin: "mppi::DefaultOptimalTrajectoryValidator"
+      publish_optimal_trajectory: true
+)");
+  expect_words(imported.yaml, {"\n  motion_model: Ackermann\n", "\n    min_turning_r: 0.6\n",
+                               "\n  delay_forward: 0.2\n", "\n  delay_turn: 0.3\n"});
+  expect_words(imported.report,
+               {"motion_model: car: changed to motion_model: Ackermann (the name here)",
+                "car.plugin: mppi::AckermannMotionModel: taken as motion_model",
+                "TrajectoryValidator.plugin: mppi::DefaultOptimalTrajectoryValidator: dropped"});
+  EXPECT_EQ(imported.report.find("unknown"), std::string::npos) << imported.report;
+  expect_words(import("      motion_model: diff_drive\n").yaml, {"\n  motion_model: DiffDrive\n"});
+  expect_words(import("      motion_model: omni\n      omni: {plugin: \"mppi::OmniMotionModel\"}\n"
+                      "      ax_max: 3.0\n      ay_max: 1.0\n")
+                   .yaml,
+               {"\n  motion_model: Omni\n", "\n  ax_max: 1.0\n"});
+  expect_error_with<std::runtime_error>({"params.yaml:7:", "m.plugin", "must be one of mppi::DiffDrive"}, [] {
+    import("      motion_model: m\n      m: {plugin: \"my::Model\"}\n");
+  });
+}
+
+TEST(MppiImport, KeepsARobotThatDoesNotTurn) {
+  for (const char* lines : {"      wz_std: 0.0\n      wz_max: 1.9\n", "      wz_max: 1.9\n      wz_std: 0\n",
+                            "      wz_max: 0.0\n", "      wz_max: 0\n      wz_std: 0.4\n"}) {
+    const MppiImport imported = import(lines);
+    expect_words(imported.yaml, {"\n  wz_max: 0.0\n"});
+    EXPECT_EQ(imported.yaml.find("wz_std: 0.0"), std::string::npos) << imported.yaml;
+  }
+}
+
 TEST(MppiImport, TakesTheLeastAcceleration) {
   const MppiImport least = import("      ax_max: 3.0\n      ax_min: -2.0\n      ay_max: 1.0\n");
   expect_words(least.report, {"ax_max: 3.0: dropped", "ax_min: -2.0: changed to ax_max: 2 (one limit",

@@ -129,16 +129,70 @@ TEST(LastMetre, RowsAreDrivenToTheirEnds) {
 }
 
 TEST(LastMetre, CommandsOnAnEmptyPathAreSmooth) {
-  Drive drive(BaseKind::differential, 0.2, 0.4);
-  drive.start({1, 3, 0}, {{1, 3, 0}, {9, 3, 0}});
-  double aside = 0, squares = 0;
-  for (int i = 0; i < 280; ++i) {
-    drive.step();
-    aside = std::max(aside, std::abs(drive.pose.y - 3));
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Drive drive(BaseKind::differential, 0.2, 0.4);
+    drive.start({1, 3, 0}, {{1, 3, 0}, {9, 3, 0}}, seed);
+    double aside = 0, squares = 0;
+    int sign_changes = 0, side = 0;
+    for (int i = 0; i < 280; ++i) {
+      drive.step();
+      aside = std::max(aside, std::abs(drive.pose.y - 3));
+      const int now = drive.velocity.turn > 0.08 ? 1 : drive.velocity.turn < -0.08 ? -1 : 0;
+      sign_changes += now != 0 && side != 0 && now != side;
+      if (now != 0) side = now;
+    }
+    for (const double change : drive.turn_changes) squares += change * change;
+    EXPECT_LT(std::sqrt(squares / 280), 0.0155);  // rad/s; it was 0.155
+    EXPECT_LE(sign_changes, 3);
+    EXPECT_LT(aside, 0.02);
   }
-  for (std::size_t i = 40; i < drive.turn_changes.size(); ++i) squares += std::pow(drive.turn_changes[i], 2);
-  EXPECT_LT(std::sqrt(squares / 240), 0.0236);  // rad/s; it was 0.155
-  EXPECT_LT(aside, 0.04);
+}
+
+TEST(LastMetre, YawsThatAreAllTheSameDoNotCount) {
+  std::vector<maps::Pose> path;
+  for (double x = 8; x > 3; x -= 0.1) path.push_back({x, 3, 0});
+  Drive drive(BaseKind::differential);
+  drive.start({8, 3, 0}, path);
+  double backward = 0;
+  for (int i = 0; i < 400 && drive.step() != NavigationStatus::goal_reached; ++i)
+    backward = std::max(backward, -drive.velocity.forward);
+  EXPECT_LT(backward, 0.1);
+  EXPECT_LT(drive.goal_distance(), 0.11);
+  EXPECT_LT(std::abs(maps::wrap_angle(drive.pose.yaw)), 0.16);
+}
+
+TEST(LastMetre, ARobotThatCannotReverseDrivesEveryPathForward) {
+  for (const BaseKind kind : {BaseKind::differential, BaseKind::ackermann}) {
+    Drive drive(kind);
+    drive.options.base.max_reverse = 0;
+    drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+    drive.start({7, 3, 0.1}, {{7, 3, 0.1}, {5, 3, 0}, {3, 3, 0}, {3, 3, -2}});
+    EXPECT_EQ(drive.drive(40), NavigationStatus::goal_reached) << static_cast<int>(kind);
+    EXPECT_EQ(drive.reversals, 0);
+  }
+}
+
+TEST(LastMetre, ARobotThatDoesNotTurnKeepsItsHeading) {
+  Drive drive(BaseKind::omnidirectional);
+  drive.options.base.max_turn = 0;
+  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+  drive.start({2, 2, 0.5}, {{2, 2, 0}, {5, 2, 0}, {5, 4, 2}});
+  EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached);
+  EXPECT_NEAR(drive.pose.yaw, 0.5, 1e-9);
+}
+
+TEST(LastMetre, SaysThatItIsStuckWithoutTheSearchForDetours) {
+  Drive drive(BaseKind::differential);
+  drive.options.find_detours = false;
+  drive.options.stuck_after = 1;
+  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+  fill(drive.grid, 4, 1, 4.5, 5);
+  drive.costmap.update(drive.grid);
+  drive.start({2, 3, 0}, {{2, 3, 0}, {8, 3, 0}});
+  NavigationStatus status{};
+  for (int i = 0; i < 800 && status != NavigationStatus::stuck; ++i) status = drive.step();
+  EXPECT_EQ(status, NavigationStatus::stuck);
+  EXPECT_FALSE(drive.collided);
 }
 
 TEST(LastMetre, DrivesUpToAnOccupiedGoalAndWaits) {

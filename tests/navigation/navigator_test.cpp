@@ -295,7 +295,7 @@ TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
   EXPECT_STREQ(cem.method(), "cem");
   EXPECT_EQ(*cem.find<int>("horizon"), 56);
   EXPECT_NEAR((*cem.find<PerInput>("variance"))[0], 0.64, 1e-12);
-  EXPECT_NEAR((*cem.find<PerInput>("variance"))[1], 1.44, 1e-12);
+  EXPECT_NEAR((*cem.find<PerInput>("variance"))[1], 0.36, 1e-12);
   EXPECT_NEAR((*sv_mpc.find<PerInput>("gradient_variance"))[1], 0.09, 1e-12);
   EXPECT_EQ(*sv_mpc.find<double>("temperature"), 0.1);
   // As many rollouts in a solve as svg_mppi makes, so that the method keeps the control period.

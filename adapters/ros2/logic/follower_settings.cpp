@@ -32,8 +32,8 @@ constexpr std::array renamed_of_method{Renamed{"horizon", "time_steps"}, Renamed
                                        Renamed{"temperature", "temperature"},
                                        Renamed{"gradient_temperature", nullptr}};  // temperature
 
-/// The standard deviation of samples, as a share of the limits, where none is set.
-constexpr double usual_share = 0.4;
+/// The standard deviations of samples, as shares of the limits of speeds and yaw rate, where none is set.
+constexpr double usual_share = 0.4, usual_turn_share = 0.2;
 
 /// Returns the name here of an option whose name is `section` + `name` unless it is in a table; empty if it
 /// is no option here.
@@ -112,7 +112,7 @@ nav::BaseOptions FollowerSettings::base(double share) const {
   // The least limits that the navigation layer takes.
   constexpr double least = 0.01;
   base.max_forward = std::max(base.max_forward * share, least);
-  base.max_turn = std::max(base.max_turn * share, least);
+  if (base.max_turn > 0) base.max_turn = std::max(base.max_turn * share, least);
   base.max_reverse = -own_.vx_min * share;
   base.max_sideways *= share;
   return base;
@@ -126,12 +126,12 @@ nav::NavigatorOptions FollowerSettings::navigator(double share) const {
 
 SolverOptions FollowerSettings::solver(double share) const {
   nav::BaseOptions scale = base(share);  // variances are squared shares of these limits
-  const auto set_scale = [](double& limit, double deviation) {
-    if (deviation > 0) limit = deviation / usual_share;
+  const auto set_scale = [](double& limit, double deviation, double usual) {
+    if (deviation > 0) limit = deviation / usual;
   };
-  set_scale(scale.max_forward, own_.vx_std);
-  set_scale(scale.max_sideways, own_.vy_std);
-  set_scale(scale.max_turn, own_.wz_std);
+  set_scale(scale.max_forward, own_.vx_std, usual_share);
+  set_scale(scale.max_sideways, own_.vy_std, usual_share);
+  set_scale(scale.max_turn, own_.wz_std, usual_turn_share);
   SolverOptions options = nav::method_options(method_, scale);
   for (const auto& [name, text] : solver_set_) set_option(options, name, text);
   const double* const temperature = options.find<double>("temperature");

@@ -40,7 +40,7 @@ void visit_options(Options& o, Visit&& visit) {
         {"vx_std", "m/s", "standard deviation of the sampled speeds forward; 0: 0.4 vx_max", 0, 100});
   visit(o.vy_std,
         {"vy_std", "m/s", "standard deviation of the sampled speeds sideways; 0: 0.4 vy_max", 0, 100});
-  visit(o.wz_std, {"wz_std", "rad/s", "standard deviation of the sampled yaw rates; 0: 0.4 wz_max", 0, 100});
+  visit(o.wz_std, {"wz_std", "rad/s", "standard deviation of the sampled yaw rates; 0: 0.2 wz_max", 0, 100});
   visit(o.open_loop, {"open_loop", "", "plan from the last command instead of the measured velocity"});
   visit(o.unknown_cells, {"unknown_cells", "",
                           "unknown cells and what lies off the costmap: obstacles, or places with a price"});

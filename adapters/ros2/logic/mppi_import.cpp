@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -24,8 +25,7 @@ namespace {
 constexpr const char* mppi = "nav2_mppi_controller::MPPIController";
 
 /// The parameters that mean the same here, under the same name.
-constexpr std::array taken{"motion_model",
-                           "time_steps",
+constexpr std::array taken{"time_steps",
                            "model_dt",
                            "batch_size",
                            "vx_max",
@@ -40,6 +40,20 @@ constexpr std::array taken{"motion_model",
                            "visualize",
                            "transform_tolerance",
                            "AckermannConstraints.min_turning_r"};
+
+/// Names of motion models as plugins of nav2 1.5, and as before.
+struct Model {
+  const char *plugin, *name;
+};
+constexpr std::array models{Model{"mppi::DiffDriveMotionModel", "DiffDrive"},
+                            Model{"mppi::OmniMotionModel", "Omni"},
+                            Model{"mppi::AckermannMotionModel", "Ackermann"}};
+
+/// The parameters with another name here, and that name.
+constexpr std::array renamed{std::pair{"GoalAngleCritic.threshold_to_consider", "costs.goal_reach"},
+                             std::pair{"model_delay_vx", "delay_forward"},
+                             std::pair{"model_delay_vy", "delay_sideways"},
+                             std::pair{"model_delay_wz", "delay_turn"}};
 
 /// A parameter that has no meaning here, and the reason; with a dot at its end, a section of such parameters.
 struct Dropped {
@@ -60,6 +74,14 @@ constexpr std::array dropped{
     Dropped{"enforce_path_inversion", "plans may reverse wherever that costs less"},
     Dropped{"inversion_xy_tolerance", "plans may reverse wherever that costs less"},
     Dropped{"inversion_yaw_tolerance", "plans may reverse wherever that costs less"},
+    Dropped{"sgf_order", "samples are smooth: svg_mppi.noise_exponent"},
+    Dropped{"clamp_raw_controls", "all samples keep to the limits"},
+    Dropped{"publish_optimal_trajectory", "visualize publishes the plan"},
+    Dropped{"publish_critics_stats", "costs are not published"},
+    Dropped{"critic_index_to_visualize", "costs are not published"},
+    Dropped{"TrajectoryValidator.",
+            "the plan is always checked with the footprint, until the robot can brake"},
+    Dropped{"PathHandler.", "the path counts as far as the robot can drive in a plan"},
     Dropped{"critics", "the terms of the cost are fixed; their weights are in costs"},
     Dropped{"TrajectoryVisualizer.", "visualize publishes the plan, not the samples"},
     Dropped{"ConstraintCritic.", "samples keep to the limits of speed and acceleration"},
@@ -119,8 +141,20 @@ class Section {
       else if (given.key == "temperature")
         fate = take(given, "temperature", temperature(given),
                     "costs have another scale; its ratio to the default is kept");
-      else if (given.key == "GoalAngleCritic.threshold_to_consider")
-        fate = take(given, "costs.goal_reach", text_of(given), "the name here");
+      else if (given.key == "motion_model")
+        fate = take(given, given.key, model(), "the name here");
+      else if (given.key == model_key() + ".plugin")
+        fate = "taken as motion_model";
+      else if (given.key == model_key() + ".min_turning_r")
+        fate = take(given, "AckermannConstraints.min_turning_r", text_of(given), "the name here");
+      else if (given.key == "wz_std" && number_of(given) == 0)
+        fate = take(given, "wz_max", "0", "the robot does not turn");
+      else if (given.key == "wz_max" && no_turn_sampled())
+        fate = "dropped (wz_std: 0 counts)";
+      else if (const auto* const other = std::find_if(
+                   renamed.begin(), renamed.end(), [&](const auto& each) { return given.key == each.first; });
+               other != renamed.end())
+        fate = take(given, other->second, text_of(given), "the name here");
       else if (std::find(taken.begin(), taken.end(), given.key) != taken.end())
         fate = take(given, given.key, text_of(given), "");
       else
@@ -185,11 +219,31 @@ class Section {
     return "changed to " + option + ": " + text + " (" + why + ")";
   }
 
+  /// The value of `motion_model`; in nav2 1.5 it names a section with the plugin.
+  std::string model_key() const {
+    const Given* const given = find("motion_model");
+    return given ? text_of(*given) : "diff_drive";
+  }
+  /// The motion model by its name here, or as it is given where it has none.
+  std::string model() const {
+    const std::string key = model_key();
+    const Given* const plugin = find(key + ".plugin");
+    if (!plugin) return key == "diff_drive" ? "DiffDrive" : key;
+    for (const Model& each : models)
+      if (text_of(*plugin) == each.plugin) return each.name;
+    std::string names;
+    for (const Model& each : models) names += (names.empty() ? "" : ", ") + std::string(each.plugin);
+    refuse(*plugin, "'" + text_of(*plugin) + "' must be one of " + names);
+  }
+  bool no_turn_sampled() const {
+    const Given* const given = find("wz_std");
+    return given && number_of(*given) == 0;
+  }
+
   /// The key with the limit of the acceleration; null if there is none. One limit holds in all directions, so
   /// it is the least one.
   const Given* least_acceleration() const {
-    const Given* const model = find("motion_model");
-    const bool omni = model && text_of(*model) == "Omni";
+    const bool omni = model() == "Omni";
     const Given* least = nullptr;
     for (const char* key : {"ax_max", "ax_min", "ay_max", "ay_min"}) {
       const Given* const given = key[1] == 'x' || omni ? find(key) : nullptr;

@@ -52,7 +52,7 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.max_reverse, {"max_reverse", "m/s", "largest speed backward", 0, 20});
   visit(o.max_sideways,
         {"max_sideways", "m/s", "largest speed to either side of an omnidirectional base", 0, 20});
-  visit(o.max_turn, {"max_turn", "rad/s", "largest yaw rate", 0.01, 20});
+  visit(o.max_turn, {"max_turn", "rad/s", "largest yaw rate; 0: the robot keeps its heading", 0, 20});
   visit(o.max_acceleration, {"max_acceleration", "m/s^2",
                              "largest change of a speed in each direction, also for braking", 0.01, 100});
   visit(o.max_turn_acceleration,
@@ -64,6 +64,11 @@ void visit_options(Options& o, Visit&& visit) {
          "time until a speed forward is driven: dead time, and the time constant of a lag", 0, 2});
   visit(o.delay_sideways, {"delay_sideways", "s", "the same for a speed to either side", 0, 2});
   visit(o.delay_turn, {"delay_turn", "s", "the same for a yaw rate", 0, 2});
+}
+
+/// Whether a base can turn without driving.
+inline bool turns_on_the_spot(const BaseOptions& base) noexcept {
+  return base.kind != BaseKind::ackermann && base.max_turn > 0;
 }
 
 /// The motion of a step: speeds in the robot's frame.

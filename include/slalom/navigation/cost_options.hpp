@@ -17,7 +17,7 @@ struct CostOptions {
   double clearance_falloff = 8;
   double reverse = 1.5;
   double sideways = 0.2;
-  double turning = 0.2;
+  double turning = 1;
   double unknown = 1;
   double goal_heading = 3;
   double goal_reach = 0.5;

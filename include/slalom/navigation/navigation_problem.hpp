@@ -167,7 +167,8 @@ class NavigationProblem {
     const bool exact = steers<Base> && maps.ends_leg;
     path_weight_ = exact ? exact_path * static_cast<double>(costs_.path) : static_cast<double>(costs_.path);
     heading_weight_ = maps.turns ? 0.0 : (exact ? exact_heading : 1.0) * static_cast<double>(costs_.heading);
-    turning_weight_ = (exact ? 0.0 : 1.0) * static_cast<double>(costs_.turning);
+    turning_weight_ = (exact ? 0.0 : maps.turns ? on_the_spot : 1.0) * static_cast<double>(costs_.turning);
+    drift_weight_ = maps.turns ? drift * static_cast<double>(step_) : 0.0;
     turn_weight_ = maps.turns ? costs_.goal_heading : Coefficient(0);
     near_goal_ = maps.ends_at_goal ? Coefficient(1) : Coefficient(0);
   }
@@ -219,7 +220,8 @@ class NavigationProblem {
         T(1) - T(direction_) * (seen.cosine * seen.path_cosine + seen.sine * seen.path_sine);
     const T turn_left = abs(x.yaw - T(end_yaw_));
     const Motion<T> motion = base_.motion(u);
-    const T moving = T(costs_.reverse) * max(T(0) - T(direction_) * motion.forward, T(0)) +
+    const T drifting = T(drift_weight_) * (square(motion.forward) + square(motion.left));
+    const T moving = drifting + T(costs_.reverse) * max(T(0) - T(direction_) * motion.forward, T(0)) +
                      T(costs_.sideways) * abs(motion.left) + T(turning_weight_) * square(motion.turn) +
                      T(costs_.unknown) * seen.price;
     const Cost<T> met = others_.cost(x.x, x.y, seen.sine, seen.cosine, k);
@@ -241,7 +243,9 @@ class NavigationProblem {
 
  private:
   static constexpr double farthest = 5;  ///< m of clearance; keeps the exponential in range
-  static constexpr double exact_path = 10, exact_heading = 5;  ///< factors of weights, see set_maps
+  static constexpr double exact_path = 10, exact_heading = 5,
+                          on_the_spot = 0.2;  ///< factors of weights, see set_maps
+  static constexpr double drift = 20;         ///< s/m^2, cost of the squared speed in a turn on the spot
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
 
   /// Weights times the duration of a step, as rollouts use them.
@@ -280,7 +284,7 @@ class NavigationProblem {
   GridView<4> path_;
   maps::MovingObstaclesView others_;
   Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, path_weight_, heading_weight_,
-      turning_weight_, turn_weight_, near_goal_;
+      turning_weight_, drift_weight_, turn_weight_, near_goal_;
 };
 
 }  // namespace slalom::navigation
