@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "navigation/base_model.hpp"
 #include "navigation/command_delay.hpp"
@@ -69,6 +70,7 @@ class Navigator::Implementation {
  private:
   bool fits(const Costmap& costmap) const noexcept;
   bool watch_commands(const Velocity& velocity, double elapsed) noexcept;
+  double room_at(const Costmap& costmap, const maps::Pose& pose) const noexcept;
   bool plan_collides(const Costmap& costmap, const Velocity& velocity) const noexcept;
   NavigationResult plan(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                         double elapsed) noexcept;
@@ -113,8 +115,18 @@ bool Navigator::Implementation::watch_commands(const Velocity& velocity, double 
   return ignored_for_ > ignored_after + delay_.longest();
 }
 
+/// The room of a body that overlaps an obstacle, m: the less, the deeper it is in it.
+double Navigator::Implementation::room_at(const Costmap& costmap, const maps::Pose& pose) const noexcept {
+  double room = std::numeric_limits<double>::infinity();
+  for (const Footprint::Part& part : footprint_.parts()) {
+    const maps::Point middle = maps::transform(pose, part.middle);
+    room = std::min(room, costmap.distance(middle.x, middle.y) - part.contained);
+  }
+  return room;
+}
+
 /// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that
-/// overlaps an obstacle already may leave it.
+/// overlaps an obstacle already may leave it, but not go deeper into it.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
@@ -123,7 +135,11 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   const std::size_t last = std::min(
       plan.size() - 1, saturate_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
   if (others_.meet(plan, last)) return true;
-  if (costmap.collides(footprint_, plan.front())) return false;
+  if (costmap.collides(footprint_, plan.front())) {
+    const double begin = room_at(costmap, plan.front()) - 0.5 * costmap.geometry().resolution;
+    return std::any_of(plan.begin() + 1, plan.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                       [&](const maps::Pose& pose) { return room_at(costmap, pose) < begin; });
+  }
   for (std::size_t i = 1; i <= last; ++i)
     if (costmap.collides(footprint_, plan[i - 1], plan[i])) return true;
   return false;

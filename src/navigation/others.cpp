@@ -13,6 +13,7 @@ namespace {
 constexpr double waits_for = 2;       // m from the robot to moving objects for which it may wait
 constexpr double foresight = 5;       // s, in which meetings are found
 constexpr double along_path = 0.7;    // cosine of the angle to the path, of those who go along it
+constexpr double noticed = 0.005;     // m by which a robot comes nearer to somebody
 constexpr double passing_room = 0.1;  // m, more than the margin, so that a way past somebody is kept
 
 /// The box around the footprint, and the costs of plans beside others.
@@ -56,8 +57,9 @@ Others::Others(const Footprint& footprint, const NavigatorOptions& options, std:
     : time_step_(options.time_step),
       speed_(options.base.max_forward),
       half_width_(footprint.half_width() + options.costs.others_margin),
-      obstacles_(options_of(footprint, options), static_cast<int>(steps)),
-      bodies_(without_margins(options_of(footprint, options)), static_cast<int>(steps)) {}
+      body_(options_of(footprint, options)),
+      obstacles_(body_, static_cast<int>(steps)),
+      bodies_(without_margins(body_), static_cast<int>(steps)) {}
 
 bool Others::are_near(const maps::Point& robot) const noexcept {
   const auto taken = obstacles_.taken();
@@ -96,8 +98,27 @@ std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, dou
   return first;
 }
 
+/// Whether the plan comes within the margin of the place where an object is now, or nearer if the robot is
+/// there already: people stop at once.
+bool Others::comes_close(std::span<const maps::Pose> plan, std::size_t last) const noexcept {
+  for (const maps::PredictedObstacle* const other : obstacles_.taken()) {
+    const maps::Pose& now = other->poses.front().pose;
+    const auto gap = [&](const maps::Pose& robot) {
+      const maps::Point at = maps::inverse_transform(robot, {now.x, now.y});
+      return std::hypot(at.x - std::clamp(at.x, -body_.rear, body_.front),
+                        at.y - std::clamp(at.y, -0.5 * body_.width, 0.5 * body_.width));
+    };
+    const double least =
+        std::min(gap(plan.front()) - noticed, 0.5 * std::max(other->length, other->width) + body_.margin);
+    for (std::size_t i = 1; i <= last; ++i)
+      if (gap(plan[i]) < least) return true;
+  }
+  return false;
+}
+
 bool Others::meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept {
-  return collides(obstacles_.view(), plan, last) || collides(bodies_.view(), plan, last);
+  return collides(obstacles_.view(), plan, last) || collides(bodies_.view(), plan, last) ||
+         comes_close(plan, last);
 }
 
 }  // namespace slalom::navigation::detail

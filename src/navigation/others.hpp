@@ -36,15 +36,18 @@ class Others {
   std::optional<ClosedPlace> meeting(std::span<const maps::Pose> path, double step) const noexcept;
   /// Whether the plan, up to the pose with this index, comes into the margins of an object or collides with
   /// one. A robot that is within the margins already may leave them, and one that collides may move away, but
-  /// a robot within the margins must not collide.
+  /// a robot within the margins must not collide, nor come nearer to where the object is now.
   bool meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept;
 
  private:
-  double time_step_;                 ///< s
-  double speed_;                     ///< m/s, at which the robot follows paths
-  double half_width_;                ///< m, of the robot, with the margin
-  maps::MovingObstacles obstacles_;  ///< obstacles with margins and deviations
-  maps::MovingObstacles bodies_;     ///< obstacles without them
+  bool comes_close(std::span<const maps::Pose> plan, std::size_t last) const noexcept;
+
+  double time_step_;                  ///< s
+  double speed_;                      ///< m/s, at which the robot follows paths
+  double half_width_;                 ///< m, of the robot, with the margin
+  maps::MovingObstacleOptions body_;  ///< the robot's, with margins
+  maps::MovingObstacles obstacles_;   ///< obstacles with margins and deviations
+  maps::MovingObstacles bodies_;      ///< obstacles without them
 };
 
 }  // namespace slalom::navigation::detail

@@ -28,7 +28,7 @@ void set(SolverOptions& options, const char* name, const Type& value) {
 /// Sets the options that methods share, where a method has them.
 void set_shared(SolverOptions& options, const BaseOptions& base) {
   set(options, "horizon", 56);
-  set(options, "samples", 2000);
+  set(options, "samples", 3000);
   set(options, "temperature", 0.1);
   set(options, "variance", variances(base, 0.4, 0.2));
   set(options, "gradient_variance", variances(base, 0.1));
@@ -58,6 +58,7 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   options.guides.restart_variance = variances(base, 0.4);
   options.guides.step = variances(base, 0.06);  // about a third of a step to the samples' mean
   options.guides.gradient_temperature = options.temperature;
+  options.guides.count = 1;  // the best of several changes from solve to solve, and with it the variances
   options.guides.iterations = 2;
   options.guides.gradient_samples = 64;
   return options;

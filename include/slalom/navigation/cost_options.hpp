@@ -17,14 +17,14 @@ struct CostOptions {
   double clearance_falloff = 8;
   double reverse = 1.5;
   double sideways = 0.2;
-  double turning = 1;
+  double turning = 0.2;
   double unknown = 1;
   double goal_heading = 3;
   double goal_reach = 0.5;
   double collision = 500;
   double others_margin = 0.1;
   double others_reach = 0.4;
-  double others = 10;
+  double others = 20;
   double others_probability = 0.2;
 };
 

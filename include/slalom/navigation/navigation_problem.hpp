@@ -167,7 +167,7 @@ class NavigationProblem {
     const bool exact = steers<Base> && maps.ends_leg;
     path_weight_ = exact ? exact_path * static_cast<double>(costs_.path) : static_cast<double>(costs_.path);
     heading_weight_ = maps.turns ? 0.0 : (exact ? exact_heading : 1.0) * static_cast<double>(costs_.heading);
-    turning_weight_ = (exact ? 0.0 : maps.turns ? on_the_spot : 1.0) * static_cast<double>(costs_.turning);
+    turning_weight_ = (exact ? 0.0 : 1.0) * static_cast<double>(costs_.turning);
     drift_weight_ = maps.turns ? drift * static_cast<double>(step_) : 0.0;
     turn_weight_ = maps.turns ? costs_.goal_heading : Coefficient(0);
     near_goal_ = maps.ends_at_goal ? Coefficient(1) : Coefficient(0);
@@ -243,9 +243,8 @@ class NavigationProblem {
 
  private:
   static constexpr double farthest = 5;  ///< m of clearance; keeps the exponential in range
-  static constexpr double exact_path = 10, exact_heading = 5,
-                          on_the_spot = 0.2;  ///< factors of weights, see set_maps
-  static constexpr double drift = 20;         ///< s/m^2, cost of the squared speed in a turn on the spot
+  static constexpr double exact_path = 10, exact_heading = 5;  ///< factors of weights, see set_maps
+  static constexpr double drift = 20;  ///< s/m^2, cost of the squared speed in a turn on the spot
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
 
   /// Weights times the duration of a step, as rollouts use them.

@@ -14,7 +14,7 @@
 
 namespace slalom::navigation {
 
-/// The options of `svg_mppi` for a base with these limits: 2000 samples of 56 steps, with standard deviations
+/// The options of `svg_mppi` for a base with these limits: 3000 samples of 56 steps, with standard deviations
 /// in proportion to the largest speeds of the base.
 SvgMppiOptions svg_mppi_options(const BaseOptions& base);
 /// The options of `mppi` for such a base.
