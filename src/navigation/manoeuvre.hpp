@@ -16,7 +16,7 @@ struct Manoeuvre {
     double length = 0;  ///< m, negative in reverse
     int steering = 0;   ///< 1 to the left, -1 to the right, 0 straight
   };
-  /// What the base can drive.
+  /// Limits of the base.
   struct Limits {
     double radius = 1;         ///< m, least of an arc
     bool can_reverse = false;  ///< whether it drives backward

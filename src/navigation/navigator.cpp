@@ -16,7 +16,7 @@ namespace slalom::navigation {
 namespace {
 
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
-constexpr int first_solves = 5;         // of the first plan on a leg
+constexpr int first_solves = 5;         // solves of the first plan on a leg
 constexpr double least_command = 0.05;  // m/s and rad/s, of commands that move a robot
 constexpr double share_followed = 0.2;  // least share of a command that a robot follows
 constexpr double ignored_after = 0.8;   // s
