@@ -7,6 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom {
 namespace {
 
@@ -33,7 +35,7 @@ std::string number_text(double value) {
 /// A value as people write it: 100000000, not 1e+08.
 std::string shown(double value) {
   const bool whole = std::abs(value) < 1e15 && value == std::floor(value);
-  return whole ? std::to_string(static_cast<std::int64_t>(value)) : number_text(value);
+  return whole ? std::to_string(saturate_cast<std::int64_t>(value)) : number_text(value);
 }
 
 /// "section.option", or the option alone.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom {
 namespace {
 
@@ -51,7 +53,7 @@ void sort_worst_first(VariantCosts& costs, int variants, int worst, int count) n
 void conditional_value_at_risk(VariantCosts& costs, int variants, int count, double tail,
                                float* to) noexcept {
   const double counted = std::clamp(tail * variants, 1e-3, static_cast<double>(variants));
-  const int worst = static_cast<int>(std::ceil(counted));
+  const int worst = saturate_cast<int>(std::ceil(counted));
   sort_worst_first(costs, variants, worst, count);
   add_weighted(
       costs, worst, count, [&](int m) { return static_cast<float>(std::min(counted - m, 1.0) / counted); },

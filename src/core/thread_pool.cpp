@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "slalom/core/instruction_set.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom {
 
@@ -118,7 +119,7 @@ struct ThreadPool::Shared {
     // Taking tasks of two microseconds from a thread at work costs more: their data move twice.
     const double each = std::chrono::duration<double, std::micro>(Clock::now() - start).count() / done;
     const std::uint32_t few =
-        done == 0 || each > 2 ? 0 : static_cast<std::uint32_t>(2 / std::max(each, 1e-3));
+        done == 0 || each > 2 ? 0 : saturate_cast<std::uint32_t>(2 / std::max(each, 1e-3));
     for (std::size_t i = 1; i < ranges.size(); ++i) {
       const std::size_t owner = (self + i) % ranges.size();
       for (; ranges[owner].take_last(of_round, few, task); ++done) run_task(owner, task);

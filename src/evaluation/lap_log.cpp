@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/read_file.hpp"
 
 namespace slalom::evaluation {
@@ -81,7 +82,7 @@ class NumberTable {
       throw IoError(file_, number_,
                     column + ": " + cells_[columns_.at(column)] + " must be a whole number in [0, " +
                         std::to_string(most) + "]");
-    return static_cast<int>(value);
+    return saturate_cast<int>(value);
   }
 
  private:
@@ -117,7 +118,7 @@ LapLog read_lap_log(const std::filesystem::path& file) {
       throw IoError(log.file, 0, "has more than " + std::to_string(max_log_laps) + " laps");
     log.successes += table.count("success", 1);
     log.lap_collisions.push_back(table.count("collision", 100000));
-    log.collisions += static_cast<std::int64_t>(log.lap_collisions.back());
+    log.collisions += saturate_cast<std::int64_t>(log.lap_collisions.back());
     if (table.has("seed")) log.seeds.push_back(table.number("seed"));
     if (table.has("timeout")) log.timeouts += table.count("timeout", 1);
     log.ms.push_back(table.number("state_cost") + table.number("collision_cost"));
@@ -165,7 +166,7 @@ std::optional<LapLog> laps_with_seeds(const LapLog& log, const std::vector<LapRo
     const auto lap = static_cast<std::size_t>(found - log.seeds.begin());
     laps.ms.push_back(log.ms[lap]);
     laps.lap_collisions.push_back(log.lap_collisions[lap]);
-    laps.collisions += static_cast<std::int64_t>(log.lap_collisions[lap]);
+    laps.collisions += saturate_cast<std::int64_t>(log.lap_collisions[lap]);
     ++laps.laps;
   }
   return laps;
@@ -207,7 +208,7 @@ LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, c
     c.ms_p = permutation_difference_p(measured, theirs.ms);
   if (obstacles > 0) {
     const auto our_collisions =
-        static_cast<std::int64_t>(std::accumulate(collisions.begin(), collisions.end(), 0.0));
+        saturate_cast<std::int64_t>(std::accumulate(collisions.begin(), collisions.end(), 0.0));
     const std::int64_t our_chances = std::int64_t{obstacles} * c.our_laps,
                        chances = std::int64_t{obstacles} * c.laps, all = std::int64_t{obstacles} * log.laps;
     c.collision_rate = static_cast<double>(log.collisions) / static_cast<double>(all);

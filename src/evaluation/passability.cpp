@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::evaluation {
 namespace {
 
@@ -15,7 +17,7 @@ class Window {
          const PassabilityOptions& options)
       : track_(track), bodies_(bodies), radius_(options.radius), reach_(options.window), centre_(centre) {
     resolution_ = track.grid().resolution;
-    half_ = static_cast<int>(std::ceil(options.window / resolution_));
+    half_ = saturate_cast<int>(std::ceil(options.window / resolution_));
     side_ = 2 * half_ + 1;
     seen_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
   }
@@ -61,9 +63,9 @@ class Window {
 
   /// The free cell nearest to a point, within 1 m, since another body may stand on the path.
   std::optional<int> nearest_free(const maps::Point& at) const {
-    const int column = half_ + static_cast<int>(std::lround((at.x - centre_.x) / resolution_)),
-              row = half_ + static_cast<int>(std::lround((at.y - centre_.y) / resolution_)),
-              most = static_cast<int>(std::ceil(1 / resolution_));
+    const int column = half_ + saturate_cast<int>(std::round((at.x - centre_.x) / resolution_)),
+              row = half_ + saturate_cast<int>(std::round((at.y - centre_.y) / resolution_)),
+              most = saturate_cast<int>(std::ceil(1 / resolution_));
     std::optional<int> best;
     int best_square = most * most + 1;
     for (int r = std::max(0, row - most); r <= std::min(side_ - 1, row + most); ++r) {

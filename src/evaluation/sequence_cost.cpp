@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/vehicle/published/options.hpp"
@@ -72,7 +73,7 @@ struct SequenceCostMeter::Implementation {
         own(make_vehicle_model(m)),
         paper(make_vehicle_model(vehicle::published::vehicle_options())),
         states(std::max<std::size_t>(
-                   static_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9)), steps) +
+                   saturate_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9)), steps) +
                1),
         inputs((states.size() - 1) * static_cast<std::size_t>(own->inputs())) {}
 
@@ -127,7 +128,7 @@ struct SequenceCostMeter::Implementation {
     const auto width = static_cast<std::size_t>(output.inputs_per_step),
                taken = static_cast<std::size_t>(used);
     for (std::size_t k = 0; k < count; ++k) {
-      const auto i = static_cast<std::size_t>(static_cast<double>(k) * spacing / model.time_step + 1e-9);
+      const auto i = saturate_cast<std::size_t>(static_cast<double>(k) * spacing / model.time_step + 1e-9);
       const std::size_t step = std::min(i, output.inputs.size() / width - 1);
       std::copy_n(&output.inputs[step * width], taken, &inputs[k * taken]);
     }
@@ -185,7 +186,7 @@ SequenceCostMeter::Cost SequenceCostMeter::planned(const vehicle::PlannerOutput&
   const double reached = static_cast<double>(output.predicted.size() - 1) * m.model.time_step;
   if (reached >= steps * time_step - 1e-9) return m.cost_of(resampled(output.predicted, m.model.time_step));
   const auto count = m.states.size() - 1;
-  const auto needed = static_cast<std::size_t>(std::ceil(steps * time_step / m.model.time_step - 1e-9));
+  const auto needed = saturate_cast<std::size_t>(std::ceil(steps * time_step / m.model.time_step - 1e-9));
   return m.cost_of(m.predict(*m.own, output,
                              m.held(output, m.own->inputs(), std::min(needed, count), m.model.time_step),
                              m.model.time_step));

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/random.hpp"
 
 namespace slalom::evaluation {
@@ -15,7 +16,7 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t draw_index(RandomStream& random, std::size_t count) {
-  return std::min(count - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
+  return std::min(count - 1, saturate_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
 }
 
 /// The 2.5 and 97.5 percentiles, by linear interpolation. NaN without values.
@@ -37,7 +38,7 @@ double nearest_rank(std::span<const Number> values, double share) {
   // A product that is whole but for rounding is that rank.
   const double count = static_cast<double>(values.size()), rank = std::ceil(share * count - 1e-9);
   std::vector<Number> ranked(values.begin(), values.end());
-  const auto at = ranked.begin() + static_cast<std::ptrdiff_t>(std::clamp(rank, 1.0, count)) - 1;
+  const auto at = ranked.begin() + saturate_cast<std::ptrdiff_t>(std::clamp(rank, 1.0, count)) - 1;
   std::nth_element(ranked.begin(), at, ranked.end());
   return static_cast<double>(*at);
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/option_access.hpp"
 #include "solvers/all_finite.hpp"
 
@@ -229,7 +230,7 @@ bool FeedbackGains::solve(double time_step) noexcept {
 void FeedbackGains::input_at(double t, std::span<const double> x, std::span<double> u) const noexcept {
   // Rounding of a multiple of the time step does not lead to the step before.
   const double position = std::isfinite(t) ? std::clamp(t / time_step_, 0.0, static_cast<double>(steps_)) : 0;
-  const int k = std::min(static_cast<int>(position + 1e-9), steps_ - 1);
+  const int k = std::min(saturate_cast<int>(position + 1e-9), steps_ - 1);
   const double share = position - k;
   const bool follow = std::isfinite(t) && all_finite(x);
   const double* const from = plan_states_.data() + count(k, states_);

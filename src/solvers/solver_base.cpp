@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/solvers/option_groups.hpp"
 
@@ -39,7 +40,7 @@ void shift_rows(const Real* sequence, int steps, int inputs, double shift, Real*
   const double last = steps - 1;
   for (int k = 0; k < steps; ++k) {
     const double at = std::min(k + shift, last);
-    const int before = static_cast<int>(at);
+    const int before = saturate_cast<int>(at);
     const int after = std::min(before + 1, steps - 1);
     const Real part = static_cast<Real>(at - before);
     for (int i = 0; i < inputs; ++i) {

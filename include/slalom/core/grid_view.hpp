@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "slalom/core/math.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom {
 
@@ -131,7 +132,7 @@ class GridView {
     const T from_edge = -((position - static_cast<T>(center)) - half);
     if (!(from_edge >= T(0) && from_edge < length)) return 0;
     const int cell =
-        static_cast<int>(-(((position - half) - static_cast<T>(center)) / static_cast<T>(resolution_)));
+        saturate_cast<int>(-(((position - half) - static_cast<T>(center)) / static_cast<T>(resolution_)));
     return std::min(cell, count - 1) + 1;
   }
   /// Truncates; negative values and NaN become huge as unsigned numbers and are clamped into the ring with

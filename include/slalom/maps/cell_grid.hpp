@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "slalom/core/grid_view.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/sequence_batch.hpp"
 
 namespace slalom::maps {
@@ -39,7 +40,7 @@ struct GridGeometry {
     const double length = resolution * count, half = 0.5 * length;
     const double from_edge = -((position - center) - half);
     if (!(from_edge >= 0 && from_edge < length)) return -1;
-    const int i = static_cast<int>(-(((position - half) - center) / resolution));
+    const int i = saturate_cast<int>(-(((position - half) - center) / resolution));
     return i < count ? i : count - 1;
   }
 };

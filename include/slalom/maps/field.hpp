@@ -8,6 +8,7 @@
 
 #include "slalom/core/derivatives/dual_math.hpp"
 #include "slalom/core/grid_view.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 
@@ -116,7 +117,7 @@ class Field {
   template <Scalar T>
   CellValues<T> cell(T row, T column) const {
     const auto index = [](T position, int last) {
-      return position > T(0) ? static_cast<int>(std::min(position, static_cast<T>(last))) : 0;
+      return position > T(0) ? saturate_cast<int>(std::min(position, static_cast<T>(last))) : 0;
     };
     const float* c = cells_->at(index(row, geometry_.height) - 1, index(column, geometry_.width) - 1);
     return {static_cast<T>(c[0]), static_cast<T>(c[1]), static_cast<T>(c[2]), static_cast<T>(c[3])};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "slalom/core/final_check.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/polymorphic.hpp"
 #include "slalom/solvers/controlled.hpp"
 #include "slalom/solvers/registry.hpp"
@@ -262,7 +263,7 @@ class Controller {
     const double step = evaluator_.time_step();
     const double last = static_cast<double>(inputs_.size() - 1);
     if constexpr (Controlled::in_levels) {
-      const int applied = step > 0 ? static_cast<int>(std::min(std::round(elapsed / step), last)) : 0;
+      const int applied = step > 0 ? saturate_cast<int>(std::min(std::round(elapsed / step), last)) : 0;
       if (!std::exchange(told_, false))
         carry_remainder(problem(), solver_->result().inputs.data(), inputs_.data(), applied, previous_);
       else

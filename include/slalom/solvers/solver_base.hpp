@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/core/thread_pool.hpp"
@@ -94,7 +95,7 @@ class SolverBase : public Solver {
 
   /// The first index of the samples that are drawn around zero, if they are the fraction `share` of all.
   static int zero_mean_from(int samples, double share) noexcept {
-    return static_cast<int>((1.0 - share) * static_cast<double>(samples));
+    return saturate_cast<int>((1.0 - share) * static_cast<double>(samples));
   }
 
   SolveResult result_;  ///< the last result; `clone` points its spans into the copy

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "evaluation/lap_setup.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -54,7 +55,7 @@ PlannerUpdate PlanningDriver::decide(const sim::World& world) {
        .others = update.others});
   const double time_step = world.options().time_step;
   const auto delay = std::llround(latency_ / time_step) +
-                     static_cast<long long>(std::ceil(extra_latency_ / time_step - 1e-9));
+                     saturate_cast<long long>(std::ceil(extra_latency_ / time_step - 1e-9));
   pending_.emplace_back(world.steps() + delay, rules_->command(update.output->command));
   return update;
 }

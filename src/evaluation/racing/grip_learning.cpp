@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::evaluation {
 namespace {
 
@@ -49,7 +51,7 @@ GripLearning::GripLearning(double length, double start, int parts, double belief
 int GripLearning::part_at(double distance) const noexcept {
   const double way = std::fmod(start_ + std::max(distance, 0.0), length_) / length_;
   const auto parts = static_cast<int>(next_.size());
-  return std::min(static_cast<int>(way * parts), parts - 1);
+  return std::min(saturate_cast<int>(way * parts), parts - 1);
 }
 
 /// m/s^2, the acceleration that each part took; 0 where the lap did not come.
@@ -62,7 +64,7 @@ std::vector<double> GripLearning::use(const RacingLap& lap) const {
   for (std::vector<double>& part : accelerations) {
     std::sort(part.begin(), part.end());
     const double rank = use_quantile * (static_cast<double>(part.size()) - 1);
-    used.push_back(part.empty() ? 0 : part[static_cast<std::size_t>(std::lround(std::max(rank, 0.0)))]);
+    used.push_back(part.empty() ? 0 : part[saturate_cast<std::size_t>(std::round(std::max(rank, 0.0)))]);
   }
   return used;
 }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/option_access.hpp"
 #include "slalom/evaluation/race.hpp"
 #include "slalom/vehicle/course/speed_profile.hpp"
 
@@ -70,7 +71,7 @@ void start_from_rest(std::vector<ProfilePoint>& points, double grip) {
 }  // namespace
 
 RacingLap profile_lap(const LapSetup& setup, bool standing, double grip) {
-  if (!(grip > 0)) throw std::invalid_argument("grip: " + std::to_string(grip) + " must be above 0");
+  if (!(grip > 0)) throw std::invalid_argument("grip: " + to_text(grip) + " must be above 0");
   const Environment& environment = *setup.environment;
   const double length = setup.length();
   const maps::Pose start = setup.start();

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "evaluation/rooms/mover_watch.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/drive.hpp"
@@ -313,7 +314,7 @@ RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std
                      double timeout) {
   slalom::detail::check("drive", {"timeout", "s", "time after which a drive ends", 0.001, 86400}, timeout);
   RoomRun run(scenario, driver, seed);
-  const int periods = static_cast<int>(std::ceil(timeout / room_period));
+  const int periods = saturate_cast<int>(std::ceil(timeout / room_period));
   for (int i = 0; i < periods && run.step(i * room_period); ++i) {
   }
   return run.result();

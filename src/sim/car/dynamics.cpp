@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slalom/core/gravity.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::sim {
 namespace {
@@ -165,7 +166,7 @@ int substeps(const CarParameters& car, const DynamicsOptions& options, double ti
   const double yaw_decay = scale * car.mass / car.inertia * (lf * lf * front + lr * lr * rear);
   const double slip_decay = scale * (front + rear);
   const double stable = options.integrator == Integrator::euler ? 1.0 : 2.4;  // below the bounds 2 and 2.785
-  return std::max(1, static_cast<int>(std::ceil(time_step * std::max(yaw_decay, slip_decay) / stable)));
+  return std::max(1, saturate_cast<int>(std::ceil(time_step * std::max(yaw_decay, slip_decay) / stable)));
 }
 
 }  // namespace slalom::sim

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::sim {
 namespace {
 
@@ -48,7 +50,7 @@ Plant::Plant(const CarParameters& car, const PlantOptions& options, double time_
   slalom::detail::check("plant", {"time_step", "s", "", 1e-5, 0.1}, time_step);
   if (options.actuation.gym)
     slalom::detail::check("car", {"speed_min", "m/s", "", -1000, -1e-3}, car.speed_min);
-  on_the_way_.assign(static_cast<std::size_t>(std::lround(options.steering_dead_time / time_step)), 0.0);
+  on_the_way_.assign(saturate_cast<std::size_t>(std::round(options.steering_dead_time / time_step)), 0.0);
   options_.dynamics.substeps = substeps(car, options.dynamics, time_step);
 }
 

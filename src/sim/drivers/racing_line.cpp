@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 
 namespace slalom::sim {
@@ -30,7 +31,7 @@ std::vector<maps::Point> points_of(std::span<const PathPoint> path) {
 
 /// Samples of the path at equal distances.
 std::vector<maps::Point> resampled(const LapPath& path) {
-  const auto count = std::max<std::size_t>(8, static_cast<std::size_t>(path.length() / usual_spacing));
+  const auto count = std::max<std::size_t>(8, saturate_cast<std::size_t>(path.length() / usual_spacing));
   std::vector<maps::Point> points;
   for (std::size_t i = 0; i < count; ++i) {
     const maps::Pose pose = path.at(path.length() * static_cast<double>(i) / static_cast<double>(count));
@@ -145,7 +146,7 @@ bool RacingLine::find_way(std::span<const std::uint8_t> free) {
 void RacingLine::find_room(std::span<const std::uint8_t> free) {
   const std::size_t count = points_.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const int lane = static_cast<int>(std::lround(points_[i].offset / lane_step)) + lanes_aside;
+    const int lane = saturate_cast<int>(std::round(points_[i].offset / lane_step)) + lanes_aside;
     int first = lane, last = lane;
     while (first > 0 && free[i * lanes + static_cast<std::size_t>(first - 1)]) --first;
     while (last + 1 < lanes && free[i * lanes + static_cast<std::size_t>(last + 1)]) ++last;

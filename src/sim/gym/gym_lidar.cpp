@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/gym/gym_distance.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim {
@@ -42,9 +43,9 @@ struct Field {
     const double gx = dx * cosine + dy * sine, gy = -dx * sine + dy * cosine;
     if (gx < 0 || gy < 0 || !(gx < width * resolution) || !(gy < height * resolution))
       return distance[static_cast<std::size_t>(width) * static_cast<std::size_t>(height) - 1];
-    const auto column = static_cast<std::size_t>(gx / resolution),
-               row = static_cast<std::size_t>(gy / resolution);
-    return distance[row * static_cast<std::size_t>(width) + column];
+    const int column = saturate_cast<int>(gx / resolution), row = saturate_cast<int>(gy / resolution);
+    return distance[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(column)];
   }
 
   const double* distance;
@@ -97,8 +98,8 @@ Lidar::Window Lidar::gym_window(const maps::Pose& sensor, const Box& box) const 
     // The beams stand evenly, so the nearest is one of the few about where it should be.
     const double increment = options_.angle_increment(), last = static_cast<double>(options_.beams - 1);
     const double about = increment > 0 ? (-angle - angles_.front()) / increment : 0;
-    const auto begin = angles_.begin() + static_cast<std::ptrdiff_t>(std::clamp(about - 2, 0.0, last)),
-               end = angles_.begin() + static_cast<std::ptrdiff_t>(std::clamp(about + 3, 0.0, last)) + 1;
+    const auto begin = angles_.begin() + saturate_cast<std::ptrdiff_t>(std::clamp(about - 2, 0.0, last)),
+               end = angles_.begin() + saturate_cast<std::ptrdiff_t>(std::clamp(about + 3, 0.0, last)) + 1;
     const auto nearest = std::min_element(begin, end, nearer);
     const int beam = static_cast<int>(nearest - angles_.begin());
     all.first = std::min(all.first, beam);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::sim {
 namespace {
 
@@ -38,7 +40,7 @@ struct Ziggurat {
     double right = tail;
     const double area = tail * density(tail) + std::sqrt(std::acos(0.0)) * std::erfc(tail / std::sqrt(2.0));
     const double foot = area / density(tail);
-    inside[0] = static_cast<std::uint64_t>(right / foot * scale);
+    inside[0] = saturate_cast<std::uint64_t>(right / foot * scale);
     inside[1] = 0;
     width[0] = foot / scale;
     width[layers - 1] = right / scale;
@@ -46,7 +48,7 @@ struct Ziggurat {
     height[layers - 1] = density(tail);
     for (int i = layers - 2; i >= 1; --i) {
       const double edge = std::sqrt(-2 * std::log(area / right + density(right)));
-      inside[static_cast<std::size_t>(i) + 1] = static_cast<std::uint64_t>(edge / right * scale);
+      inside[static_cast<std::size_t>(i) + 1] = saturate_cast<std::uint64_t>(edge / right * scale);
       right = edge;
       height[static_cast<std::size_t>(i)] = density(right);
       width[static_cast<std::size_t>(i)] = right / scale;

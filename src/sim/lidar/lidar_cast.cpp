@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "sim/lidar/scan.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim {
@@ -24,8 +25,8 @@ Lidar::Window Lidar::window(const maps::Pose& sensor, const maps::Point& middle,
     const double low = std::max(std::ceil((from - half) / increment - 1e-6), 0.0);
     const double high = std::min(std::floor((from + half) / increment + 1e-6), options_.beams - 1.0);
     if (low > high) return;
-    all.first = std::min(all.first, static_cast<int>(low));
-    all.last = std::max(all.last, static_cast<int>(high));
+    all.first = std::min(all.first, saturate_cast<int>(low));
+    all.last = std::max(all.last, saturate_cast<int>(high));
   };
   include(bearing);
   // A body that straddles the first beam shows its left part a turn earlier.

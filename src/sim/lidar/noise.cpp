@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/lidar/scan.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::sim {
 namespace {
@@ -28,7 +29,7 @@ void NormalNoise::add(std::span<float> ranges, int count, double deviation, doub
       .key1 = static_cast<std::uint32_t>(now >> 32),
       .deviation = static_cast<float>(deviation),
       .most = static_cast<float>(most),
-      .lost_below = static_cast<std::uint32_t>(std::min(dropout * 0x1p32, 0x1p32 - 1)),
+      .lost_below = saturate_cast<std::uint32_t>(std::min(dropout * 0x1p32, 0x1p32 - 1)),
       .count = count,
       .ranges = ranges.data()};
   detail::scan_kernels().noise(task);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/maps/laser_scan.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 /// The cells that cover a length. One that is a multiple of the resolution but for rounding takes no more.
 int cells_of(double length, double resolution) {
-  return static_cast<int>(std::ceil(length / resolution - 1e-9));
+  return saturate_cast<int>(std::ceil(length / resolution - 1e-9));
 }
 
 /// The way (m) along a ray from inside to the edge of the floor.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 
 namespace slalom::sim {
@@ -54,7 +55,7 @@ void Track::make_clearance() {
       const auto i =
           static_cast<std::size_t>(r + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c + 1);
       const double cells = std::min(field.distance[i], 500.0);
-      clearance_[i] = static_cast<std::int16_t>(cells * clearance_scale);
+      clearance_[i] = saturate_cast<std::int16_t>(cells * clearance_scale);
       if (outside(c, r) && !outside_is_wall_)
         clearance_[i] = exit;
       else if (stops(c, r))
@@ -70,14 +71,14 @@ maps::Point Track::to_cells(const maps::Point& point) const noexcept {
 bool Track::in_wall(const maps::Point& point) const noexcept {
   const maps::Point cell = to_cells(point);
   if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height)) return outside_is_wall_;
-  return clearance_at(static_cast<int>(cell.x), static_cast<int>(cell.y)) == wall;
+  return clearance_at(saturate_cast<int>(cell.x), saturate_cast<int>(cell.y)) == wall;
 }
 
 double Track::distance_to_wall(const maps::Point& point) const noexcept {
   const maps::Point cell = to_cells(point);
   if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height))
     return outside_is_wall_ ? 0 : std::numeric_limits<double>::infinity();
-  double nearest = distance_.at(static_cast<int>(cell.x), static_cast<int>(cell.y));
+  double nearest = distance_.at(saturate_cast<int>(cell.x), saturate_cast<int>(cell.y));
   if (outside_is_wall_)
     nearest = std::min(nearest, grid_.resolution * std::min(std::min(cell.x, grid_.width - cell.x),
                                                             std::min(cell.y, grid_.height - cell.y)));
@@ -89,7 +90,7 @@ bool Track::collides_with_wall(const Box& box) const noexcept {
   const double l = box.length / 2 / grid_.resolution, w = box.width / 2 / grid_.resolution;
   const bool inside = middle.x >= 0 && middle.y >= 0 && middle.x < grid_.width && middle.y < grid_.height;
   if (inside) {
-    const int free = clearance_at(static_cast<int>(middle.x), static_cast<int>(middle.y));
+    const int free = clearance_at(saturate_cast<int>(middle.x), saturate_cast<int>(middle.y));
     if (free > 0 && static_cast<double>(free) / clearance_scale > std::hypot(l, w)) return false;
   }
   const double yaw = box.pose.yaw - grid_.origin.yaw, c = std::cos(yaw), s = std::sin(yaw);
@@ -97,10 +98,10 @@ bool Track::collides_with_wall(const Box& box) const noexcept {
   if (outside_is_wall_ && !(middle.x - reach_x > 0 && middle.y - reach_y > 0 &&
                             middle.x + reach_x < grid_.width && middle.y + reach_y < grid_.height))
     return true;
-  const int left = static_cast<int>(std::max(0.0, std::floor(middle.x - reach_x)));
-  const int right = static_cast<int>(std::min(grid_.width - 1.0, std::floor(middle.x + reach_x)));
-  const int bottom = static_cast<int>(std::max(0.0, std::floor(middle.y - reach_y)));
-  const int top = static_cast<int>(std::min(grid_.height - 1.0, std::floor(middle.y + reach_y)));
+  const int left = saturate_cast<int>(std::max(0.0, std::floor(middle.x - reach_x)));
+  const int right = saturate_cast<int>(std::min(grid_.width - 1.0, std::floor(middle.x + reach_x)));
+  const int bottom = saturate_cast<int>(std::max(0.0, std::floor(middle.y - reach_y)));
+  const int top = saturate_cast<int>(std::min(grid_.height - 1.0, std::floor(middle.y + reach_y)));
   // The cells' own axes are settled by the loops' limits; left are the box's axes, along which a cell reaches
   // `half`.
   const double half = (std::abs(c) + std::abs(s)) / 2;

@@ -4,6 +4,7 @@
 
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/math.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::detail::kernels {
 
@@ -163,7 +164,7 @@ struct Finish {
       min_total = min(min_total, total);
       finite = finite + select(total < infinite, one, zero);
     }
-    return {least_of(min_cost), least_of(min_total), static_cast<int>(sum_of(finite))};
+    return {least_of(min_cost), least_of(min_total), saturate_cast<int>(sum_of(finite))};
   }
 };
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/solvers/cem_options.hpp"
 #include "slalom/solvers/icem_options.hpp"
 #include "solvers/sampling/sample_set.hpp"
@@ -26,7 +27,7 @@ std::vector<int> batch_sizes(int samples, int iterations, int elites, double dec
   double wanted = samples;
   while (static_cast<int>(sizes.size()) < iterations && sizes.back() > min_size && decay > 1) {
     wanted /= decay;
-    sizes.push_back(std::max(static_cast<int>(std::lround(wanted)), min_size));
+    sizes.push_back(std::max(saturate_cast<int>(std::round(wanted)), min_size));
   }
   return sizes;
 }
@@ -42,9 +43,9 @@ class CemSolver final : public SolverBase {
         name_(name),
         options_(options),
         memory_(memory),
-        elites_(std::clamp(static_cast<int>(std::lround(options.elite_share * options.samples)), 1,
+        elites_(std::clamp(saturate_cast<int>(std::round(options.elite_share * options.samples)), 1,
                            options.samples)),
-        max_kept_(static_cast<int>(std::lround(memory.kept_elite_share * elites_))),
+        max_kept_(saturate_cast<int>(std::round(memory.kept_elite_share * elites_))),
         order_(options.samples),
         kept_(static_cast<std::size_t>(max_kept_) * size()),
         mean_(size()),

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "solvers/methods/gaussian_fit.hpp"
 
 namespace slalom::detail {
@@ -145,7 +146,7 @@ void Guides::restart_others(RandomKey key) noexcept {
     for (int r = 0; r < rows_; ++r) {
       const int step = r / inputs_, input = r % inputs_;
       const double position = static_cast<double>(restart_intervals_ * step) / options_.horizon;
-      const int k = static_cast<int>(position);
+      const int k = saturate_cast<int>(position);
       const double part = position - k;
       // A horizon of fewer than four steps has no fourth knot and needs none.
       const int next = std::min(k + 1, options_.horizon - 1);
@@ -176,7 +177,7 @@ void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
   fill_normal(batch_, first * block_, (last - first) * block_, key);
   if (shape_.pinned()) shape_.apply(batch_, {first * block_, (last - first) * block_});
   const Rows rows = rows_of(batch_);
-  const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * gradient_samples_);
+  const int biased = saturate_cast<int>((1.0 - options_.zero_mean_share) * gradient_samples_);
   for (int g = first; g < last; ++g) {
     const Range block{g * block_, block_};
     kernels::sample(rows, rows,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "solvers/sampling/seek_temperature.hpp"
 
 namespace slalom::detail {
@@ -64,7 +65,7 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
   // If the temperature is adapted, the control term is stored separately, in units of the temperature.
   const bool seeks = weighting_.seeks();
   set_control_term(seeks ? 1.0 : weighting_.temperature(), mean, nominal, variance);
-  const int zero_mean_from = static_cast<int>((1.0 - zero_mean_share_) * samples_.samples());
+  const int zero_mean_from = saturate_cast<int>((1.0 - zero_mean_share_) * samples_.samples());
   const BatchStatistics statistics =
       samples_.draw_and_evaluate(evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from},
                                  seeks ? nullptr : linear_.data(), pool, deadline);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/random.hpp"
 
 namespace slalom::detail {
@@ -34,13 +35,13 @@ class Resampler {
     constexpr float unit = 0x1p40f;
     const auto count = static_cast<int>(running_.size());
     std::int64_t sum = 0;
-    for (int k = 0; k < count; ++k) sum += static_cast<std::int64_t>(weights[k] * unit);
+    for (int k = 0; k < count; ++k) sum += saturate_cast<std::int64_t>(weights[k] * unit);
     const double scale = wanted / static_cast<double>(sum);
     std::fill_n(mark_.begin(), wanted + 1, 0);
     std::int64_t running = 0;
     int begin = 0;
     for (int k = 0; k < count; ++k) {
-      const auto weight = static_cast<std::int64_t>(weights[k] * unit);
+      const auto weight = saturate_cast<std::int64_t>(weights[k] * unit);
       running += weight;
       running_[k] = running;
       const double at = running_[k] * scale - start;
@@ -63,7 +64,7 @@ class Resampler {
     for (int k = 0; k < wanted; ++k) {
       const double uniform = random() * 0x1p-32;
       const double at = uniform * sum;
-      int found = cut_[static_cast<int>(uniform * count)];
+      int found = cut_[saturate_cast<int>(uniform * count)];
       for (int i = 0; i < 2; ++i) found += running_[found] <= at;  // usually sufficient, and without a branch
       while (found + 1 < count && running_[found] <= at) ++found;
       indices[k] = std::min(found, count - 1);

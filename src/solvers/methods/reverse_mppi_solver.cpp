@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
@@ -27,7 +28,7 @@ class ReverseMppiSolver final : public SolverBase {
         samples_(options.horizon, inputs, options.samples),
         inflated_(
             options.horizon, inputs,
-            std::max(options.samples, static_cast<int>(std::lround(options.samples * options.inflation)))),
+            std::max(options.samples, saturate_cast<int>(std::round(options.samples * options.inflation)))),
         first_variance_(spread(options.variance)),
         min_variance_(spread(options.variance_min)),
         deviation_(size()),

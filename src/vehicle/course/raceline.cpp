@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/option_access.hpp"
 #include "vehicle/course/curve.hpp"
 
 namespace slalom::vehicle {
@@ -87,7 +88,7 @@ std::vector<double> minimum_curvature_offsets(const std::vector<maps::Point>& ce
   if (centre_line.size() < 8)
     throw std::invalid_argument("centre_line: " + std::to_string(centre_line.size()) +
                                 " points; at least 8 are needed");
-  if (!(bound >= 0)) throw std::invalid_argument("bound: " + std::to_string(bound) + " must be at least 0 m");
+  if (!(bound >= 0)) throw std::invalid_argument("bound: " + to_text(bound) + " must be at least 0 m");
   return solve(centre_line, detail::normals(centre_line), bound);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slalom/core/math.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
@@ -59,7 +60,7 @@ ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, cons
       friction_(friction),
       delay_(delay),
       period_(period),
-      window_(std::clamp(static_cast<int>(std::lround(window_time / period)), 2, Stretch::max_steps)),
+      window_(std::clamp(saturate_cast<int>(std::round(window_time / period)), 2, Stretch::max_steps)),
       log_prior_(HypothesisGrid::count),
       evidence_(log_prior_.size()),
       lateral_error_(log_prior_.size()),
@@ -100,7 +101,7 @@ void ParameterEstimator::turn_wheels(Moment& next) const noexcept {
   const auto sent = [&](int i) { return sent_[static_cast<std::size_t>(std::min(i, kept - 1))]; };
   for (int d = 0; d < delays; ++d) {
     const double periods = delay_at(d) / period_;
-    const int whole = static_cast<int>(periods + 1e-6);
+    const int whole = saturate_cast<int>(periods + 1e-6);
     const double older_share = std::max(0.0, periods - whole);
     double angle = ago(0).angle[static_cast<std::size_t>(d)];
     angle = dynamics_.lagged(angle, sent(whole + 1), older_share * period_);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "slalom/core/math.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
@@ -84,13 +85,13 @@ void StateObserver::send(const Command& command) noexcept {
 /// newest command was sent one period before these measurements.
 const Command& StateObserver::acting(double time, double delay) const noexcept {
   const double periods = std::ceil((delay - time) / period_) - 1;
-  return sent_[static_cast<std::size_t>(std::clamp(periods, 0.0, static_cast<double>(sent_.size() - 1)))];
+  return sent_[saturate_cast<std::size_t>(std::clamp(periods, 0.0, static_cast<double>(sent_.size() - 1)))];
 }
 
 /// Moves the car from `begin` to `end`, s after the last measurements.
 void StateObserver::move(const DynamicVehicleModel& model, VehicleStart& car, double begin,
                          double end) const noexcept {
-  const int pieces = static_cast<int>(std::ceil((end - begin) / piece - 1e-9));
+  const int pieces = saturate_cast<int>(std::ceil((end - begin) / piece - 1e-9));
   for (int i = 0; i < pieces; ++i) {
     const double dt = (end - begin) / pieces, middle = begin + (i + 0.5) * dt;
     car = model.advance(car, {acting(middle, delay_).steer, acting(middle, latency_).speed}, dt, friction_);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::vehicle::detail {
 
 /// Sums of weight over the occupied bins of (x, y, yaw), in a hash table of fixed size that is cleared in
@@ -63,7 +65,7 @@ class PoseBins {
     return (bin(x, per_meter_) << 42) ^ (bin(y, per_meter_) << 21) ^ bin(yaw, per_radian_);
   }
   static std::uint64_t bin(double value, double scale) noexcept {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value * scale)) + (1 << 20)) &
+    return static_cast<std::uint64_t>(saturate_cast<std::int64_t>(std::floor(value * scale) + (1 << 20))) &
            0x1fffff;
   }
 

@@ -10,6 +10,7 @@
 
 #include "localiser_bins.hpp"
 #include "localiser_sensor.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/maps/pose.hpp"
@@ -34,7 +35,7 @@ class FreeCells {
   }
   /// Uniform over the free space and all yaws; in the frame of the grid.
   maps::Pose random_pose(RandomStream& random) const noexcept {
-    const std::size_t at = static_cast<std::size_t>(random.uniform() * static_cast<double>(cells_.size()));
+    const std::size_t at = saturate_cast<std::size_t>(random.uniform() * static_cast<double>(cells_.size()));
     const int cell = static_cast<int>(cells_[at]);
     const int column = cell % width_, row = cell / width_;
     const double x = (column + random.uniform()) * resolution_;
@@ -243,7 +244,7 @@ class Particles {
   }
 
   int draw(double uniform) const noexcept {
-    int i = guide_[static_cast<std::size_t>(uniform * count_)];
+    int i = guide_[saturate_cast<std::size_t>(uniform * count_)];
     while (i + 1 < count_ && cumulative_[static_cast<std::size_t>(i)] <= uniform) ++i;
     return i;
   }

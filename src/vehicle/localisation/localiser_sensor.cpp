@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/option_access.hpp"
 #include "slalom/maps/distance_field.hpp"
 
 namespace slalom::vehicle::detail {
@@ -24,8 +26,8 @@ constexpr std::size_t max_entries = std::size_t{1} << 27;
 
 maps::GridGeometry geometry_of(const maps::OccupancyGrid& map, double resolution) {
   const double length = map.width * map.resolution, width = map.height * map.resolution;
-  const int rows = std::max(1, static_cast<int>(std::ceil(length / resolution - 1e-9)));
-  const int columns = std::max(1, static_cast<int>(std::ceil(width / resolution - 1e-9)));
+  const int rows = std::max(1, saturate_cast<int>(std::ceil(length / resolution - 1e-9)));
+  const int columns = std::max(1, saturate_cast<int>(std::ceil(width / resolution - 1e-9)));
   return {rows, columns, resolution, 0.5 * rows * resolution, 0.5 * columns * resolution};
 }
 
@@ -46,8 +48,8 @@ double cast(const maps::DistanceField& walls, double x, double y, double dx, dou
   double travelled = 0;  // cells
   const double end = most / walls.resolution;
   while (travelled < end) {
-    const int column = static_cast<int>(std::floor(x + travelled * dx));
-    const int row = static_cast<int>(std::floor(y + travelled * dy));
+    const int column = saturate_cast<int>(std::floor(x + travelled * dx));
+    const int row = saturate_cast<int>(std::floor(y + travelled * dy));
     if (column < 0 || row < 0 || column >= walls.width || row >= walls.height) return most;
     const double clear = walls.at(column, row) / walls.resolution;
     if (clear <= 0) return travelled * walls.resolution;
@@ -68,7 +70,7 @@ const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
   require(map.cells.size() == static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height),
           "map cells: " + std::to_string(map.cells.size()) + ": must be width x height");
   require(std::isfinite(map.resolution) && map.resolution > 0,
-          "map resolution: " + std::to_string(map.resolution) + ": must be finite and > 0");
+          "map resolution: " + to_text(map.resolution) + ": must be finite and > 0");
   require(std::isfinite(map.origin.x + map.origin.y + map.origin.yaw), "map origin: must be finite");
   require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::free) > 0,
           "map: must have a free cell");
@@ -115,7 +117,7 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
 
   const double scale = 1 / map.resolution;
   const auto is_free = [&](double x, double y) {
-    const int column = static_cast<int>(x * scale), row = static_cast<int>(y * scale);
+    const int column = saturate_cast<int>(x * scale), row = saturate_cast<int>(y * scale);
     return map.contains(column, row) && map.at(column, row) == maps::Occupancy::free;
   };
   std::vector<maps::Point> origins{{}};
@@ -140,7 +142,7 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(a) / static_cast<double>(angles);
       const double range = cast(walls, origins[i].x * scale, origins[i].y * scale, std::cos(angle),
                                 std::sin(angle), options_.range_cap);
-      ranges[a] = static_cast<std::uint32_t>(std::min(65535.0, range / options_.range_cap * 65535));
+      ranges[a] = saturate_cast<std::uint32_t>(std::min(65535.0, range / options_.range_cap * 65535));
     }
     for (std::size_t a = 0; a < angles; ++a)
       table_.pairs[i * angles + a] = ranges[a] | (ranges[(a + 1) % angles] << 16);

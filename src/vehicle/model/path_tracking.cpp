@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/vehicle/model/kinematic.hpp"
 
 namespace slalom::vehicle {
@@ -31,7 +32,7 @@ void TrackingCost::set_conditions(const DrivingConditions& conditions) noexcept 
 
 SteeringActuator::SteeringActuator(const PathTrackingOptions& options, bool exact)
     : hold_(options.hold_first_input),
-      held_steps_(hold_ ? static_cast<int>(std::ceil(options.dead_time / options.time_step)) : 0),
+      held_steps_(hold_ ? saturate_cast<int>(std::ceil(options.dead_time / options.time_step)) : 0),
       lag_factor_(exact ? 1 - std::exp(-options.time_step / options.steer_time_constant)
                         : options.time_step / options.steer_time_constant) {}
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "slalom/core/gravity.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::vehicle {
 
@@ -101,7 +102,7 @@ SingleTrack::State<double> SingleTrack::start(const VehicleStart& start, double)
 VehicleStart SingleTrack::advance(const VehicleStart& start, const Command& command, double duration,
                                   double friction) const noexcept {
   State<double> s = this->start(start, 0);
-  const int pieces = static_cast<int>(std::ceil(duration / max_step - 1e-9));
+  const int pieces = saturate_cast<int>(std::ceil(duration / max_step - 1e-9));
   const double dt = duration / pieces;
   for (int i = 0; i < pieces; ++i) {
     double acceleration = 0;

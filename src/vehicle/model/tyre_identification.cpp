@@ -9,6 +9,7 @@
 
 #include "slalom/core/gravity.hpp"
 #include "slalom/core/math.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/model/single_track_dynamics.hpp"
 #include "vehicle/model/least_squares.hpp"
@@ -167,7 +168,7 @@ class Drive {
   void advance(SingleTrackState<double>& s, const Step& step, std::span<const double> p,
                const SingleTrackDynamics& dynamics, std::size_t& acting, double& drag) const {
     const double duration = step.end - step.begin;
-    const int pieces = std::max(1, static_cast<int>(std::ceil(duration / longest_step - 1e-9)));
+    const int pieces = std::max(1, saturate_cast<int>(std::ceil(duration / longest_step - 1e-9)));
     const double dt = duration / pieces;
     for (int k = 0; k < pieces; ++k) {
       const double time = step.begin + k * dt;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 
 namespace slalom::vehicle::detail {
@@ -36,7 +37,7 @@ class CommandHistory {
   /// Predicts the state when the next command takes effect, at constant speed.
   VehicleStart lead_ahead(VehicleStart car) const noexcept {
     for_each_acting(-delay_, 0, 0, [&](double command, double duration) {
-      const int pieces = static_cast<int>(std::ceil(duration / 0.01 - 1e-9));
+      const int pieces = saturate_cast<int>(std::ceil(duration / 0.01 - 1e-9));
       for (int i = 0; i < pieces; ++i) {
         const double dt = duration / pieces, before = car.steer;
         turn_wheels(car.steer, command, dt);
@@ -55,7 +56,7 @@ class CommandHistory {
   template <class Act>
   void for_each_acting(double begin, double end, int newest, Act&& act) const noexcept {
     const int oldest =
-        std::min(static_cast<int>(sent_.size()) - 1, static_cast<int>(std::ceil(-begin / period_)) + 1);
+        std::min(static_cast<int>(sent_.size()) - 1, saturate_cast<int>(std::ceil(-begin / period_) + 1));
     for (int i = oldest; i >= 0; --i) {
       const double sent = -(i + 1 - newest) * period_;
       const double from = std::max(begin, sent), to = std::min(end, sent + period_);

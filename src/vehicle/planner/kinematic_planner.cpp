@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "vehicle/planner/back_up.hpp"
 #include "vehicle/planner/command_history.hpp"
 #include "vehicle/planner/planner_base.hpp"
@@ -59,7 +60,7 @@ class KinematicPlanner final : public PlannerBase {
     const std::span<const PredictedState> states = choice_.states();
     const double last = static_cast<double>(states.size() - 1),
                  step = std::clamp(options_.speed_lookahead / traits_.time_step, planned ? 1.0 : 0.0, last);
-    const PredictedState& ahead = states[static_cast<std::size_t>(std::round(step))];
+    const PredictedState& ahead = states[saturate_cast<std::size_t>(std::round(step))];
     if (planned) return ahead.speed;
     const maps::ReferenceCell cell = field_.at(ahead.pose.x, ahead.pose.y);
     return cell.distance < field_.options().outside.distance ? cell.speed : here;

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/command.hpp"
@@ -171,8 +172,8 @@ class Manoeuvre {
   static int index(double x, double y, double yaw) noexcept {
     const double column = std::floor((x + half) / cell), row = std::floor((y + half) / cell);
     if (!(column >= 0 && row >= 0 && column < side && row < side)) return -1;
-    const int turn = static_cast<int>(std::lround(yaw / (2 * std::numbers::pi) * headings));
-    return (static_cast<int>(row) * side + static_cast<int>(column)) * headings +
+    const int turn = saturate_cast<int>(std::round(yaw / (2 * std::numbers::pi) * headings));
+    return (saturate_cast<int>(row) * side + saturate_cast<int>(column)) * headings +
            ((turn % headings) + headings) % headings;
   }
 

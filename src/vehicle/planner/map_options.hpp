@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
@@ -90,7 +91,7 @@ inline maps::ReferenceFieldOptions field_options(const PlannerOptions& options, 
   if (traits.friction > 0) {
     made.length_x = made.length_y = 2 * reach + 1;
     made.spacing = std::max(made.spacing, (reach + 1) / 200);
-    made.points = static_cast<int>((reach + 1) / made.spacing);
+    made.points = saturate_cast<int>((reach + 1) / made.spacing);
   }
   return made;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slalom/core/math.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -123,7 +124,7 @@ void SequenceChoice::consider_last(double elapsed) noexcept {
   const std::size_t last = previous_.size() - inputs_;
   const double moved = elapsed / traits_.time_step, whole = std::floor(moved);
   const auto share = static_cast<float>(moved - whole);
-  const std::size_t shift = static_cast<std::size_t>(whole) * inputs_;
+  const std::size_t shift = saturate_cast<std::size_t>(std::min(whole, static_cast<double>(last))) * inputs_;
   for (std::size_t row = 0; row < previous_.size(); ++row) {
     const std::size_t before = std::min(row + shift, last + row % inputs_),
                       after = std::min(before + inputs_, last + row % inputs_);
