@@ -275,10 +275,13 @@ TEST(World, RejectsInvalidStarts) {
   EXPECT_THROW(world.reset(1, std::array{maps::Pose{10, 10, 0}}), std::invalid_argument);
   EXPECT_THROW(world.reset(1, std::array{maps::Pose{16.9, 10, 0}}), std::invalid_argument);
   EXPECT_THROW(world.reset(1, std::array{maps::Pose{-50, 10, 0}}), std::invalid_argument);
-  EXPECT_THROW(world.reset(1, std::array{maps::Pose{nan, 10, 0}}), std::invalid_argument);
+  for (const maps::Pose& far : {maps::Pose{nan, 10, 0}, {1e8, 10, 0}, {15, 10, 1e7}}) {
+    EXPECT_THROW(world.reset(1, std::array{far}), std::invalid_argument);
+    EXPECT_THROW(world.reset(1, start, std::array{far}), std::invalid_argument);
+    EXPECT_THROW(world.move_body(1, far), std::invalid_argument);
+  }
   EXPECT_THROW(world.reset(1, std::array{start[0], start[0]}), std::invalid_argument);
   EXPECT_THROW(world.reset(1, start, start), std::invalid_argument);
-  EXPECT_THROW(world.reset(1, start, std::array{maps::Pose{15, 10, nan}}), std::invalid_argument);
   EXPECT_NO_THROW(world.reset(1, start));
   EXPECT_THROW(world.add_disc({{12, 12}, 0}), std::invalid_argument);
   EXPECT_THROW(world.add_disc({{12, 12}, -1}), std::invalid_argument);
@@ -295,6 +298,8 @@ TEST(World, RejectsInvalidOptions) {
     EXPECT_THROW(World(options, track), std::invalid_argument);
   };
   EXPECT_THROW(World({}, nullptr), std::invalid_argument);
+  refuses([](WorldOptions& o) { o.lidar.mount.x = 101; });
+  refuses([](WorldOptions& o) { o.lidar.mount.yaw = nan; });
   refuses([](WorldOptions& o) { o.time_step = 0; });
   refuses([](WorldOptions& o) { o.time_step = -0.01; });
   refuses([](WorldOptions& o) { o.time_step = 0.5; });

@@ -31,8 +31,9 @@ LidarOptions LidarOptions::hokuyo_utm_30lx() {
 
 Lidar::Lidar(const LidarOptions& options) : options_(options), kernels_(&detail::scan_kernels()) {
   validate_options(options, "lidar");
-  if (!std::isfinite(options.mount.x) || !std::isfinite(options.mount.y) || !std::isfinite(options.mount.yaw))
-    throw std::invalid_argument("lidar.mount: x, y and yaw must be finite");
+  for (const auto& [name, value] : {std::pair("mount.x", options.mount.x), {"mount.y", options.mount.y}})
+    slalom::detail::check("lidar", {name, "m", "", -100, 100}, value);
+  slalom::detail::check("lidar", {"mount.yaw", "rad", "", -100, 100}, options.mount.yaw);
   const double first = options.angle_min(), increment = options.angle_increment();
   for (int i = 0; i < options.beams; ++i) angles_.push_back(first + i * increment);
   // Padding repeats the last beam, so that it costs nothing beyond it.

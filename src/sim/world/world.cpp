@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/maps/pose_limits.hpp"
+
 namespace slalom::sim {
 namespace {
 
@@ -12,13 +14,8 @@ maps::Pose pose_of(const CarState& state) {
   return {state.x, state.y, state.yaw};
 }
 
-void require_finite(const char* name, const maps::Pose& pose) {
-  if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.yaw))
-    throw std::invalid_argument(std::string(name) + ": x, y and yaw must be finite");
-}
-
-void require_finite(const CarState& state) {
-  require_finite("state", pose_of(state));
+void require_plausible(const CarState& state) {
+  maps::check_pose("state", pose_of(state));
   for (const double value : {state.steer, state.speed, state.yaw_rate, state.slip})
     if (!std::isfinite(value))
       throw std::invalid_argument("state: steer, speed, yaw_rate and slip must be finite");
@@ -65,8 +62,8 @@ World::World(const WorldOptions& options, std::shared_ptr<const Track> track)
 }
 
 void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked) {
-  for (const maps::Pose& pose : cars) require_finite("start of a driven car", pose);
-  for (const maps::Pose& pose : parked) require_finite("pose of a parked car", pose);
+  for (const maps::Pose& pose : cars) maps::check_pose("start of a driven car", pose);
+  for (const maps::Pose& pose : parked) maps::check_pose("pose of a parked car", pose);
   time_ = 0;
   steps_ = 0;
   const Box body{{}, options_.car.length, options_.car.width};
@@ -123,7 +120,7 @@ void World::check_start(std::size_t car) const {
 }
 
 int World::add(const Fixed& body) {
-  require_finite("pose of a body", body.box.pose);
+  maps::check_pose("pose of a body", body.box.pose);
   slalom::detail::check("body", {"length", "m", "", 1e-9, 1e9}, body.box.length);
   slalom::detail::check("body", {"width", "m", "", 1e-9, 1e9}, body.box.width);
   fixed_.push_back(body);
@@ -152,7 +149,7 @@ World::Fixed& World::fixed(int body) {
 }
 
 void World::move_body(int body, const maps::Pose& pose) {
-  require_finite("pose of a body", pose);
+  maps::check_pose("pose of a body", pose);
   fixed(body).box.pose = pose;
   find_fixed_partners();
 }
@@ -170,7 +167,7 @@ void World::remove_body(int body) {
 }
 
 void World::set_state(std::size_t car, const CarState& state) {
-  require_finite(state);
+  require_plausible(state);
   cars_.at(car).plant.set_state(state);
   cars_[car].before = state;
   boxes_[car].pose = pose_of(state);
@@ -272,7 +269,7 @@ void World::follow(std::span<const CarState> states) {
   if (states.size() != cars_.size())
     throw std::invalid_argument("states: " + std::to_string(states.size()) + " must be as many as cars, " +
                                 std::to_string(cars_.size()));
-  for (const CarState& state : states) require_finite(state);
+  for (const CarState& state : states) require_plausible(state);
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     cars_[i].before = states[i];
     cars_[i].plant.set_state(states[i]);
