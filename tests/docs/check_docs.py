@@ -118,7 +118,7 @@ def check_python(root):
                 try:
                     exec(compile(text, f"{page}:{line}", "exec"), names)
                 except Exception as error:
-                    if isinstance(error, ModuleNotFoundError) and error.name in ("torch", "onnx"):
+                    if isinstance(error, ModuleNotFoundError) and error.name == "torch":
                         print(f"{page.relative_to(root)}:{line}: not run, since {error.name} is missing "
                               f"(Debian: python3-{error.name})")
                     else:

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/option_access.hpp"
 #include "slalom/core/read_file.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
@@ -216,9 +217,8 @@ OtherRun read_run(const std::string& file, const Json& settings, double length) 
     }
     if (const double theirs = member<double>(run, "length_m");
         !(std::abs(theirs - length) <= length_tolerance * length))
-      throw IoError(
-          file, 0,
-          "length_m: " + std::to_string(theirs) + " must be " + std::to_string(length) + ", as in this run");
+      throw IoError(file, 0,
+                    "length_m: " + to_text(theirs) + " must be " + to_text(length) + ", as in this run");
     other.flying = best_of(run, "flying");
     other.standing = best_of(run, "standing");
   } catch (const std::invalid_argument& error) {

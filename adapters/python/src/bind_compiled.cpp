@@ -18,8 +18,8 @@ bool set_parameter(CompiledProblem& problem, const std::string& name, const py::
   for (const Parameter& parameter : problem.parameters()) {
     if (name != parameter.name) continue;
     const auto values = py::isinstance<py::sequence>(value) || py::isinstance<py::array>(value)
-                            ? value.cast<std::vector<double>>()
-                            : std::vector<double>{value.cast<double>()};
+                            ? value_as<std::vector<double>>(value, name)
+                            : std::vector<double>{value_as<double>(value, name)};
     if (values.size() != parameter.values.size())
       throw std::invalid_argument(name + ": has " + std::to_string(values.size()) + " values, must have " +
                                   std::to_string(parameter.values.size()));
@@ -59,8 +59,8 @@ using Parts = NetworkProblem::Parts;
 std::vector<double> numbers(const py::object& value) {
   if (value.is_none()) return {};
   if (py::isinstance<py::sequence>(value) || py::isinstance<py::array>(value))
-    return value.cast<std::vector<double>>();
-  return {value.cast<double>()};
+    return value_as<std::vector<double>>(value, "MlpProblem");
+  return {value_as<double>(value, "MlpProblem")};
 }
 
 py::object from_numbers(const std::vector<double>& values) {
@@ -91,7 +91,8 @@ const Part network_parts[] = {
      [](Parts& p, const py::object& value) {
        p.model.discs.clear();
        if (value.is_none()) return;
-       for (const auto& [x, y, radius] : value.cast<std::vector<std::tuple<double, double, double>>>())
+       for (const auto& [x, y, radius] :
+            value_as<std::vector<std::tuple<double, double, double>>>(value, "MlpProblem.discs"))
          p.model.discs.push_back({x, y, radius});
      },
      [](const Parts& p) {
@@ -101,10 +102,12 @@ const Part network_parts[] = {
        return py::object(all);
      }},
     {"disc_weight", "cost of a state within a disc",
-     [](Parts& p, const py::object& value) { p.model.disc_weight = value.cast<double>(); },
+     [](Parts& p, const py::object& value) {
+       p.model.disc_weight = value_as<double>(value, "MlpProblem.disc_weight");
+     },
      [](const Parts& p) { return py::object(py::float_(p.model.disc_weight)); }},
     {"dt", "s, duration of a step; 0: unknown",
-     [](Parts& p, const py::object& value) { p.dt = value.cast<double>(); },
+     [](Parts& p, const py::object& value) { p.dt = value_as<double>(value, "MlpProblem.dt"); },
      [](const Parts& p) { return py::object(py::float_(p.dt)); }},
     {"input_min", "least inputs: a number, one for each input, or None",
      [](Parts& p, const py::object& value) { p.input_min = numbers(value); },

@@ -98,7 +98,12 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
 
   const AnyProblem& problem() const noexcept { return *variants_.front(); }
   /// The problem (0) or one of its variants.
-  AnyProblem& variant(std::size_t index) const { return *variants_.at(index); }
+  AnyProblem& variant(std::size_t index) const {
+    if (index >= variants_.size())
+      throw py::index_error("RiskEvaluator.variant: " + std::to_string(index) + " must be below " +
+                            std::to_string(variants_.size()));
+    return *variants_[index];
+  }
   const py::object& randomize() const noexcept { return randomize_; }
   const RiskOptions& options() const noexcept { return options_; }
 

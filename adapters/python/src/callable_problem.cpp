@@ -96,7 +96,7 @@ CallableProblem::CallableProblem(CallableParts parts)
   require_count(parts_.input_max, "input_max");
   require_count(parts_.input_rate_max, "input_rate_max");
   for (const double rate : parts_.input_rate_max)
-    require(rate >= 0, "input_rate_max: " + std::to_string(rate) + " must be at least 0");
+    require(rate >= 0, "input_rate_max: " + to_text(rate) + " must be at least 0");
   set_dt(parts_.dt);
   require(parts_.input_rate_max.empty() || parts_.dt > 0,
           "input_rate_max: requires dt, the duration of a step");
@@ -130,7 +130,7 @@ void CallableProblem::hold_rates(std::span<const double> previous, std::span<dou
 
 void CallableProblem::set_dt(double dt) {
   if (!(dt >= 0 && std::isfinite(dt)))
-    throw std::invalid_argument("Problem.dt: " + std::to_string(dt) +
+    throw std::invalid_argument("Problem.dt: " + to_text(dt) +
                                 " must be finite and at least 0 (0: not known)");
   if (dt == 0 && !parts_.input_rate_max.empty())
     throw std::invalid_argument("Problem.dt: must be positive, since input_rate_max is set");

@@ -35,11 +35,22 @@ inline py::array read_only(py::array array) {
   return array;
 }
 
+/// The value of a parameter as a T. Throws TypeError with its name if it cannot be one.
+template <class T>
+T value_as(const py::handle& value, const std::string& name) {
+  try {
+    return value.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(name + ": " + std::string(py::repr(py::type::handle_of(value))) +
+                         " must be a number or a list of the right form");
+  }
+}
+
 /// An option's value as a configuration file has it.
 inline std::string text_of(const py::handle& value) {
   PyObject* const object = value.ptr();
   if (py::isinstance<py::bool_>(value)) return to_text(value.cast<bool>());
-  if (PyNumber_Check(object) && !PyIndex_Check(object)) return to_text(value.cast<double>());
+  if (PyNumber_Check(object) && !PyIndex_Check(object)) return to_text(value_as<double>(value, "an option"));
   if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
     return py::str(value).cast<std::string>();
   std::string text;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slalom/core/dispatch.hpp"
+#include "slalom/core/option_access.hpp"
 
 namespace slalom::python {
 
@@ -114,7 +115,7 @@ NetworkProblem::NetworkProblem(Parts parts) : parts_(std::move(parts)) {
   for (std::vector<double>* bound : {&parts_.input_min, &parts_.input_max})
     if (bound->size() > 1) spread(*bound, m.inputs, "input_min, input_max");
   if (!(parts_.dt >= 0 && std::isfinite(parts_.dt)))
-    throw std::invalid_argument("MlpProblem.dt: " + std::to_string(parts_.dt) +
+    throw std::invalid_argument("MlpProblem.dt: " + to_text(parts_.dt) +
                                 " must be finite and at least 0 (0: not known)");
   state_.resize(static_cast<std::size_t>(m.states));
 }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "slalom/core/option_access.hpp"
+
 namespace slalom::nodes {
 namespace {
 
@@ -96,7 +98,7 @@ void PathFollower::use_plan(const std::vector<maps::Pose>& plan, const std::stri
 
 void PathFollower::limit_speed(double limit, bool percentage) {
   if (!std::isfinite(limit) || limit < 0)
-    throw std::invalid_argument("speed limit: " + std::to_string(limit) + " must be finite and at least 0");
+    throw std::invalid_argument("speed limit: " + to_text(limit) + " must be finite and at least 0");
   limit_ = limit;
   limit_is_percentage_ = percentage;
   find_share();
