@@ -1,4 +1,8 @@
 // Controllers, planners, navigators and trackers as state machines: bytes choose options, then the calls.
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
 #include "fuzz/target.hpp"
 #include "navigation/navigator_calls.hpp"
 #include "solvers/controller_calls.hpp"
@@ -19,7 +23,8 @@ const Target controller_target(
       const int set = adversary.below(static_cast<int>(sets.size()));
       testing::call_any_controller(sets[static_cast<std::size_t>(set)].options, adversary, tally);
       return tally.plans > 0;
-    });
+    },
+    100);
 
 const Target planner_target(
     "planner", 4096, []() -> Seeds { return random_bytes(20, 1500); },
@@ -28,7 +33,8 @@ const Target planner_target(
       testing::PlannerTally tally;
       testing::call_planner(adversary, 40, tally);
       return tally.updates > 0;
-    });
+    },
+    100);
 
 const Target navigator_target(
     "navigator", 4096, []() -> Seeds { return random_bytes(20, 1500); },
@@ -36,11 +42,19 @@ const Target navigator_target(
       testing::Adversary adversary(bytes);
       navigation::NavigatorTally tally;
       const navigation::Hall hall(adversary);
-      const double front = adversary.within(0.05, 1), width = adversary.within(0.05, 2);
-      const auto footprint = navigation::Footprint::rectangle(front, adversary.within(0.05, 1), width);
-      navigation::call_navigator(adversary, hall, tally, footprint);
+      std::vector<maps::Point> outline(static_cast<std::size_t>(3 + adversary.below(8)));
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const double angle = 6.28 * static_cast<double>(i) / static_cast<double>(outline.size());
+        const double radius = adversary.once_in(8) ? adversary.any(0.05, 5) : adversary.within(0.05, 1);
+        outline[i] = {radius * std::cos(angle), radius * std::sin(angle)};
+      }
+      try {
+        navigation::call_navigator(adversary, hall, tally, navigation::Footprint(outline));
+      } catch (const std::invalid_argument&) {  // no outline
+      }
       return tally.updates > 0;
-    });
+    },
+    100);
 
 const Target tracker_target(
     "tracker", 4096, []() -> Seeds { return random_bytes(20, 1500); },
@@ -49,7 +63,8 @@ const Target tracker_target(
       tracking::TrackerTally tally;
       tracking::call_tracker(adversary, tally);
       return tally.updates > 0;
-    });
+    },
+    100);
 
 }  // namespace
 }  // namespace slalom::fuzz

@@ -1,13 +1,18 @@
 // Images of maps, the files of a course, centre lines and cars.
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "fuzz/target.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/maps/image.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/course/course_check.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
+#include "support/call_limits.hpp"
 #include "support/temporary_folder.hpp"
 #include "vehicle/course_folder.hpp"
+#include "vehicle/planner/planner_calls.hpp"
 
 namespace slalom::fuzz {
 namespace {
@@ -93,6 +98,47 @@ const Target waypoints_target(
       check_course_of(ring.path());
       return true;
     });
+
+/// The first second of a lap on the course of three files, and what its commands promise.
+const Target lap_target(
+    "lap", 4096,
+    []() -> Seeds {
+      const testing::CourseFolder ring;
+      const std::string map = testing::content(ring.path() / "map.yaml");
+      return {
+          map + separator + testing::CourseFolder::raceline + separator + "start: {x: 2, y: 0, yaw: 1.57}\n",
+          map + separator + "-3,-3\n3,-3\n3,3\n-3,3\n" + separator + "closed: true\n"};
+    },
+    [](std::string_view bytes) {
+      static const testing::CourseFolder ring;
+      static const vehicle::Configuration configuration = [] {
+        auto made = vehicle::load_configuration(SLALOM_CONFIGS "/default.yaml");
+        vehicle::set_option(made, "svg_mppi.samples", "32");
+        return made;
+      }();
+      const auto [map, waypoints, course] = split<3>(bytes);
+      ring.write("map.yaml", std::string(map));
+      ring.write("raceline.csv", std::string(waypoints));
+      ring.write("course.yaml", std::string(course));
+      std::optional<evaluation::LapDrive> lap;
+      try {
+        const auto environment =
+            evaluation::load_environment(ring.path(), evaluation::Protocol::true_physics, {ring.path()});
+        lap.emplace(evaluation::LapSetup{environment, {configuration}}, 0);
+      } catch (const std::invalid_argument&) {  // files of a course that no car can drive
+        return false;
+      }
+      for (int i = 0; i < 40; ++i) {
+        const testing::CallLimits limits;
+        lap->step([](const evaluation::ControlStep& step) {
+          testing::check_output(step.output, configuration.planner);
+          require(std::isfinite(step.cost.state + step.cost.collision), "costs are finite");
+        });
+        limits.check();
+      }
+      return true;
+    },
+    200);
 
 /// The minimum-time line, where the corridor is small enough for a test.
 void solve(const vehicle::CentreLineFile& file, const vehicle::RacingCar& car) {

@@ -1,5 +1,7 @@
 #include "fuzz/target.hpp"
 
+#include "support/call_limits.hpp"
+
 namespace slalom::fuzz {
 namespace {
 
@@ -11,14 +13,17 @@ std::vector<const Target*>& all_targets() {
 }  // namespace
 
 Target::Target(const char* target_name, std::size_t longest, Seeds (*make_seeds)(),
-               bool (*take_bytes)(std::string_view bytes))
-    : name(target_name), max_bytes(longest), seeds(make_seeds), take(take_bytes) {
+               bool (*take_bytes)(std::string_view bytes), int most_calls)
+    : name(target_name), max_bytes(longest), seeds(make_seeds), calls(most_calls), take(take_bytes) {
   all_targets().push_back(this);
 }
 
 bool Target::run(std::string_view bytes) const {
+  const testing::CallLimits limits;
   bool accepted = false;
-  return is_valid([&] { accepted = take(bytes); }) && accepted;
+  const bool valid = is_valid([&] { accepted = take(bytes); }) && accepted;
+  limits.check(calls);
+  return valid;
 }
 
 const std::vector<const Target*>& targets() {

@@ -32,7 +32,7 @@ bool is_valid(Read&& read) {
 /// A target; it registers itself.
 struct Target {
   Target(const char* target_name, std::size_t longest, Seeds (*make_seeds)(),
-         bool (*take_bytes)(std::string_view bytes));
+         bool (*take_bytes)(std::string_view bytes), int most_calls = 4);
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
 
@@ -43,6 +43,7 @@ struct Target {
   const char* name;
   std::size_t max_bytes;  ///< bytes of the longest input that a fuzzer makes
   Seeds (*seeds)();  ///< makes inputs, with the writers of Slalom where there are any; the first is valid
+  int calls;         ///< most calls for an input, each within testing::CallLimits
   bool (*take)(std::string_view bytes);  ///< as `run`, and may throw IoError for an input that is not valid
 };
 

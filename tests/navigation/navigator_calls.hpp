@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "navigation/grids.hpp"
 #include "slalom/navigation/navigator.hpp"
 #include "support/adversary.hpp"
+#include "support/any_options.hpp"
 #include "support/any_others.hpp"
+#include "support/call_limits.hpp"
 #include "support/promise.hpp"
 
 /// Navigators as state machines: updates with any pose, path and map, and what every command promises.
@@ -22,11 +26,16 @@ inline SvgMppiOptions few_samples(const BaseOptions& base) {
   return solver;
 }
 
-/// 4 m x 4 m around the origin with a box in it, or with any boxes.
+/// 4 m x 4 m around the origin with a box in it, or any map.
 struct Hall {
   Hall() : Hall(UnknownCells::obstacle) { add(0.5, -0.5, 1, 0.5, maps::Occupancy::occupied); }
-  explicit Hall(testing::Adversary& adversary) : Hall(static_cast<UnknownCells>(adversary.below(2))) {
-    for (int left = adversary.below(6); left > 0; --left) {
+  explicit Hall(testing::Adversary& adversary)
+      : grid{3 + adversary.below(200), 3 + adversary.below(200), adversary.within(0.02, 0.2), {}, {}},
+        costmap(grid.width, grid.height, grid.resolution, static_cast<UnknownCells>(adversary.below(2))) {
+    grid.origin = {adversary.within(-5, 1), adversary.within(-5, 1), 0};
+    grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
+                      maps::Occupancy::free);
+    for (int left = adversary.below(6); left >= 0; --left) {
       const double x = adversary.within(-2, 2), y = adversary.within(-2, 2);
       add(x, y, x + adversary.within(0, 2), y + adversary.within(0, 2),
           static_cast<maps::Occupancy>(adversary.below(3)));
@@ -69,16 +78,37 @@ struct NavigatorTally {
   long statuses[10] = {};
 };
 
+/// Sets any path. Throws Finding.
+inline void set_any_path(testing::Adversary& adversary, Navigator& navigator, bool hostile) {
+  std::vector<maps::Pose> points(static_cast<std::size_t>(adversary.below(12)));
+  const double reach = adversary.once_in(4) ? 30 : 2;
+  const auto value = [&] { return hostile ? adversary.any(-reach, reach) : adversary.within(-reach, reach); };
+  for (maps::Pose& point : points) point = {value(), value(), value()};
+  const testing::CallLimits limits;
+  try {
+    navigator.set_path(points);
+  } catch (const std::invalid_argument&) {  // none, not finite, or too far away
+  }
+  limits.check(10);  // 1,000,000 steps
+}
+
 /// One navigator and a few dozen updates. Throws Finding.
 inline void call_navigator(testing::Adversary& adversary, const Hall& hall, NavigatorTally& tally,
                            const Footprint& footprint = Footprint::rectangle(0.3, 0.3, 0.4)) {
   NavigatorOptions options;
+  if (adversary.once_in(3)) testing::draw_options(adversary, options);
   options.base.kind = static_cast<BaseKind>(adversary.below(3));
   options.find_detours = adversary.below(4) != 0;
   options.patience = adversary.within(0, 1);
   options.stuck_after = adversary.within(0.1, 2);
   if (adversary.below(2)) options.time_step = adversary.within(0.001, 1);
-  Navigator navigator = make_navigator(options, hall.costmap, footprint);
+  std::optional<Navigator> made;
+  try {
+    made.emplace(make_navigator(options, hall.costmap, footprint));
+  } catch (const std::invalid_argument&) {  // options that do not go together
+    return;
+  }
+  Navigator& navigator = *made;
   const Costmap other_size(10, 10, 0.1);
   testing::AnyOthers others;
   for (int i = 0; i < 60; ++i) {
@@ -86,20 +116,16 @@ inline void call_navigator(testing::Adversary& adversary, const Hall& hall, Navi
     const auto value = [&](double low, double high) {
       return hostile ? adversary.any(low, high) : adversary.within(low, high);
     };
-    if (adversary.once_in(10)) {
-      const maps::Pose points[] = {{value(-2, 2), value(-2, 2), 0},
-                                   {value(-2, 2), value(-2, 2), value(-4, 4)}};
-      try {
-        navigator.set_path(points);
-      } catch (const std::invalid_argument&) {  // not finite, or too far away
-      }
-    }
+    if (adversary.once_in(10)) set_any_path(adversary, navigator, hostile);
     if (adversary.once_in(40)) navigator.reset(static_cast<std::uint64_t>(i));
     const maps::Pose pose{value(-2, 2), value(-2, 2), value(-4, 4)};
     const Velocity velocity{value(-1, 1), value(-1, 1), value(-2, 2)};
     const Costmap& costmap = adversary.once_in(20) ? other_size : hall.costmap;
-    const NavigationResult result =
-        navigator.update(pose, velocity, costmap, value(0, 0.2), others.draw(adversary));
+    const double elapsed = value(0, 0.2);
+    const auto predicted = others.draw(adversary);
+    const testing::CallLimits limits;
+    const NavigationResult result = navigator.update(pose, velocity, costmap, elapsed, predicted);
+    limits.check();
     check(result, options.base);
     ++tally.updates;
     ++tally.statuses[static_cast<int>(result.status)];

@@ -19,6 +19,7 @@
 #include "slalom/solvers/proposals.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/set_option.hpp"
+#include "support/call_limits.hpp"
 #include "support/promise.hpp"
 
 namespace slalom::testing {
@@ -110,7 +111,9 @@ void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& 
     draw_proposals(*proposals, adversary);
     request.proposals = *proposals;
   }
+  const CallLimits limits;
   const auto plan = controller.solve(x, request);
+  limits.check();
   require((plan.status == Status::non_finite_state) == !finite,
           "the status says whether the state was finite");
   check_plan(plan, low, high, controller.problem());

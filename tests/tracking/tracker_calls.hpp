@@ -10,6 +10,7 @@
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor.hpp"
 #include "support/adversary.hpp"
+#include "support/call_limits.hpp"
 #include "support/promise.hpp"
 
 /// Trackers and predictors as state machines: updates with any scan, and what every object promises.
@@ -92,11 +93,13 @@ inline void call_tracker(testing::Adversary& adversary, TrackerTally& tally) {
       input.position_deviation = value(0, 0.1);
       input.yaw_deviation = value(0, 0.05);
     }
+    const testing::CallLimits limits;
     const TrackerOutput& out = tracker->update(input);
     check(out.objects);
     testing::require(std::isfinite(out.sensor.x + out.sensor.y + out.sensor.yaw) || hostile,
                      "the pose that was used is finite");
     const auto predicted = predictor.update(out.objects, input.stamp);
+    limits.check();
     check(predicted);
     ++tally.updates;
     tally.objects += static_cast<long>(out.objects.size());

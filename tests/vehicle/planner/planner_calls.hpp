@@ -1,19 +1,19 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "solvers/set_option.hpp"
 #include "support/adversary.hpp"
+#include "support/any_options.hpp"
 #include "support/any_others.hpp"
+#include "support/call_limits.hpp"
 #include "support/lane.hpp"
 #include "support/promise.hpp"
 
@@ -50,23 +50,6 @@ inline maps::LaserScanView any_scan(Adversary& adversary, std::vector<float>& ra
     range = static_cast<float>(walls ? adversary.within(0.3, 4) : adversary.any(-1, 31));
   if (adversary.below(4)) return {ranges, -2.35, 0.12, 0.05, 30};
   return {ranges, adversary.any(-7, 7), adversary.any(-0.1, 0.1), adversary.any(-1, 1), adversary.any(0, 40)};
-}
-
-/// Sets some options to any value in their ranges.
-template <class Options>
-void draw_options(Adversary& adversary, Options& options) {
-  visit_options(options, [&]<class Field>(Field& field, const Declaration& declared) {
-    if (!adversary.once_in(12)) return;
-    const double least = std::max(declared.min, -1e12), most = std::min(declared.max, 1e12);
-    const double drawn = adversary.once_in(3) ? (adversary.below(2) ? least : most)
-                         : least > 0          ? least * std::pow(most / least, adversary.within(0, 1))
-                                              : adversary.within(least, most);
-    if constexpr (std::is_same_v<Field, bool>) {
-      field = adversary.below(2) != 0;
-    } else if constexpr (std::is_same_v<Field, double> || std::is_same_v<Field, int>) {
-      field = static_cast<Field>(drawn);
-    }
-  });
 }
 
 /// Throws Finding unless a command may be sent to a car with these options.
@@ -134,7 +117,9 @@ inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
     vehicle::PlannerInput input{.scan = scan, .odometry = odometry, .obstacles = points};
     if (adversary.below(2)) input.imu = {value(-10, 10), value(-10, 10), value(-10, 10)};
     input.others = others.draw(adversary);
+    const CallLimits limits;
     const vehicle::PlannerOutput& out = planner.update(input);
+    limits.check();
     check_output(out, options);
     ++tally.updates;
     ++tally.statuses[static_cast<int>(out.status)];
