@@ -183,32 +183,36 @@ SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::Vehic
   return speed;
 }
 
-TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds) {
-  const auto course = reference_course();
-  auto model = vehicle::make_vehicle_model(configuration.vehicle);
-  // A planner with slipping tyres estimates the motion of the car. So its poses are those of a steady drive,
-  // longer than the window of the identification, and it starts anew where they do: otherwise it would see a
-  // car that makes no progress, and reverse.
-  const bool estimates = model->traits().friction > 0;
-  const int places = estimates ? 48 : 16;
-  vehicle::Planner planner(configuration.planner, std::move(model), course,
-                           make_solver(configuration, "svg_mppi", 1));
-  std::vector<maps::Pose> poses;
-  std::vector<ReferenceScan> scans;
+DrivenPlanner::DrivenPlanner(const vehicle::Configuration& configuration)
+    : planner_([&] {
+        auto model = vehicle::make_vehicle_model(configuration.vehicle);
+        estimates_ = model->traits().friction > 0;
+        return vehicle::Planner(configuration.planner, std::move(model), course_,
+                                make_solver(configuration, "svg_mppi", 1));
+      }()) {
+  const int places = estimates_ ? 48 : 16;
   for (int i = 0; i < places; ++i) {
-    const maps::ReferencePoint& p = course[static_cast<std::size_t>(2 * i)];
-    poses.push_back({p.x + 0.05 * std::sin(estimates ? 0.1 * i : i), p.y, p.yaw});
-    scans.push_back(reference_scan(poses.back()));
+    const maps::ReferencePoint& p = course_[static_cast<std::size_t>(2 * i)];
+    poses_.push_back({p.x + 0.05 * std::sin(estimates_ ? 0.1 * i : i), p.y, p.yaw});
+    scans_.push_back(reference_scan(poses_.back()));
   }
+}
+
+const vehicle::PlannerOutput& DrivenPlanner::update() {
+  if (estimates_ && at_ == 0) planner_.reset(1);
+  const std::size_t at = at_;
+  at_ = (at_ + 1) % scans_.size();
+  return planner_.update({scans_[at].view(), {poses_[at], 4.0}, {}});
+}
+
+TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds) {
+  DrivenPlanner planner(configuration);
   std::vector<double> whole, rest;
-  std::size_t at = 0;
   repeat(seconds, [&] {
-    if (estimates && at == 0) planner.reset(1);
-    const vehicle::PlannerOutput& out = planner.update({scans[at].view(), {poses[at], 4.0}, {}});
+    const vehicle::PlannerOutput& out = planner.update();
     if (!out.solve) throw std::logic_error("the planner of the workload returned no plan");
     whole.push_back(1e3 * out.tick_time);
     rest.push_back(1e3 * (out.tick_time - out.solve->times.total));
-    at = (at + 1) % scans.size();
   });
   return {time_statistics(whole), time_statistics(rest)};
 }

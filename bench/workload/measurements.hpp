@@ -7,6 +7,7 @@
 #include "bench/workload/reference_workload.hpp"
 #include "bench/workload/statistics.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 /// The measurements of `slalom bench`. All times are of one core unless the number of threads is given. Every
 /// measurement takes `seconds` of wall-clock time or 30 repetitions, whichever is longer.
@@ -41,11 +42,30 @@ struct SolveSpeed {
 SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                          const SolverOptions& options, double seconds);
 
+/// The planner with svg_mppi on successive scans along the course, at 4 m/s. A planner with slipping tyres
+/// estimates the motion of the car. So its poses are those of a steady drive, longer than the window of the
+/// identification, and it starts anew where they do: otherwise it would see a car that makes no progress, and
+/// reverse.
+class DrivenPlanner {
+ public:
+  explicit DrivenPlanner(const vehicle::Configuration& configuration);
+  /// Plans at the next pose.
+  const vehicle::PlannerOutput& update();
+
+ private:
+  std::vector<maps::ReferencePoint> course_ = reference_course();
+  std::vector<maps::Pose> poses_;
+  std::vector<ReferenceScan> scans_;
+  bool estimates_ = false;
+  std::size_t at_ = 0;
+  vehicle::Planner planner_;
+};
+
 struct TickSpeed {
   TimeStatistics tick;          ///< ms, a whole update of the planner
   TimeStatistics round_solver;  ///< ms, of the update without the solve
 };
-/// Measures the planner with svg_mppi on successive scans along the course, at 4 m/s.
+/// Measures DrivenPlanner.
 TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds);
 
 /// Additions and multiplications of one step and its cost in the published problem with one trajectory;
