@@ -17,6 +17,8 @@ namespace {
 /// Half of the diagonal of a cell, in edges of a cell.
 constexpr double half_diagonal = 0.70710678118654752;
 
+constexpr float most_expensive = 1e6F;
+
 int checked_size(int cells, const char* name) {
   if (cells >= 3 && cells <= 20000) return cells;
   throw std::invalid_argument("costmap." + std::string(name) + ": " + std::to_string(cells) +
@@ -59,9 +61,10 @@ Costmap::Costmap(int width, int height, double resolution, UnknownCells unknown)
   prices_.fill({priced ? 1.0F : 0.0F});
 }
 
-bool Costmap::update(const maps::OccupancyGrid& grid) noexcept {
+bool Costmap::update(const maps::OccupancyGrid& grid, std::span<const float> prices) noexcept {
   if (grid.width != geometry_.rows || grid.height != geometry_.columns ||
-      grid.resolution != geometry_.resolution || grid.cells.size() != transformed_.size())
+      grid.resolution != geometry_.resolution || grid.cells.size() != transformed_.size() ||
+      (!prices.empty() && prices.size() != transformed_.size()))
     return false;
   if (!maps::is_plausible(grid.origin) || grid.origin.yaw != 0) return false;
   geometry_.center_x = grid.origin.x + 0.5 * geometry_.length_x();
@@ -81,6 +84,7 @@ bool Costmap::update(const maps::OccupancyGrid& grid) noexcept {
       }
       price[column] =
           unknown_ == UnknownCells::priced && grid.cells[from] == maps::Occupancy::unknown ? 1.0F : 0.0F;
+      if (!prices.empty() && prices[from] > 0) price[column] += std::min(prices[from], most_expensive);
     }
   }
   return true;

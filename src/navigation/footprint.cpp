@@ -137,4 +137,11 @@ std::vector<Point> Footprint::outline_points(double spacing) const {
   return points;
 }
 
+Footprint Footprint::without_rim(double rim) const {
+  const double share = std::max(1 - rim / half_width_, 0.2);
+  std::vector<Point> inner = vertices_;
+  for (Point& vertex : inner) vertex = {share * vertex.x, share * vertex.y};
+  return Footprint(inner);
+}
+
 }  // namespace slalom::navigation

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "navigation/base_model.hpp"
 #include "navigation/command_delay.hpp"
@@ -49,6 +50,7 @@ class Navigator::Implementation {
                  const Costmap& costmap)
       : options_((validate_options(options, "navigator"), options)),
         footprint_(footprint),
+        core_(footprint.without_rim(costmap.geometry().resolution)),
         geometry_(costmap.geometry()),
         model_(detail::make_base_model(options, footprint, geometry_.resolution, solver)),
         way_(options, footprint, geometry_,
@@ -65,6 +67,7 @@ class Navigator::Implementation {
   void reset(std::uint64_t seed) noexcept;
   /// Takes a decision, and returns the command to send.
   Velocity send(const Velocity& decision) noexcept { return command_ = delay_.send(decision); }
+  double delay() const noexcept { return delay_.longest(); }
   const BaseOptions& base() const noexcept { return options_.base; }
 
  private:
@@ -77,7 +80,7 @@ class Navigator::Implementation {
   NavigationResult stand(NavigationStatus status, const Velocity& velocity, double elapsed) const noexcept;
 
   NavigatorOptions options_;
-  Footprint footprint_;
+  Footprint footprint_, core_;
   maps::GridGeometry geometry_;
   Polymorphic<detail::BaseModel> model_;
   detail::Way way_;
@@ -126,7 +129,8 @@ double Navigator::Implementation::room_at(const Costmap& costmap, const maps::Po
 }
 
 /// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that
-/// overlaps an obstacle already may leave it, but not go deeper into it.
+/// overlaps an obstacle already may leave it, but not go deeper into it: where it does so by less than a
+/// cell, as scans may err, the body without a rim of a cell must stay free.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
@@ -135,13 +139,14 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   const std::size_t last = std::min(
       plan.size() - 1, saturate_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
   if (others_.meet(plan, last)) return true;
-  if (costmap.collides(footprint_, plan.front())) {
+  if (maps_.overlaps && costmap.collides(core_, plan.front())) {
     const double begin = room_at(costmap, plan.front()) - 0.5 * costmap.geometry().resolution;
     return std::any_of(plan.begin() + 1, plan.begin() + static_cast<std::ptrdiff_t>(last) + 1,
                        [&](const maps::Pose& pose) { return room_at(costmap, pose) < begin; });
   }
+  const Footprint& body = maps_.overlaps ? core_ : footprint_;
   for (std::size_t i = 1; i <= last; ++i)
-    if (costmap.collides(footprint_, plan[i - 1], plan[i])) return true;
+    if (costmap.collides(body, plan[i - 1], plan[i])) return true;
   return false;
 }
 
@@ -174,7 +179,7 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
   if (way_.is_stuck()) return stand(NavigationStatus::stuck, told, elapsed);
   const bool ignored = watch_commands(told, elapsed);
   // Decisions are made for the place where they take effect.
-  delay_.pass(elapsed);
+  delay_.pass(told, elapsed);
   const bool delayed = delay_.longest() > 0;
   const maps::Pose pose = delayed ? delay_.predict(now) : now;
   const Velocity velocity = delayed ? delay_.decided() : told;
@@ -198,6 +203,7 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
   maps_.distances = costmap.distances();
   maps_.prices = costmap.prices();
   maps_.others = others_.view();
+  maps_.overlaps = costmap.collides(footprint_, pose);
   way_.write(pose, maps_);
   // The plan of another leg is no use on this one: its first plan takes several solves.
   for (int solves = way_.takes_leg() ? first_solves : 1; solves > 0; --solves) {
@@ -237,6 +243,7 @@ NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& veloc
   NavigationResult result = implementation_->update(pose, velocity, costmap, elapsed, others);
   check_result(result, implementation_->base());
   result.command = implementation_->send(result.command);
+  result.delay = implementation_->delay();
   return result;
 }
 

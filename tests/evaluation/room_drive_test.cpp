@@ -47,7 +47,7 @@ TEST(RoomScenarios, StartsAndGoalsAreFreeAndThereIsAWayWhereTheySay) {
       navigation::Costmap costmap(map.width, map.height, map.resolution);
       costmap.update(map);
       const bool found = !plan_path(costmap, body, scenario.start, scenario.goal).empty();
-      EXPECT_EQ(found, scenario.has_way || !with_obstacles) << scenario.name;
+      EXPECT_EQ(found, scenario.wanted != RoomOutcome::blocked || !with_obstacles) << scenario.name;
     }
     EXPECT_EQ(&room_scenario(scenario.name), &scenario);
     EXPECT_NO_THROW(sim::Crowd(scenario.room, scenario.walkers)) << scenario.name;
@@ -76,6 +76,31 @@ TEST(RoomDrive, SaysWithinHalfASecondThatThereIsNoWay) {
   EXPECT_TRUE(drive.success);
   EXPECT_GE(drive.answer_time, 0);
   EXPECT_LE(drive.answer_time, 0.5);
+}
+
+/// Each row of the table of manoeuvres, with its limits.
+TEST(RoomDrive, EveryManoeuvreEndsAsItShould) {
+  for (const RoomScenario& scenario : manoeuvre_scenarios()) {
+    RoomDriver driver;
+    driver.solver = navigation::svg_mppi_options(scenario.base);
+    const RoomDrive drive = drive_room(scenario, driver, 1);
+    EXPECT_TRUE(drive.success) << scenario.name << ": " << name(drive.outcome);
+    EXPECT_EQ(&room_scenario(scenario.name), &scenario);
+    const std::string_view kind = scenario.name;
+    if (kind == "bay" || kind == "straight" || kind == "delay" || kind == "loop") {
+      EXPECT_EQ(drive.reversals, 0) << kind;
+    }
+    if (kind == "rows") {
+      EXPECT_LT(drive.aside, 0.1);
+    }
+    if (kind == "straight") {
+      EXPECT_LT(drive.command_change, 0.0236);
+      EXPECT_LE(drive.turn_changes, 3);
+    }
+    if (scenario.wanted != RoomOutcome::reached) continue;
+    EXPECT_LE(drive.goal_distance, 0.11) << kind;
+    EXPECT_LE(drive.goal_angle, 0.16) << kind;
+  }
 }
 
 TEST(RoomDrive, EndsAtTheTimeout) {

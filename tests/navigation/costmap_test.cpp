@@ -68,6 +68,21 @@ TEST(Costmap, UnknownCellsAreObstaclesOrHaveAPrice) {
   EXPECT_EQ(look_up(closed.prices(), 2.1, 1.1), 0);
 }
 
+TEST(Costmap, TakesPricesOfCells) {
+  maps::OccupancyGrid grid = free_grid(-1, 2, 3, 2);
+  Costmap costmap = costmap_of(grid);
+  std::vector<float> prices(grid.cells.size());
+  prices[0] = 3;  // lower left corner
+  prices[1] = -1;
+  EXPECT_TRUE(costmap.update(grid, prices));
+  EXPECT_EQ(look_up(costmap.prices(), -0.975, 2.025), 3);
+  EXPECT_EQ(look_up(costmap.prices(), -0.925, 2.025), 0);
+  EXPECT_TRUE(costmap.update(grid));
+  EXPECT_EQ(look_up(costmap.prices(), -0.975, 2.025), 0);
+  prices.pop_back();
+  EXPECT_FALSE(costmap.update(grid, prices));
+}
+
 TEST(Costmap, CollisionsAreExact) {
   const maps::OccupancyGrid grid = scattered(3);
   const Costmap costmap = costmap_of(grid);

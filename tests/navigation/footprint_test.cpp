@@ -70,6 +70,13 @@ TEST(Footprint, TheOutlineHasNoGaps) {
   }
 }
 
+TEST(Footprint, WithoutARimIsTheSameShapeButSmaller) {
+  const Footprint inner = Footprint::rectangle(0.5, 0.3, 0.6).without_rim(0.06);
+  EXPECT_NEAR(inner.half_width(), 0.24, 1e-12);
+  EXPECT_NEAR(inner.circumscribed_radius(), 0.8 * std::hypot(0.5, 0.3), 1e-12);
+  EXPECT_NEAR(Footprint::rectangle(0.5, 0.3, 0.6).without_rim(1).half_width(), 0.06, 1e-12);
+}
+
 TEST(Footprint, RejectsInvalidOutlines) {
   const auto make = [](std::vector<Point> vertices) { return Footprint(vertices); };
   EXPECT_THROW(make({{1, 0}, {0, 1}}), std::invalid_argument);

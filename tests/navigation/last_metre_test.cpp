@@ -48,6 +48,7 @@ struct Drive {
     reversals += now != 0 && last_direction != 0 && now != last_direction;
     if (now != 0) last_direction = now;
     remaining = result.remaining;
+    delay = result.delay;
     return result.status;
   }
   /// Drives until the goal is reached or for so long (s).
@@ -72,7 +73,7 @@ struct Drive {
   std::vector<double> turn_changes;
   int delay_periods = 0;
   std::deque<Velocity> on_their_way;  ///< commands that have not taken effect yet
-  double time = 0, remaining = 0;
+  double time = 0, remaining = 0, delay = 0;
 };
 
 TEST(LastMetre, EveryBaseReachesEveryHeading) {
@@ -221,6 +222,37 @@ TEST(LastMetre, ADelayThatIsToldCostsItsDurationAndLittleMore) {
     EXPECT_EQ(drive.reversals, 0);
     if (periods == 0) without = drive.time;
     EXPECT_LT(drive.time, without + 1);
+  }
+}
+
+TEST(LastMetre, ADelayThatIsNotToldIsEstimated) {
+  for (const int periods : {0, 6, 12}) {
+    Drive drive(BaseKind::differential);
+    drive.delay_periods = periods;
+    drive.start({1, 3, 0.3}, {{1, 3, 0}, {9, 3, 0}});
+    EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached);
+    EXPECT_NEAR(drive.delay, periods * period, 0.051);
+    EXPECT_EQ(drive.reversals, 0) << periods;
+  }
+}
+
+TEST(LastMetre, ADoorWhoseEdgesScansThickenIsPassed) {
+  for (const double thicker : {0.0, 0.05}) {
+    Drive drive(BaseKind::differential);
+    fill(drive.grid, 4.9, 0, 5.1, 2.7);
+    fill(drive.grid, 4.9, 3.3, 5.1, 6);
+    const maps::OccupancyGrid real = drive.grid;
+    fill(drive.grid, 4.9, 2.7, 5.1, 2.7 + thicker);
+    fill(drive.grid, 4.9, 3.3 - thicker, 5.1, 3.3);
+    drive.costmap.update(drive.grid);
+    Costmap truth = drive.costmap;
+    truth.update(real);
+    drive.start({1, 3, 0.1}, {{1, 3, 0}, {9, 3, 0}});
+    bool touched = false;
+    for (int i = 0; i < 500 && drive.step() != NavigationStatus::goal_reached; ++i)
+      touched = touched || truth.collides(drive.body, drive.pose);
+    EXPECT_LT(drive.goal_distance(), 0.11) << thicker;
+    EXPECT_FALSE(touched) << thicker;
   }
 }
 

@@ -19,7 +19,7 @@ using evaluation::RoomDriver;
 using evaluation::RoomScenario;
 
 struct NavigateArguments {
-  std::string scenario = "all", json, table, pictures;
+  std::string scenario = "rooms", json, table, pictures;
   std::vector<std::string> methods{"svg_mppi", "mppi"};
   int seeds = 5, jobs = 1;
   std::uint64_t first_seed = 1;
@@ -76,8 +76,10 @@ void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver
 
 int navigate(const NavigateArguments& arguments) {
   std::vector<const RoomScenario*> scenarios;
-  if (arguments.scenario == "all") {
-    for (const RoomScenario& each : evaluation::room_scenarios()) scenarios.push_back(&each);
+  if (arguments.scenario == "rooms" || arguments.scenario == "manoeuvres") {
+    for (const RoomScenario& each :
+         arguments.scenario == "rooms" ? evaluation::room_scenarios() : evaluation::manoeuvre_scenarios())
+      scenarios.push_back(&each);
   } else {
     scenarios.push_back(
         for_option("--scenario", [&] { return &evaluation::room_scenario(arguments.scenario); }));
@@ -109,7 +111,8 @@ int navigate(const NavigateArguments& arguments) {
 void declare_navigate(Subcommand& command) {
   command.summary("Drive a mobile robot through rooms, with several methods on the same seeds");
   const auto arguments = std::make_shared<NavigateArguments>();
-  command.option("--scenario", arguments->scenario, "Name of a scenario, or all");
+  command.option("--scenario", arguments->scenario,
+                 "Name of a scenario, or rooms or manoeuvres for all of these");
   command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names())
       .comma_separated();
   command.flag("--without-detours", arguments->without_detours,
@@ -122,11 +125,16 @@ void declare_navigate(Subcommand& command) {
   command.option("--table", arguments->table,
                  "Write a table in Markdown with 95 % intervals to this file, after each seed");
   command.json(arguments->json, "the results");
-  std::string names = "Scenarios:\n";
-  for (const RoomScenario& each : evaluation::room_scenarios())
-    names += std::string("  ") + each.name + ": " + each.summary + "\n";
+  std::string names;
+  const auto add = [&](const char* kind, std::span<const RoomScenario> scenarios) {
+    names += std::string(kind) + ":\n";
+    for (const RoomScenario& each : scenarios)
+      names += std::string("  ") + each.name + ": " + each.summary + "\n";
+  };
+  add("Rooms", evaluation::room_scenarios());
+  add("Manoeuvres", evaluation::manoeuvre_scenarios());
   command.examples({"navigate --scenario crowd-crossing --seeds 20 --pictures pictures",
-                    "navigate --methods svg_mppi --without-detours --table table.md"},
+                    "navigate --scenario manoeuvres --methods svg_mppi --seeds 20 --table table.md"},
                    names + "The exit status is 1 if a drive ended in a collision.");
   command.action([arguments] { return navigate(*arguments); });
 }

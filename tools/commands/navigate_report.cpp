@@ -34,7 +34,13 @@ constexpr Figure figures[] = {
     {"time, s", "time_s", 1, [](const RoomDrive& d) { return d.time; }},
     {"length, m", "length_m", 1, [](const RoomDrive& d) { return d.length; }},
     {"changes of side", "side_changes", 2, [](const RoomDrive& d) { return double(d.side_changes); }},
-    {"reversals", "reversals", 2, [](const RoomDrive& d) { return double(d.reversals); }}};
+    {"reversals", "reversals", 2, [](const RoomDrive& d) { return double(d.reversals); }},
+    {"change of the yaw rate, rad/s", "command_change_rad_s", 4,
+     [](const RoomDrive& d) { return d.command_change; }},
+    {"turns to the other side", "turn_changes", 1, [](const RoomDrive& d) { return double(d.turn_changes); }},
+    {"aside, m", "aside_m", 3, [](const RoomDrive& d) { return d.aside; }},
+    {"from the goal, m", "goal_distance_m", 3, [](const RoomDrive& d) { return d.goal_distance; }},
+    {"from its heading, rad", "goal_angle_rad", 3, [](const RoomDrive& d) { return d.goal_angle; }}};
 
 double success_of(const RoomDrive& drive) {
   return drive.success;
@@ -74,7 +80,8 @@ std::string markdown_row(const std::string& scenario, const std::string& driver,
   std::string row = "| " + scenario + " | " + driver + " | " + std::to_string(successes) + " of " +
                     std::to_string(drives.size()) + " (" + text_of(100 * rate.low, 0) + " to " +
                     text_of(100 * rate.high, 0) + " %) | " + std::to_string(count_of(drives, collision_of));
-  for (const Figure& figure : figures) row += " | " + mean_text(values_of(drives, figure.value));
+  for (const Figure& figure : figures)
+    row += " | " + mean_text(values_of(drives, figure.value), std::max(figure.digits - 1, 1));
   return row + " |\n";
 }
 
@@ -102,15 +109,12 @@ Json summary_of(const RoomSeries& series) {
   Json by_seed = Json::array();
   for (const RoomDrive& d : series.drives) {
     slowest = std::max(slowest, d.update_max);
-    by_seed.push_back({{"outcome", evaluation::name(d.outcome)},
-                       {"success", d.success},
-                       {"time_s", d.time},
-                       {"length_m", d.length},
-                       {"side_changes", d.side_changes},
-                       {"reversals", d.reversals},
-                       {"answer_time_s", d.answer_time},
-                       {"update_p50_ms", 1e3 * d.update_p50},
-                       {"update_max_ms", 1e3 * d.update_max}});
+    Json row{{"outcome", evaluation::name(d.outcome)}, {"success", d.success}};
+    for (const Figure& figure : figures) row[figure.key] = figure.value(d);
+    row.update({{"answer_time_s", d.answer_time},
+                {"update_p50_ms", 1e3 * d.update_p50},
+                {"update_max_ms", 1e3 * d.update_max}});
+    by_seed.push_back(std::move(row));
   }
   const Drives drives = drives_of(series);
   const int successes = count_of(drives, success_of);
@@ -136,7 +140,9 @@ Json summary_of(const RoomSeries& series) {
 std::string markdown_table(const std::vector<RoomSeries>& all) {
   std::string text = "| scenario | driver | success | collisions";
   for (const Figure& figure : figures) text += std::string(" | ") + figure.heading;
-  text += " |\n|---|---|---|---|---|---|---|---|\n";
+  text += " |\n|---|---|---|---";
+  for (std::size_t i = 0; i < std::size(figures); ++i) text += "|---";
+  text += "|\n";
   std::vector<std::pair<std::string, Drives>> drivers;
   for (const RoomSeries& series : all) {
     const Drives drives = drives_of(series);

@@ -21,7 +21,7 @@ if importlib.util.find_spec("slalom._driving"):
 else:  # built without the layers for cars
     _driving = None  # type: ignore[assignment]
 
-_DRIVING = ("Course", "Planner", "World", "courses", "drive_lap")
+_DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "World", "courses", "drive_lap", "plan_path")
 
 
 class FewSamplesWarning(RuntimeWarning):
@@ -30,7 +30,7 @@ class FewSamplesWarning(RuntimeWarning):
 
 def __getattr__(name: str) -> object:
     if name in _DRIVING:
-        raise AttributeError(f"slalom.{name} is not in this build, which has no cars, courses and simulator: install it "
+        raise AttributeError(f"slalom.{name} is not in this build, which has no cars, robots, courses and simulator: install it "
                              "with SLALOM_DRIVING=1 pip install, or build all layers with CMake")
     raise AttributeError(f"module 'slalom' has no attribute '{name}'")
 

@@ -42,6 +42,7 @@ py::array_t<double> rows_of(const Items& items, Numbers&& numbers) {
 }
 
 void bind_driving(py::module_& module);
+void bind_navigation(py::module_& module);
 void bind_world(py::module_& module);
 
 }  // namespace slalom::python

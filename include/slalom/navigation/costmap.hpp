@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "slalom/core/grid_view.hpp"
@@ -29,9 +30,12 @@ class Costmap {
   /// has 3 to 20000 cells along each side, and the resolution is in [0.001, 10].
   Costmap(int width, int height, double resolution, UnknownCells unknown = UnknownCells::obstacle);
 
-  /// Takes the cells of `grid`. Returns false and changes nothing if its size or resolution is another, its
-  /// origin is beyond maps::PoseLimits, or it is turned (the yaw of its origin is not 0).
-  bool update(const maps::OccupancyGrid& grid) noexcept;
+  /// Takes the cells of `grid`, and your own prices of them, in the same order: being in a cell with price 1
+  /// costs as much as being in an unknown cell (CostOptions::unknown), and a search pays twice its length.
+  /// Prices are at most 1e6; those that are negative or not numbers count as 0. Returns false and changes
+  /// nothing if the size or resolution of the grid is another, the number of prices is neither 0 nor that of
+  /// the cells, the origin of the grid is beyond maps::PoseLimits, or it is turned (its yaw is not 0).
+  bool update(const maps::OccupancyGrid& grid, std::span<const float> prices = {}) noexcept;
 
   /// The distance (m) from the middle of the cell at a position (m) to that of the nearest obstacle cell: 0
   /// on an obstacle, at most `reach`.
@@ -47,7 +51,7 @@ class Costmap {
 
   /// The distances of all cells, for rollouts in the map frame.
   GridView<1> distances() const noexcept { return distances_.view(geometry_); }
-  /// The prices of all cells: 1 where they are unknown and priced, else 0.
+  /// The prices of all cells: your own, and 1 more where they are unknown and priced.
   GridView<1> prices() const noexcept { return prices_.view(geometry_); }
   /// Position and size of the cells.
   const maps::GridGeometry& geometry() const noexcept { return geometry_; }

@@ -33,6 +33,9 @@ class Footprint {
   /// A rectangle: `front` and `rear` (m) are the distances from the origin to its front and rear side.
   static Footprint rectangle(double front, double rear, double width);
 
+  /// The same shape, smaller around the origin so that the half width is less by `rim` (m), but at least a
+  /// fifth of what it was.
+  Footprint without_rim(double rim) const;
   /// The outline.
   std::span<const maps::Point> vertices() const noexcept { return vertices_; }
   /// The parts, which together cover the body.

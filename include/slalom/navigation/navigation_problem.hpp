@@ -106,14 +106,16 @@ struct NavigationMaps {
   /// The part of the path's present leg around the robot. It is looked up at (0, -s), where s (m) is the
   /// length from its beginning: x, y relative to `origin` (m), direction of travel (rad), and s.
   GridView<4> path;
-  maps::Point origin;                  ///< m, near the robot: states are relative to it
-  double progress = 0;                 ///< m from the beginning of that part to the robot
-  double window_length = 0;            ///< m, of that part
-  bool backward = false;               ///< whether the leg is driven in reverse
-  bool turns = false;                  ///< whether the robot turns on the spot, at `end`
-  bool ends_leg = false;               ///< whether that part ends where the leg does
-  bool ends_at_goal = false;           ///< whether that part ends at the goal
-  maps::Pose end;                      ///< end of that part, map frame; a turn ends at exactly this yaw
+  maps::Point origin;         ///< m, near the robot: states are relative to it
+  double progress = 0;        ///< m from the beginning of that part to the robot
+  double window_length = 0;   ///< m, of that part
+  bool backward = false;      ///< whether the leg is driven in reverse
+  bool turns = false;         ///< whether the robot turns on the spot, at `end`
+  bool ends_leg = false;      ///< whether that part ends where the leg does
+  bool ends_at_goal = false;  ///< whether that part ends at the goal
+  maps::Pose end;             ///< end of that part, map frame; a turn ends at exactly this yaw
+  bool overlaps = false;  ///< whether the body overlaps an obstacle now: rollouts then take it without a rim
+                          ///< of a cell, so that they tell an overlap by an error of a scan from a collision
   maps::MovingObstaclesView others{};  ///< moving obstacles, map frame
 };
 
@@ -146,7 +148,7 @@ class NavigationProblem {
         input_rate_max(
             Base::per_input(limits.max_acceleration, limits.max_acceleration, limits.max_turn_acceleration)),
         base_(limits),
-        body_(footprint, resolution),
+        bodies_{BodyCheck(footprint, resolution), BodyCheck(footprint.without_rim(resolution), resolution)},
         costs_(costs, step),
         step_(step),
         reach_(farthest_projection * step *
@@ -163,11 +165,15 @@ class NavigationProblem {
     end_y_ = maps.end.y - maps.origin.y;
     end_yaw_ = maps.end.yaw;
     others_ = maps.others.relative_to(maps.origin);
+    body_ = maps.overlaps ? 1 : 0;
     // A base that cannot turn on the spot must come to the end of a leg in its direction.
     const bool exact = steers<Base> && maps.ends_leg;
     path_weight_ = exact ? exact_path * static_cast<double>(costs_.path) : static_cast<double>(costs_.path);
     heading_weight_ = maps.turns ? 0.0 : (exact ? exact_heading : 1.0) * static_cast<double>(costs_.heading);
     turning_weight_ = (exact ? 0.0 : 1.0) * static_cast<double>(costs_.turning);
+    const double pull = maps.turns ? on_the_spot : 1.0;
+    progress_weight_ = pull * static_cast<double>(costs_.progress);
+    final_weight_ = pull * static_cast<double>(costs_.final_progress);
     drift_weight_ = maps.turns ? drift * static_cast<double>(step_) : 0.0;
     turn_weight_ = maps.turns ? costs_.goal_heading : Coefficient(0);
     near_goal_ = maps.ends_at_goal ? Coefficient(1) : Coefficient(0);
@@ -194,7 +200,7 @@ class NavigationProblem {
     seen.along = dx * seen.path_cosine + dy * seen.path_sine;
     seen.aside = dy * seen.path_cosine - dx * seen.path_sine;
     seen.price = slalom::look_up(prices_, x.x, x.y);
-    seen.obstacle = body_.check(distances_, x.x, x.y, seen.sine, seen.cosine);
+    seen.obstacle = bodies_[body_].check(distances_, x.x, x.y, seen.sine, seen.cosine);
     return seen;
   }
 
@@ -226,7 +232,7 @@ class NavigationProblem {
                      T(costs_.unknown) * seen.price;
     const Cost<T> met = others_.cost(x.x, x.y, seen.sine, seen.cosine, k);
     return {
-        {T(costs_.progress) * left(seen), T(path_weight_) * min(square(seen.aside), T(costs_.max_squared)),
+        {T(progress_weight_) * left(seen), T(path_weight_) * min(square(seen.aside), T(costs_.max_squared)),
          T(heading_weight_) * (T(1) - facing) * heading_error,
          T(costs_.clearance) * (T(1) - near) *
              exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
@@ -238,12 +244,12 @@ class NavigationProblem {
   /// Cost of the last state.
   template <class T>
   SLALOM_INLINE_CALLS Cost<T> terminal_cost(const State<T>&, const Seen<T>& seen) const {
-    return {T(costs_.final_progress) * left(seen), seen.obstacle.collided};
+    return {T(final_weight_) * left(seen), seen.obstacle.collided};
   }
 
  private:
   static constexpr double farthest = 5;  ///< m of clearance; keeps the exponential in range
-  static constexpr double exact_path = 10, exact_heading = 5;  ///< factors of weights, see set_maps
+  static constexpr double exact_path = 10, exact_heading = 5, on_the_spot = 0.1;  ///< factors of weights
   static constexpr double drift = 20;  ///< s/m^2, cost of the squared speed in a turn on the spot
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
 
@@ -276,14 +282,15 @@ class NavigationProblem {
   }
 
   Base base_;
-  BodyCheck body_;
+  std::array<BodyCheck, 2> bodies_;  ///< the body, and the one without a rim
   Weights costs_;
+  std::size_t body_ = 0;  ///< the one in use
   Coefficient step_, reach_;
   GridView<1> distances_, prices_;
   GridView<4> path_;
   maps::MovingObstaclesView others_;
-  Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, path_weight_, heading_weight_,
-      turning_weight_, drift_weight_, turn_weight_, near_goal_;
+  Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, progress_weight_, final_weight_,
+      path_weight_, heading_weight_, turning_weight_, drift_weight_, turn_weight_, near_goal_;
 };
 
 }  // namespace slalom::navigation

@@ -110,6 +110,7 @@ struct NavigationResult {
   Velocity command;
   int corrections = 0;   ///< values of it that the final check changed
   double remaining = 0;  ///< m of path to the goal
+  double delay = 0;      ///< s until commands take effect: the longest that was told, or else an estimate
   /// Predicted poses, map frame; the first is now. Empty unless the status is `following`, `detour`,
   /// `commands_ignored` or `braking`; with `braking` the plan is not followed.
   std::span<const maps::Pose> plan;

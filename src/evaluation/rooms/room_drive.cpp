@@ -1,17 +1,19 @@
 #include "slalom/evaluation/rooms/room_drive.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <deque>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "evaluation/rooms/mover_watch.hpp"
+#include "evaluation/rooms/room_figures.hpp"
+#include "slalom/core/math.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/drive.hpp"
-#include "slalom/evaluation/statistics.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "slalom/navigation/scan_map.hpp"
 
@@ -31,6 +33,8 @@ constexpr double start_spread = 0.03, start_turn = 0.1;  // m along each axis, r
 constexpr double walker_spread = 0.1, walker_pause = 1;  // share of the speed, s: largest changes
 constexpr double standing = 1e-3;                        // m/s and rad/s
 constexpr double min_driving_speed = 0.03;               // m/s
+constexpr double min_turning_speed = 0.08;               // rad/s
+constexpr double least_share = 0.8;                      // share of its path that a robot drives to the goal
 
 /// Varies the walkers of a scenario with the seed.
 std::vector<sim::Walker> varied(std::vector<sim::Walker> walkers, std::uint64_t seed) {
@@ -47,75 +51,24 @@ Pose varied(const Pose& start, RandomStream& random) {
   return {start.x + spread(start_spread), start.y + spread(start_spread), start.yaw + spread(start_turn)};
 }
 
-/// Counts how often plans change the side on which they pass something, until the robot is past it.
-class SideCounter {
- public:
-  SideCounter(const maps::Pose& start, const maps::Pose& goal)
-      : ahead_x_(goal.x - start.x), ahead_y_(goal.y - start.y) {}
-
-  void add(const maps::Pose& robot, const maps::Point& counted, std::span<const maps::Pose> plan) {
-    const double dx = counted.x - robot.x, dy = counted.y - robot.y;
-    if (plan.empty() || dx * ahead_x_ + dy * ahead_y_ <= 0) return;
-    const maps::Pose& end = plan.back();
-    const double left =
-        (dx * (end.y - robot.y) - dy * (end.x - robot.x)) / std::max(std::hypot(dx, dy), 1e-9);
-    if (std::abs(left) < side_margin) return;
-    const int side = left > 0 ? 1 : -1;
-    changes_ += last_ != 0 && side != last_;
-    last_ = side;
-  }
-  int changes() const { return changes_; }
-
- private:
-  static constexpr double side_margin = 0.1;  ///< m from the line; below it neither side is counted
-  double ahead_x_, ahead_y_;
-  int last_ = 0, changes_ = 0;
-};
-
-/// Counts changes between driving forward and back.
-class ReversalCounter {
- public:
-  void add(double forward) {
-    const int now = forward > min_driving_speed ? 1 : forward < -min_driving_speed ? -1 : 0;
-    changes_ += now == -direction_;
-    if (now != 0) direction_ = now;
-  }
-  int changes() const { return changes_; }
-
- private:
-  int direction_ = 1, changes_ = 0;
-};
-
-/// Wall-clock times of updates.
-class Stopwatch {
- public:
-  template <class Work>
-  auto measure(Work&& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    auto result = work();
-    times_.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    return result;
-  }
-  /// s; 0 without times. evaluation::percentile has the rule.
-  double percentile(double share) const { return times_.empty() ? 0 : evaluation::percentile(times_, share); }
-
- private:
-  std::vector<double> times_;
-};
-
 /// A robot in a room, among people. Each control period has `parts` steps.
 class RoomWorld {
  public:
   static constexpr int parts = 5;
 
   RoomWorld(const RoomScenario& scenario, std::uint64_t seed, const Pose& start)
-      : pose(start), room_(scenario.room), crowd_(room_, varied(scenario.walkers, seed)) {
+      : pose(start),
+        room_(scenario.room),
+        crowd_(room_, varied(scenario.walkers, seed)),
+        late_(static_cast<std::size_t>(std::lround(scenario.delay * parts / room_period))) {
     room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
   }
 
-  /// Moves robot and people. The robot has the velocity of the only command.
+  /// Moves robot and people. The robot has the velocity that the only command was a while ago.
   void step(std::span<const Velocity> commands) {
-    velocity = commands[0];
+    late_.push_back(commands[0]);
+    velocity = late_.front();
+    late_.pop_front();
     const double dt = room_period / parts, yaw = pose.yaw + 0.5 * dt * velocity.turn;
     const double c = std::cos(yaw), s = std::sin(yaw);
     const maps::Point in_room{c * velocity.forward - s * velocity.left,
@@ -144,6 +97,7 @@ class RoomWorld {
  private:
   sim::Room room_;
   sim::Crowd crowd_;
+  std::deque<Velocity> late_;  ///< commands that have no effect yet, one for each step
 };
 
 SolverOptions with_seed(SolverOptions solver, std::uint64_t seed) {
@@ -170,15 +124,17 @@ class RoomNavigator {
         ranges_(beams),
         predicts_(driver.predict_movers),
         goal_(scenario.goal),
+        given_(scenario.path),
+        stands_(scenario.odometry_stands),
         watch_(beams),
         map_(sim::map_of(scenario.room, resolution)),
         costmap_(map_.grid().width, map_.grid().height, resolution),
         navigator_((costmap_.update(map_.grid()), footprint()), with_base(driver.navigator, scenario.base),
                    with_seed(driver.solver, seed), costmap_) {}
 
-  /// Plans and follows a path from a pose; false if the map shows none.
+  /// Follows the scenario's path, or one that it plans from a pose; false if the map shows none.
   bool set_path(const Pose& from) {
-    const std::vector<Pose> path = path_from(from);
+    path = given_.empty() ? path_from(from) : given_;
     if (!path.empty()) navigator_.set_path(path);
     return !path.empty();
   }
@@ -195,15 +151,18 @@ class RoomNavigator {
     if (predicts_) others = watch_.update(scan, world.time);
     map_.add(predicts_ ? watch_.without_movers() : scan);
     costmap_.update(map_.grid());
-    const auto result = stopwatch.measure(
-        [&] { return navigator_.update(world.pose, world.velocity, costmap_, room_period, others); });
+    const auto result = stopwatch.measure([&] {
+      return navigator_.update(world.pose, stands_ ? Velocity{} : world.velocity, costmap_, room_period,
+                               others);
+    });
     command_ = result.command;
     return result;
   }
   Velocity command(const RoomWorld&) const { return command_; }
   void moved(const RoomWorld&) const {}
 
-  Stopwatch stopwatch;  ///< times of the navigator's updates
+  Stopwatch stopwatch;     ///< times of the navigator's updates
+  std::vector<Pose> path;  ///< the path that was set
 
  private:
   static navigation::Footprint footprint() {
@@ -215,6 +174,8 @@ class RoomNavigator {
   std::vector<double> ranges_;
   bool predicts_;
   Pose goal_;
+  std::vector<Pose> given_;
+  bool stands_;
   MoverWatch watch_;
   navigation::ScanMap map_;
   navigation::Costmap costmap_;
@@ -226,15 +187,38 @@ bool stands(const Velocity& v, double below = standing) {
   return std::abs(v.forward) < below && std::abs(v.left) < below && std::abs(v.turn) < below;
 }
 
+/// The end of a drive that a status stands for; a timeout if it goes on.
+RoomOutcome outcome_of(NavigationStatus status) {
+  switch (status) {
+    case NavigationStatus::goal_reached:
+      return RoomOutcome::reached;
+    case NavigationStatus::blocked:
+      return RoomOutcome::blocked;
+    case NavigationStatus::goal_occupied:
+      return RoomOutcome::occupied;
+    case NavigationStatus::commands_ignored:
+      return RoomOutcome::ignored;
+    default:
+      return RoomOutcome::timeout;
+  }
+}
+
+/// A scenario with the heading at the goal that belongs to a seed.
+RoomScenario with_heading(RoomScenario scenario, std::uint64_t seed) {
+  constexpr double pi = std::numbers::pi;
+  if (scenario.any_heading) scenario.goal.yaw = RandomStream({seed, 2}).uniform(-pi, pi);
+  return scenario;
+}
+
 /// A drive under way, with its figures.
 class RoomRun {
  public:
   RoomRun(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed)
-      : scenario_(scenario),
+      : scenario_(with_heading(scenario, seed)),
         random_({seed, 0}),
         loop_{RoomWorld(scenario, seed, varied(scenario.start, random_)), {}, RoomWorld::parts},
         sides_(scenario.start, scenario.goal) {
-    loop_.drivers.emplace_back(scenario, driver, seed, random_);
+    loop_.drivers.emplace_back(scenario_, driver, seed, random_);
     drive_.people.resize(loop_.world.room().people.size());
     if (!robot().set_path(loop_.world.pose))
       throw std::invalid_argument(std::string("scenario: ") + scenario.name + ": has no path");
@@ -252,9 +236,14 @@ class RoomRun {
   }
 
   RoomDrive result() {
-    drive_.success = drive_.outcome == (scenario_.has_way ? RoomOutcome::reached : RoomOutcome::blocked);
+    const Pose &pose = loop_.world.pose, &goal = scenario_.goal;
+    drive_.success = drive_.outcome == scenario_.wanted;
     drive_.side_changes = sides_.changes();
-    drive_.reversals = reversals_.changes();
+    drive_.reversals = std::max(reversals_.changes() - scenario_.cusps, 0);
+    drive_.turn_changes = turns_.changes();
+    drive_.command_change = std::sqrt(squared_changes_ / static_cast<double>(drive_.trace.size()));
+    drive_.goal_distance = std::hypot(goal.x - pose.x, goal.y - pose.y);
+    drive_.goal_angle = std::abs(maps::wrap_angle(goal.yaw - pose.yaw));
     drive_.update_p50 = robot().stopwatch.percentile(0.5);
     drive_.update_max = robot().stopwatch.percentile(1);
     return drive_;
@@ -272,10 +261,13 @@ class RoomRun {
   /// Counts sides, and the time until the robot says that there is no way.
   void decided(const navigation::NavigationResult& result) {
     const RoomWorld& world = loop_.world;
-    if (!scenario_.has_way && shown_closed_ < 0 && robot().path_from(world.pose).empty())
+    if (scenario_.wanted == RoomOutcome::blocked && shown_closed_ < 0 &&
+        robot().path_from(world.pose).empty())
       shown_closed_ = drive_.time;
     sides_.add(world.pose, world.counted(), result.plan);
     status_ = result.status;
+    squared_changes_ += square(result.command.turn - last_turn_);
+    last_turn_ = result.command.turn;
     if (status_ == NavigationStatus::blocked && drive_.answer_time < 0 && shown_closed_ >= 0)
       drive_.answer_time = drive_.time - shown_closed_;
   }
@@ -284,6 +276,8 @@ class RoomRun {
     const Velocity& velocity = loop_.world.velocity;
     drive_.length += room_period * std::hypot(velocity.forward, velocity.left);
     reversals_.add(velocity.forward);
+    turns_.add(velocity.turn);
+    drive_.aside = std::max(drive_.aside, distance_from(robot().path, loop_.world.pose));
   }
 
   bool ended() {
@@ -291,18 +285,21 @@ class RoomRun {
     if (world.collided) {
       const bool stood = stands(world.velocity, min_driving_speed);
       drive_.outcome = stood ? RoomOutcome::struck : RoomOutcome::collision;
-    } else if (stands(world.velocity)) {
-      if (status_ == NavigationStatus::goal_reached) drive_.outcome = RoomOutcome::reached;
-      if (status_ == NavigationStatus::blocked && !scenario_.has_way) drive_.outcome = RoomOutcome::blocked;
+    } else if (const RoomOutcome said = outcome_of(status_);
+               said == RoomOutcome::ignored || stands(world.velocity)) {
+      if (said == scenario_.wanted || said == RoomOutcome::reached) drive_.outcome = said;
+      const double least = least_share * (length_of(robot().path) - 1);
+      if (said == RoomOutcome::reached && drive_.length < least) drive_.outcome = RoomOutcome::early;
     }
     return drive_.outcome != RoomOutcome::timeout;
   }
 
-  const RoomScenario& scenario_;
+  const RoomScenario scenario_;
   RandomStream random_;
   Drive<RoomWorld, RoomNavigator> loop_;
   SideCounter sides_;
-  ReversalCounter reversals_;
+  SignCounter reversals_{min_driving_speed, 1}, turns_{min_turning_speed, 0};
+  double squared_changes_ = 0, last_turn_ = 0;
   NavigationStatus status_{};  ///< status of the last decision
   double shown_closed_ = -1;   ///< s, when the map of scans first showed no way; -1 before
   RoomDrive drive_;

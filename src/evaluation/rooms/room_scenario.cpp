@@ -89,13 +89,13 @@ void add_closed(Scenarios& all) {
                  {9, 2, {}, {box(5, 0.3, 5.8, 1.7)}},
                  {1, 1, 0},
                  {8, 1, 0},
-                 false});
+                 RoomOutcome::blocked});
   all.push_back({"closed-door",
                  "the only door is closed: the robot has to report that there is no way",
                  {9, 5, {box(4.4, 0, 4.6, 2), box(4.4, 3, 4.6, 5)}, {box(4.45, 2, 4.5, 3)}},
                  {1, 2.5, 0},
                  {8, 2.5, 0},
-                 false});
+                 RoomOutcome::blocked});
 }
 
 /// One person walks.
@@ -105,35 +105,35 @@ void add_walkers(Scenarios& all) {
                  {12, 2.4, {}, {}},
                  {1, 1.2, 0},
                  {11, 1.2, 0},
-                 true,
+                 RoomOutcome::reached,
                  {{{{11.5, 1.2}, {0.5, 1.2}}, 0.8}}});
   all.push_back({"inattentive-walker",
                  "a person who ignores the robot walks towards it in a corridor 3 m wide",
                  {12, 3, {}, {}},
                  {1, 1.5, 0},
                  {11, 1.5, 0},
-                 true,
+                 RoomOutcome::reached,
                  {{{{11.5, 1.5}, {0.5, 1.5}}, 0.8, 0.25, 0, false}}});
   all.push_back({"slow-walker",
                  "a person walks ahead at half of the robot's speed in a corridor 3 m wide",
                  {14, 3, {}, {}},
                  {1, 1.5, 0},
                  {12.5, 1.5, 0},
-                 true,
+                 RoomOutcome::reached,
                  {{{{2.6, 1.5}, {13.5, 1.5}}, 0.25}}});
   all.push_back({"crossing-walker",
                  "a person who ignores the robot crosses the path when it arrives",
                  {9, 6, {}, {}},
                  {1, 3, 0},
                  {8, 3, 0},
-                 true,
+                 RoomOutcome::reached,
                  {{{{4.5, 5.5}, {4.5, 0.5}}, 0.7, 0.25, 3.2, false}}});
   all.push_back({"blind-corner",
                  "a person comes out of a side corridor 1 m in front of the robot",
                  {10, 5, {box(0, 3, 4.4, 3.2), box(6, 3, 10, 3.2)}, {}},
                  {1, 1.5, 0},
                  {9, 1.5, 0},
-                 true,
+                 RoomOutcome::reached,
                  {{{{5.2, 4.6}, {5.2, 0.5}}, 1, 0.25, 5.5}}});
 }
 
@@ -144,7 +144,7 @@ void add_traffic(Scenarios& all) {
                  {12, 6, {}, {}},
                  {1, 3, 0},
                  {11, 3, 0},
-                 true,
+                 RoomOutcome::reached,
                  {{{{4.5, 5.5}, {4.5, 0.5}}, 0.9, 0.25, 4.2},
                   {{{5.5, 0.5}, {5.5, 5.5}}, 0.8, 0.25, 6},
                   {{{6.4, 5.5}, {6.4, 0.5}}, 1, 0.25, 8.5},
@@ -155,7 +155,7 @@ void add_traffic(Scenarios& all) {
                  {12, 4, {}, {box(5, 1.2, 5.8, 4)}},
                  {1, 2.2, 0},
                  {11, 2.2, 0},
-                 true,
+                 RoomOutcome::reached,
                  {{{{10.5, 0.7}, {0.6, 0.7}}, 0.8, 0.25, 2.5}}});
 }
 
@@ -171,7 +171,7 @@ void add_bases(Scenarios& all) {
        {8, 5, {box(3.9, 0, 4.1, 2.05), box(3.9, 2.95, 4.1, 5)}, {box(5.6, 1.2, 6.2, 1.8)}},
        {1, 2.5, right_angle},
        {7, 2.5, right_angle},
-       true,
+       RoomOutcome::reached,
        {},
        omnidirectional});
   all.push_back({"ackermann-aisle",
@@ -179,7 +179,7 @@ void add_bases(Scenarios& all) {
                  {14, 3, {}, {box(4, 0, 4.8, 1.5), box(8, 1.5, 8.8, 3)}},
                  {1, 1.5, 0},
                  {13, 1.5, 0},
-                 true,
+                 RoomOutcome::reached,
                  {},
                  ackermann});
 }
@@ -204,10 +204,11 @@ std::span<const RoomScenario> room_scenarios() {
 
 const RoomScenario& room_scenario(std::string_view name) {
   std::string names;
-  for (const RoomScenario& each : room_scenarios()) {
-    if (name == each.name) return each;
-    names += (names.empty() ? "" : ", ") + std::string(each.name);
-  }
+  for (const auto& scenarios : {room_scenarios(), manoeuvre_scenarios()})
+    for (const RoomScenario& each : scenarios) {
+      if (name == each.name) return each;
+      names += (names.empty() ? "" : ", ") + std::string(each.name);
+    }
   throw std::invalid_argument("scenario: " + std::string(name) + ": must be one of " + names);
 }
 

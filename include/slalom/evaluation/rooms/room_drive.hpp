@@ -8,20 +8,6 @@
 
 namespace slalom::evaluation {
 
-/// The end of a drive in a room.
-enum class RoomOutcome {
-  reached,    ///< the robot stands at the goal
-  blocked,    ///< it said that there is no way, and stands; if the scenario has one, the drive goes on
-  collision,  ///< its body overlapped a wall, an obstacle or a person
-  struck,     ///< the same, while it drove and turned slower than 0.03 m/s and rad/s: somebody walked into it
-  timeout,    ///< neither within the time
-};
-/// The name of an outcome, as it is written in results.
-constexpr const char* name(RoomOutcome outcome) noexcept {
-  constexpr const char* names[] = {"reached", "blocked", "collision", "struck", "timeout"};
-  return names[static_cast<int>(outcome)];
-}
-
 /// The driver of a robot.
 struct RoomDriver {
   navigation::NavigatorOptions navigator{};  ///< its base is replaced by the scenario's
@@ -37,12 +23,16 @@ inline constexpr double room_period = 0.05;
 /// A drive.
 struct RoomDrive {
   RoomOutcome outcome = RoomOutcome::timeout;  ///< how the drive ended
-  bool success =
-      false;  ///< whether the robot did as the scenario asks: reached the goal, or said that there is no way
-  double time = 0;       ///< s, of the drive
-  double length = 0;     ///< m driven
-  int side_changes = 0;  ///< changes of the side on which plans pass the object that the scenario counts
-  int reversals = 0;     ///< changes between driving forward and back
+  bool success = false;                        ///< whether the drive ended as the scenario asks
+  double time = 0;                             ///< s, of the drive
+  double length = 0;                           ///< m driven
+  int side_changes = 0;       ///< changes of the side on which plans pass the object that the scenario counts
+  int reversals = 0;          ///< changes between driving forward and back, beside those of the path
+  double command_change = 0;  ///< rad/s, root mean square of the changes of the commanded yaw rate
+  int turn_changes = 0;       ///< changes between turning left and right faster than 0.08 rad/s
+  double aside = 0;           ///< m, largest distance from the path
+  double goal_distance = 0;   ///< m from the goal, at the end
+  double goal_angle = 0;      ///< rad between its heading and the robot's, at the end
   /// s between the first scan in which a scenario without a way shows it, and the robot saying so; -1 if it
   /// did not. The way is shown to be closed once the search of the map of scans finds none.
   double answer_time = -1;
@@ -51,12 +41,12 @@ struct RoomDrive {
   std::vector<std::vector<maps::Point>> people;  ///< the same for each person: where they were, m
 };
 
-/// Drives a scenario for up to `timeout` (s), with a path planned on the map, which shows neither obstacles
-/// nor people; moving objects are known from the scans alone, whose ranges have a standard deviation of 0.01
-/// m. The seed varies the start by up to 0.03 m and 0.1 rad, the walkers' speeds by up to a tenth, and their
-/// pauses by up to 1 s. The same seed gives the same drive, but for the times of the updates. Throws
-/// std::invalid_argument where the timeout is not within [0.001, 86400] or the solver has no option `seed`,
-/// and as Navigator does.
+/// Drives a scenario for up to `timeout` (s), with its path or one planned on the map, which shows neither
+/// obstacles nor people; moving objects are known from the scans alone, whose ranges have a standard
+/// deviation of 0.01 m. The seed varies the start by up to 0.03 m and 0.1 rad, the walkers' speeds by up to a
+/// tenth, and their pauses by up to 1 s. The same seed gives the same drive, but for the times of the
+/// updates. Throws std::invalid_argument where the timeout is not within [0.001, 86400] or the solver has no
+/// option `seed`, and as Navigator does.
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                      double timeout = 60);
 

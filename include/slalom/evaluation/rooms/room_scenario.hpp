@@ -11,6 +11,24 @@
 
 namespace slalom::evaluation {
 
+/// The end of a drive in a room.
+enum class RoomOutcome {
+  reached,    ///< the robot stands at the goal
+  blocked,    ///< it said that there is no way, and stands
+  occupied,   ///< it said that the goal is occupied, and stands
+  ignored,    ///< it said that its commands are ignored
+  early,      ///< it stands at the goal before the end of the path
+  collision,  ///< its body overlapped a wall, an obstacle or a person
+  struck,     ///< the same, while it drove and turned slower than 0.03 m/s and rad/s: somebody walked into it
+  timeout,    ///< neither within the time
+};
+/// The name of an outcome, as it is written in results.
+constexpr const char* name(RoomOutcome outcome) noexcept {
+  constexpr const char* names[] = {"reached", "blocked",   "occupied", "ignored",
+                                   "early",   "collision", "struck",   "timeout"};
+  return names[static_cast<int>(outcome)];
+}
+
 /// A task for a mobile robot in a room.
 struct RoomScenario {
   static constexpr double robot_length = 0.7;  ///< m; the robot's origin is in its middle
@@ -21,16 +39,25 @@ struct RoomScenario {
   /// Its first obstacle is the one whose sides are counted, and if there is none the first walker. In a drive
   /// its `people` are those of `walkers`.
   sim::Room room;
-  maps::Pose start, goal;  ///< m, m, rad
-  bool has_way = true;     ///< whether the goal can be reached; otherwise the robot must say that it cannot
-  std::vector<sim::Walker> walkers{};  ///< people; a drive varies their speeds and pauses
-  navigation::BaseOptions base{};      ///< limits of the robot
+  maps::Pose start, goal;                     ///< m, m, rad
+  RoomOutcome wanted = RoomOutcome::reached;  ///< the end that is a success; if the robot says something
+                                              ///< else of that kind, the drive goes on
+  std::vector<sim::Walker> walkers{};         ///< people; a drive varies their speeds and pauses
+  navigation::BaseOptions base{};             ///< limits of the robot
+  std::vector<maps::Pose> path{};             ///< to follow; empty: planned on the map
+  bool any_heading = false;                   ///< whether the seed draws the heading at the goal
+  int cusps = 0;                 ///< changes between driving forward and back that the path asks for
+  double delay = 0;              ///< s until a command takes effect
+  bool odometry_stands = false;  ///< whether the robot is told that it stands
 };
 
-/// The scenarios.
+/// Rooms with obstacles and people.
 std::span<const RoomScenario> room_scenarios();
+/// Drives along given paths, to headings and goals that need a manoeuvre, and with faults of the robot.
+std::span<const RoomScenario> manoeuvre_scenarios();
 
-/// The scenario of this name. Throws std::invalid_argument that lists the names if there is none.
+/// The scenario of this name, of either kind. Throws std::invalid_argument that lists the names if there is
+/// none.
 const RoomScenario& room_scenario(std::string_view name);
 
 }  // namespace slalom::evaluation

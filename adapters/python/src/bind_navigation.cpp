@@ -1,0 +1,145 @@
+#include <optional>
+
+#include "driving.hpp"
+#include "slalom/navigation/navigator.hpp"
+#include "slalom/navigation/path_planner.hpp"
+
+namespace slalom::python {
+
+namespace {
+
+using navigation::Costmap;
+using navigation::Footprint;
+using navigation::Navigator;
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// The rows of an array, each with 2 or 3 numbers.
+std::vector<maps::Pose> poses_of(const Numbers& rows, const char* what, py::ssize_t columns) {
+  if (rows.ndim() != 2 || rows.shape(1) != columns)
+    throw py::value_error(std::string(what) + ": has shape " + shape_text(rows) + ", must have shape (n, " +
+                          std::to_string(columns) + ")");
+  std::vector<maps::Pose> poses;
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i)
+    poses.push_back({rows.at(i, 0), rows.at(i, 1), columns == 3 ? rows.at(i, 2) : 0});
+  return poses;
+}
+
+py::array_t<double> rows_of_poses(std::span<const maps::Pose> poses) {
+  py::array_t<double> rows({static_cast<py::ssize_t>(poses.size()), py::ssize_t{3}});
+  double* to = rows.mutable_data();
+  for (const maps::Pose& pose : poses)
+    for (const double number : {pose.x, pose.y, pose.yaw}) *to++ = number;
+  return rows;
+}
+
+void bind_costmap(py::module_& module) {
+  py::class_<Footprint>(module, "Footprint",
+                        "The outline of a robot: vertices [n, 2] (m), x forward, y to the left.")
+      .def(py::init([](const Numbers& vertices) {
+             std::vector<maps::Point> points;
+             for (const maps::Pose& each : poses_of(vertices, "vertices", 2))
+               points.push_back({each.x, each.y});
+             return Footprint(points);
+           }),
+           py::arg("vertices"))
+      .def_static("rectangle", &Footprint::rectangle, py::arg("front"), py::arg("rear"), py::arg("width"),
+                  "A rectangle: `front` and `rear` (m) are the distances from the origin to its sides.");
+  py::class_<Costmap>(module, "Costmap",
+                      "The distances from the cells of an OccupancyGrid to the nearest obstacle. `unknown`: "
+                      "whether unknown cells are an 'obstacle' or 'priced'.")
+      .def(py::init([](const maps::OccupancyGrid& grid, const std::string& unknown) {
+             if (unknown != "obstacle" && unknown != "priced")
+               throw py::value_error("Costmap.unknown: '" + unknown + "' must be one of obstacle, priced");
+             Costmap made(
+                 grid.width, grid.height, grid.resolution,
+                 unknown == "priced" ? navigation::UnknownCells::priced : navigation::UnknownCells::obstacle);
+             if (!made.update(grid)) throw py::value_error("Costmap.grid: its origin must have the yaw 0");
+             return made;
+           }),
+           py::arg("grid"), py::kw_only(), py::arg("unknown") = "obstacle")
+      .def(
+          "update",
+          [](Costmap& self, const maps::OccupancyGrid& grid,
+             const std::optional<py::array_t<float, py::array::c_style | py::array::forcecast>>& prices) {
+            std::span<const float> values;
+            if (prices) values = {prices->data(), static_cast<std::size_t>(prices->size())};
+            if (!self.update(grid, values))
+              throw py::value_error(
+                  "Costmap.update: grid and prices must have the size and resolution of the first grid, and "
+                  "the "
+                  "grid the yaw 0");
+          },
+          py::arg("grid"), py::arg("prices") = py::none(),
+          "Takes the cells of a grid, which may have moved, and your own prices [row, column] of them: being "
+          "in a cell with price 1 costs `unknown`, and a search pays twice its length.")
+      .def("distance", &Costmap::distance, py::arg("x"), py::arg("y"),
+           "The distance (m) from a position to the nearest obstacle.")
+      .def(
+          "collides",
+          [](const Costmap& self, const Footprint& footprint, const std::array<double, 3>& pose) {
+            return self.collides(footprint, to_pose(pose));
+          },
+          py::arg("footprint"), py::arg("pose"), "Whether the body overlaps an obstacle at (x, y, yaw).");
+  module.def(
+      "plan_path",
+      [](const Costmap& costmap, const Footprint& footprint, const std::array<double, 3>& start,
+         const std::array<double, 3>& goal) {
+        return rows_of_poses(navigation::plan_path(costmap, footprint, to_pose(start), to_pose(goal)));
+      },
+      py::arg("costmap"), py::arg("footprint"), py::arg("start"), py::arg("goal"),
+      "The cheapest path [n, 3] between two poses (x, y, yaw); no rows if there is none.");
+}
+
+void bind_navigator(py::module_& module) {
+  const std::string words =
+      "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
+      "with "
+      "the options of `solver`. Other options:\n\n" +
+      options_text(navigation::NavigatorOptions{});
+  py::class_<Navigator>(module, "Navigator", words.c_str())
+      .def(py::init([](const Footprint& footprint, const Costmap& costmap, const std::string& method,
+                       const py::dict& solver, const py::kwargs& options) {
+             navigation::NavigatorOptions set;
+             set_from_keywords(set, options, "Navigator");
+             SolverOptions of_solver = navigation::method_options(method, set.base);
+             for (const auto& [key, value] : solver)
+               if (!set_option(of_solver, key.cast<std::string>(), text_of(value)))
+                 throw py::type_error(method + ": unknown option '" + key.cast<std::string>() + "'");
+             return Navigator(footprint, set, of_solver, costmap);
+           }),
+           py::arg("footprint"), py::arg("costmap"), py::kw_only(), py::arg("method") = "svg_mppi",
+           py::arg("solver") = py::dict())
+      .def(
+          "set_path", [](Navigator& self, const Numbers& path) { self.set_path(poses_of(path, "path", 3)); },
+          py::arg("path"), "Follows a path [n, 3] from near the robot to the goal (docs/navigation.md).")
+      .def(
+          "update",
+          [](Navigator& self, const std::array<double, 3>& pose, const std::array<double, 3>& velocity,
+             const Costmap& costmap, double elapsed) {
+            navigation::NavigationResult result;
+            {
+              const py::gil_scoped_release unlock;
+              result = self.update(to_pose(pose), {velocity[0], velocity[1], velocity[2]}, costmap, elapsed);
+            }
+            const navigation::Velocity& command = result.command;
+            return py::dict("status"_a = navigation::name(result.status),
+                            "command"_a = py::make_tuple(command.forward, command.left, command.turn),
+                            "remaining"_a = result.remaining, "delay"_a = result.delay,
+                            "plan"_a = rows_of_poses(result.plan), "path"_a = rows_of_poses(result.path));
+          },
+          py::arg("pose"), py::arg("velocity"), py::arg("costmap"), py::arg("elapsed"),
+          "The command for the next control period, `elapsed` (s) after the last update. `velocity` is that "
+          "of the robot: forward, left (m/s), turn (rad/s). Returns status, command (as velocity), remaining "
+          "(m of path), delay (s), plan [n, 3] and path [n, 3].")
+      .def("reset", &Navigator::reset, py::arg("seed") = 0,
+           "Forgets the path, and starts the random numbers from `seed`.");
+}
+
+}  // namespace
+
+void bind_navigation(py::module_& module) {
+  bind_costmap(module);
+  bind_navigator(module);
+}
+
+}  // namespace slalom::python

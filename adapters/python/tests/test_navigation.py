@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+import slalom
+
+pytest.importorskip("slalom._driving")
+
+
+def room():
+    cells = np.zeros((60, 100), dtype=bool)
+    cells[20:40, 45:50] = True
+    return slalom.OccupancyGrid(cells, 0.1)
+
+
+def drive(seed):
+    costmap, body = slalom.Costmap(room()), slalom.Footprint.rectangle(0.3, 0.3, 0.4)
+    navigator = slalom.Navigator(body, costmap, max_forward=0.8, solver={"samples": 500})
+    navigator.reset(seed)
+    pose, velocity, trace = np.array([1.0, 3.0, 0.0]), (0.0, 0.0, 0.0), []
+    path = slalom.plan_path(costmap, body, pose, (9, 3, 1))
+    assert path.shape[1] == 3 and np.allclose(path[-1], (9, 3, 1))
+    navigator.set_path(path)
+    for _ in range(600):
+        result = navigator.update(pose, velocity, costmap, 0.05)
+        if result["status"] == "goal_reached":
+            break
+        assert not costmap.collides(body, pose)
+        velocity = result["command"]
+        forward, _, turn = velocity
+        pose = pose + 0.05 * np.array([forward * np.cos(pose[2]), forward * np.sin(pose[2]), turn])
+        trace.append(pose)
+    assert result["status"] == "goal_reached" and result["delay"] == 0
+    assert np.linalg.norm(pose[:2] - (9, 3)) < 0.15 and abs(pose[2] - 1) < 0.2
+    return np.array(trace)
+
+
+def test_a_robot_drives_round_a_block_to_its_goal_and_repeats():
+    assert np.array_equal(drive(1), drive(1))
+
+
+def test_paths_avoid_cells_with_a_price():
+    costmap, body = slalom.Costmap(room()), slalom.Footprint.rectangle(0.3, 0.3, 0.4)
+    prices = np.zeros((60, 100))
+    prices[:30, 40:60] = 10
+    costmap.update(room(), prices)
+    assert slalom.plan_path(costmap, body, (1, 2.9, 0), (9, 2.9, 0))[:, 1].max() > 4
+    costmap.update(room(), np.flipud(prices))
+    assert slalom.plan_path(costmap, body, (1, 3.1, 0), (9, 3.1, 0))[:, 1].min() < 2
+    with pytest.raises(ValueError, match="prices must have the size"):
+        costmap.update(room(), np.zeros(7))
+
+
+def test_errors_name_the_argument_and_the_rule():
+    costmap, body = slalom.Costmap(room(), unknown="priced"), slalom.Footprint([[0.2, 0.2], [-0.2, 0.2], [0, -0.3]])
+    assert costmap.distance(1, 1) > 0.5
+    assert slalom.plan_path(costmap, body, (1, 3, 0), (4.7, 3, 0)).shape == (0, 3)
+    navigator = slalom.Navigator(body, costmap)
+    for call, words in [(lambda: navigator.set_path(np.zeros((3, 2))), "path: has shape"),
+                        (lambda: slalom.Costmap(room(), unknown="free"), "unknown: 'free' must be one of"),
+                        (lambda: slalom.Navigator(body, costmap, max_forward=-1), "max_forward: '-1' must be in"),
+                        (lambda: costmap.update(slalom.OccupancyGrid(np.zeros((3, 3)), 0.1)), "size and resolution")]:
+        with pytest.raises(ValueError, match=words):
+            call()
+    with pytest.raises(TypeError, match="did you mean 'max_forward'"):
+        slalom.Navigator(body, costmap, max_forwards=1)
