@@ -21,11 +21,20 @@ constexpr int first_solves = 5;         // solves of the first plan on a leg
 constexpr double least_command = 0.05;  // m/s and rad/s, of commands that move a robot
 constexpr double share_followed = 0.2;  // least share of a command that a robot follows
 constexpr double ignored_after = 0.8;   // s
+constexpr int longest_stop = 100;       // steps of braking that are checked
 constexpr double max_period = 0.2;      // s for which the robot brakes in one command
 
 bool plausible(const Velocity& v) {
   return std::abs(v.forward) <= Velocity::largest && std::abs(v.left) <= Velocity::largest &&
          std::abs(v.turn) <= Velocity::largest;
+}
+
+/// The velocity after braking for a while (s).
+Velocity braked(const Velocity& v, const BaseOptions& base, double period) {
+  const double speed = std::hypot(v.forward, v.left);
+  const double kept = speed > 0 ? std::max(1 - base.max_acceleration * period / speed, 0.0) : 0;
+  const double turn = std::max(std::abs(v.turn) - base.max_turn_acceleration * period, 0.0);
+  return {kept * v.forward, kept * v.left, std::copysign(turn, v.turn)};
 }
 
 /// The last step of an update: makes the command finite and moves it into the limits of the base. Counts the
@@ -147,6 +156,18 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   const Footprint& body = maps_.overlaps ? core_ : footprint_;
   for (std::size_t i = 1; i <= last; ++i)
     if (costmap.collides(body, plan[i - 1], plan[i])) return true;
+  // After the first step the robot can still stop: speed and yaw rate fall by their own limits.
+  Velocity v = model_->command();
+  maps::Pose at = plan.front();
+  const double step = options_.time_step;
+  for (int i = 0; i < longest_stop && (v.forward != 0 || v.left != 0 || v.turn != 0); ++i) {
+    const double yaw = at.yaw + 0.5 * step * v.turn, c = std::cos(yaw), s = std::sin(yaw);
+    const maps::Pose next{at.x + step * (c * v.forward - s * v.left),
+                          at.y + step * (s * v.forward + c * v.left), at.yaw + step * v.turn};
+    if (costmap.collides(body, at, next)) return true;
+    at = next;
+    v = braked(v, options_.base, step);
+  }
   return false;
 }
 
@@ -158,12 +179,7 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
   result.remaining = way_.remaining();
   result.path = way_.points();
   if (!plausible(velocity)) return result;
-  const double period = std::clamp(elapsed, 0.0, max_period);
-  const double speed = std::hypot(velocity.forward, velocity.left);
-  const double kept = speed > 0 ? std::max(1 - options_.base.max_acceleration * period / speed, 0.0) : 0;
-  const double turn = std::abs(velocity.turn);
-  const double slower = std::max(turn - options_.base.max_turn_acceleration * period, 0.0);
-  result.command = {kept * velocity.forward, kept * velocity.left, std::copysign(slower, velocity.turn)};
+  result.command = braked(velocity, options_.base, std::clamp(elapsed, 0.0, max_period));
   return result;
 }
 
