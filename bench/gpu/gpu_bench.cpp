@@ -33,11 +33,23 @@ struct Case {
   Options options;
 };
 
+/// A GPU draws one batch of white noise, and its temperatures are fixed.
+void for_gpu(SvgMppiOptions& o) {
+  o.batches = 1;
+  o.noise.exponent = 0;
+  o.guides.gradient_temperature = 1;
+  o.guides.count = 4, o.guides.iterations = 10, o.guides.gradient_samples = 25;
+}
 template <class Options = MppiOptions>
 Case<Navigation, Options> navigation(int samples) {
   static const CostMap map;
-  Options o{.horizon = 100, .samples = samples, .input_min = {-0.35, -0.5}, .input_max = {0.5, 0.5}};
+  Options o{.horizon = 100,
+            .samples = samples,
+            .temperature = 1,
+            .input_min = {-0.35, -0.5},
+            .input_max = {0.5, 0.5}};
   if constexpr (std::is_same_v<Options, SvgMppiOptions>) {
+    for_gpu(o);
     o.variance_min = 0.01, o.variance_max = 0.04;
     o.guides.gradient_variance = o.guides.variance = o.guides.restart_variance = 0.04, o.guides.step = 0.02;
   } else {
@@ -48,7 +60,8 @@ Case<Navigation, Options> navigation(int samples) {
   return {"navigation", problem, {7.4, 7.4, 0.785398}, 0.02, 45, o};
 }
 Case<Learned, MppiOptions> network(int samples) {
-  MppiOptions o{.horizon = 50, .samples = samples, .variance = 0.25, .input_min = -1, .input_max = 1};
+  MppiOptions o{
+      .horizon = 50, .samples = samples, .temperature = 1, .variance = 0.25, .input_min = -1, .input_max = 1};
   return {"network", {random_network()}, {1, 0, 0}, 0, 2 * 1280 + 64 * 8, o};
 }
 Case<Pendulum, MppiOptions> pendulum(int samples) {
@@ -58,11 +71,13 @@ Case<Pendulum, MppiOptions> pendulum(int samples) {
 }
 Case<Pendulum, SvgMppiOptions> guided_pendulum(int samples) {
   SvgMppiOptions o{.horizon = 60, .samples = samples, .temperature = 0.2, .input_min = -5, .input_max = 5};
+  for_gpu(o);
   o.guides.gradient_variance = o.variance_min = 1, o.variance_max = 4;
   return {"pendulum", {}, {3.14159, 0}, 0.02, 30, o};
 }
 Case<Quadrotor, MppiOptions> quadrotor(int samples) {
-  MppiOptions o{.horizon = 40, .samples = samples, .input_min = {-6, -20}, .input_max = {6, 20}};
+  MppiOptions o{
+      .horizon = 40, .samples = samples, .temperature = 1, .input_min = {-6, -20}, .input_max = {6, 20}};
   o.variance = {2, 8};
   return {"quadrotor", {}, {}, 0.05, 60, o};
 }

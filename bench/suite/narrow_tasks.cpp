@@ -146,13 +146,10 @@ void add_narrow_tasks(std::vector<Task>& tasks) {
   tasks.push_back({"parking",
                    Ways::one,
                    40,
-                   {{0.8, -2, 2}, {0.1, -0.2, 0.2}},
+                   {{-2, 2}, {-0.2, 0.2}},
                    closed_loop(Parking{}, {6.5, 0.9, 0}, 120, parking)});
-  tasks.push_back({"corridor",
-                   Ways::one,
-                   30,
-                   {{1, -2, 2}, {1, -2, 2}},
-                   closed_loop(Corridor{}, {0, 0, 0, 0}, 100, corridor)});
+  tasks.push_back(
+      {"corridor", Ways::one, 30, {{-2, 2}, {-2, 2}}, closed_loop(Corridor{}, {0, 0, 0, 0}, 100, corridor)});
   tasks.push_back({"arm_among_balls", Ways::several, 20, joint_rates(),
                    closed_loop(ArmAmongBalls{}, arm_start(), 160, arm)});
 }

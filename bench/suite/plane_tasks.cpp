@@ -194,13 +194,13 @@ Verdict rings(const Rings& p, const Rings::State<double>& s, int k) {
 }  // namespace
 
 void add_plane_tasks(std::vector<Task>& tasks) {
-  tasks.push_back({"hovercraft_gap", Ways::one, 40, std::vector<TaskInput>(3, {1.5, -3, 3}),
+  tasks.push_back({"hovercraft_gap", Ways::one, 40, std::vector<TaskInput>(3, {-3, 3}),
                    closed_loop(Hovercraft{}, {0, 0.5, 0, 0, 0, 0}, flight_steps, hovercraft)});
-  tasks.push_back({"three_robots_swap", Ways::several, 30, std::vector<TaskInput>(6, {1, -2, 2}),
+  tasks.push_back({"three_robots_swap", Ways::several, 30, std::vector<TaskInput>(6, {-2, 2}),
                    closed_loop(Swap{}, {{2, -1, -1}, {0, 1.732, -1.732}, {0, 0, 0}, {0, 0, 0}}, 80, swap)});
-  tasks.push_back({"moving_goal", Ways::several, 25, std::vector<TaskInput>(2, {1.5, -4, 4}),
+  tasks.push_back({"moving_goal", Ways::several, 25, std::vector<TaskInput>(2, {-4, 4}),
                    closed_loop(Chase{}, {2, 0, 0, 0}, chase_steps, chase, move_goal)});
-  tasks.push_back({"steps_of_cost", Ways::several, 30, std::vector<TaskInput>(2, {1, -2, 2}),
+  tasks.push_back({"steps_of_cost", Ways::several, 30, std::vector<TaskInput>(2, {-2, 2}),
                    closed_loop(Rings{}, {0, 0, 0, 0}, ring_steps, rings)});
 }
 

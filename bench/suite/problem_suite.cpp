@@ -1,9 +1,9 @@
-// Solves the tasks of the suite in closed loop with several methods over temperatures, and writes one line of
-// CSV for each task, method and temperature. script/problem-suite runs it and makes the table and the plot.
+// Solves the tasks of the suite in closed loop with several methods and numbers of rollouts, and writes one
+// line of CSV for each task, method and number. script/problem-suite runs it and makes the table and the
+// plot.
 
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -14,48 +14,28 @@
 namespace slalom::suite {
 
 constexpr const char* usage =
-    "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...]\n"
-    "                            [--methods METHOD[:OPTION=VALUE]...,...] [--temperatures NUMBER,...]\n";
+    "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...] [--disturbed false]\n"
+    "                            [--methods METHOD[:OPTION=VALUE]...,...] [--rollouts NUMBER,...]\n";
 
 namespace {
 
-/// Rollouts of a solve: as many for every method, those of guides included.
-constexpr int rollouts = 1024;
-constexpr int guides = 4, guide_iterations = 10, gradient_samples = 12;
-
-SvgMppiOptions svg_mppi_options(const Task& task, double temperature) {
-  SvgMppiOptions o = scaled_options(task);
-  // A guide itself is evaluated in every iteration; all are before and after, with the last solution.
-  o.samples = rollouts - guide_iterations * guides * (gradient_samples + 1) - (2 * guides + 1);
-  o.temperature = o.guides.gradient_temperature = temperature;
-  o.guides.count = guides;
-  o.guides.iterations = guide_iterations;
-  o.guides.gradient_samples = gradient_samples;
-  return o;
-}
-
-/// The samples of an iteration, so that all iterations of a solve have as many rollouts as the other methods.
-int samples_of_iteration(const SolverOptions& options) {
+/// The default options of a method, with samples for so many rollouts in a solve, those of guides included.
+SolverOptions method_options(const std::string& method, const Task& task, int rollouts) {
+  SolverOptions options = default_options(method.c_str(), task);
+  if (SvgMppiOptions* const svg = options.get_if<SvgMppiOptions>()) {
+    GuideOptions& guides = svg->guides;
+    if (rollouts < 256) guides.count = guides.iterations = 1, guides.gradient_samples = 3;
+    // A guide itself is evaluated in every iteration; all are before and after, with the last solution. The
+    // last mean is evaluated, too.
+    svg->samples =
+        rollouts - guides.iterations * guides.count * (guides.gradient_samples + 1) - (2 * guides.count + 2);
+    return options;
+  }
   const int* const iterations = options.find<int>("iterations");
   const double* const decay = options.find<double>("sample_decay");
   double batches = 1;
   for (int i = 1; iterations && i < *iterations; ++i) batches += std::pow(decay ? *decay : 1, -i);
-  return static_cast<int>(rollouts / batches);
-}
-
-/// Options of a method, by the same rule for every task: those of docs/writing-a-problem.md, "Units".
-SolverOptions method_options(const std::string& method, const Task& task, double temperature) {
-  SolverOptions options = solver_options(method);
-  if (method == SvgMppiOptions::method) {
-    options = svg_mppi_options(task, temperature);
-  } else {
-    *options.find<int>("samples") = samples_of_iteration(options);
-    *options.find<PerInput>("variance") = variance(task);
-    if (double* const option = options.find<double>("temperature")) *option = temperature;
-  }
-  *options.find<int>("horizon") = task.horizon;
-  *options.find<PerInput>("input_min") = per_input(task, &TaskInput::low);
-  *options.find<PerInput>("input_max") = per_input(task, &TaskInput::high);
+  *options.find<int>("samples") = static_cast<int>(rollouts / batches);
   return options;
 }
 
@@ -81,7 +61,6 @@ void set_options(SolverOptions& options, const std::vector<std::string>& parts) 
 }
 
 double median(std::vector<double> values) {
-  if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -91,8 +70,9 @@ struct Arguments {
   int seeds = 40;
   std::uint64_t first_seed = 0;
   std::vector<std::string> tasks;  ///< empty: all
-  std::vector<std::string> methods{"mppi", "svg_mppi"};
-  std::vector<std::string> temperatures{"0.01", "0.1", "1", "10", "100"};
+  std::vector<std::string> methods{"mppi", "svg_mppi", "icem"};
+  std::vector<std::string> rollouts{"64", "256", "1024"};
+  bool disturbed = false;  ///< whether the plant differs from the model
 };
 
 Arguments parse(int argc, char** argv) {
@@ -109,8 +89,10 @@ Arguments parse(int argc, char** argv) {
       a.tasks = split(value, ',');
     } else if (name == "--methods") {
       a.methods = split(value, ',');
-    } else if (name == "--temperatures") {
-      a.temperatures = split(value, ',');
+    } else if (name == "--rollouts") {
+      a.rollouts = split(value, ',');
+    } else if (name == "--disturbed" && (value == "true" || value == "false")) {
+      a.disturbed = value == "true";
     } else {
       throw std::invalid_argument("unknown argument '" + name + "'");
     }
@@ -132,19 +114,17 @@ std::vector<Task> tasks_named(const std::vector<std::string>& names) {
 }
 
 void run(const Arguments& a) {
-  std::printf("task,several_ways,method,temperature,seeds,solved,effective_sample_size\n");
+  std::printf("task,several_ways,method,rollouts,seeds,solved,median_cost\n");
   for (const Task& task : tasks_named(a.tasks)) {
     for (const std::string& method : a.methods) {
-      std::optional<Outcome> of_any_temperature;  // of a method without one
-      for (const std::string& temperature : a.temperatures) {
+      for (const std::string& rollouts : a.rollouts) {
         const std::vector<std::string> parts = split(method, ':');
-        SolverOptions options = method_options(parts[0], task, std::stod(temperature));
+        SolverOptions options = method_options(parts[0], task, std::stoi(rollouts));
         set_options(options, parts);
         const Outcome outcome =
-            of_any_temperature ? *of_any_temperature : task.run({options, a.first_seed, a.seeds});
-        if (!options.find<double>("temperature")) of_any_temperature = outcome;
-        std::printf("%s,%d,%s,%s,%d,%d,%.4g\n", task.name.c_str(), task.ways == Ways::several, method.c_str(),
-                    temperature.c_str(), a.seeds, outcome.solved, median(outcome.effective_sample_sizes));
+            task.run({.options = options, .first = a.first_seed, .count = a.seeds, .disturbed = a.disturbed});
+        std::printf("%s,%d,%s,%s,%d,%d,%.6g\n", task.name.c_str(), task.ways == Ways::several, method.c_str(),
+                    rollouts.c_str(), a.seeds, outcome.solved, median(outcome.costs));
         std::fflush(stdout);
       }
     }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -18,9 +20,9 @@ enum class Verdict { running, failed, solved };
 
 /// The outcome of some runs.
 struct Outcome {
-  int solved = 0;                              ///< runs
-  std::vector<double> effective_sample_sizes;  ///< of every solve
-  std::vector<float> plan;                     ///< inputs of the last solve, [step][input]
+  int solved = 0;             ///< runs
+  std::vector<double> costs;  ///< of the closed loop, for each run; infinite if it was not solved
+  std::vector<float> plan;    ///< inputs of the last solve, [step][input]
 };
 
 /// Closed-loop runs of a task.
@@ -29,11 +31,13 @@ struct Runs {
   std::uint64_t first = 0;  ///< seed of the first run; the others follow
   int count = 0;            ///< number
   int steps = 0;            ///< most steps of a run; 0: those of the task
+  /// Whether the plant differs from the model: in each run, each input acts with 80 to 120 %, and normal
+  /// noise of 5 % of its range is added to it in every step.
+  bool disturbed = false;
 };
 
 /// An input of a task.
 struct TaskInput {
-  double deviation;  ///< standard deviation that samples should have
   double low, high;  ///< bounds
 };
 
@@ -56,23 +60,13 @@ inline PerInput per_input(const Task& task, double TaskInput::*value) {
   return PerInput(values);
 }
 
-/// The variance of the samples that each input should have, times `factor`.
-inline PerInput variance(const Task& task, double factor = 1) {
-  std::vector<double> values;
-  for (const TaskInput& input : task.inputs) values.push_back(factor * input.deviation * input.deviation);
-  return PerInput(values);
-}
-
-/// The options of svg_mppi for a task, by the rule of docs/writing-a-problem.md, "Units".
-inline SvgMppiOptions scaled_options(const Task& task) {
-  SvgMppiOptions o;
-  o.horizon = task.horizon;
-  o.input_min = per_input(task, &TaskInput::low);
-  o.input_max = per_input(task, &TaskInput::high);
-  o.variance = o.variance_max = o.guides.restart_variance = variance(task);
-  o.guides.variance = o.guides.gradient_variance = variance(task, 0.5);
-  o.variance_min = o.guides.step = variance(task, 0.25);
-  return o;
+/// The default options of a method, with the horizon and the bounds of a task.
+inline SolverOptions default_options(const char* method, const Task& task) {
+  SolverOptions options = solver_options(method);
+  *options.find<int>("horizon") = task.horizon;
+  *options.find<PerInput>("input_min") = per_input(task, &TaskInput::low);
+  *options.find<PerInput>("input_max") = per_input(task, &TaskInput::high);
+  return options;
 }
 
 /// Closed-loop runs of a controller of problem P from `start`. `judge(problem, x, k)` gives the verdict on
@@ -84,22 +78,39 @@ auto closed_loop(const P& problem, const typename P::template State<double>& sta
   return [=](const Runs& runs) {
     Outcome outcome;
     Controller controller(problem, runs.options);
+    const auto end_cost = [&](const auto& x) {
+      return predict(controller.problem(), x, static_cast<const Input<double, P::inputs>*>(nullptr), 0,
+                     static_cast<typename P::template State<double>*>(nullptr))
+          .value;
+    };
     for (int run = 0; run < runs.count; ++run) {
       const std::uint64_t seed = runs.first + static_cast<std::uint64_t>(run);
       controller.reset(seed);
       controller.problem() = problem;
       auto x = start;
+      RandomStream random({seed, 1});
+      Input<double, P::inputs> gain;
+      for (int i = 0; i < P::inputs; ++i) gain[i] = runs.disturbed ? 0.8 + 0.4 * random.uniform() : 1;
+      double cost = 0;
       Verdict verdict = Verdict::running;
       const int most = runs.steps > 0 ? std::min(runs.steps, steps) : steps;
       for (int k = 0; k < most && verdict == Verdict::running; ++k) {
         if constexpr (!std::is_same_v<Change, std::nullptr_t>) change(controller.problem(), x, k);
         const auto plan = controller.solve(x, {.elapsed = problem.dt});
         outcome.plan.assign(plan.stats.inputs.begin(), plan.stats.inputs.end());
-        outcome.effective_sample_sizes.push_back(plan.stats.effective_sample_size);
-        x = slalom::detail::step<P, double>(controller.problem(), x, NoLookUp{}, plan.inputs[0], 0);
+        Input<double, P::inputs> u = plan.inputs[0];
+        for (int i = 0; runs.disturbed && i < P::inputs; ++i) {
+          const double range = controller.bounds().high[i] - controller.bounds().low[i];
+          u[i] = gain[i] * u[i] + 0.05 * range * random.normal();
+        }
+        std::array<typename P::template State<double>, 2> states;
+        cost += predict(controller.problem(), x, &u, 1, states.data()).value - end_cost(states[1]);
+        x = states[1];
         verdict = judge(controller.problem(), x, k);
       }
       outcome.solved += verdict == Verdict::solved;
+      outcome.costs.push_back(verdict == Verdict::solved ? cost + end_cost(x)
+                                                         : std::numeric_limits<double>::infinity());
     }
     return outcome;
   };
@@ -129,7 +140,7 @@ struct PointMass {
 
 /// The inputs of the arm: rates of its joints.
 inline std::vector<TaskInput> joint_rates() {
-  return std::vector<TaskInput>(problems::Arm::joints, {0.5, -1.5, 1.5});
+  return std::vector<TaskInput>(problems::Arm::joints, {-1.5, 1.5});
 }
 
 /// The state in which the arm starts.

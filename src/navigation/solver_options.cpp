@@ -60,6 +60,7 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   options.guides.gradient_temperature = options.temperature;
   options.guides.count = 1;  // the best of several changes from solve to solve, and with it the variances
   options.guides.iterations = 2;
+  options.batches = 1;
   options.guides.gradient_samples = 64;
   return options;
 }

@@ -15,6 +15,7 @@
 #include "slalom/problems/pendulum.hpp"
 #include "slalom/problems/quadrotor.hpp"
 #include "slalom/slalom.hpp"
+#include "solvers/closed_form.hpp"
 
 namespace slalom::gpu {
 namespace {
@@ -122,12 +123,18 @@ void compare_methods(const P& problem, const typename P::template State<double>&
                      std::initializer_list<double> high) {
   MppiOptions mppi{.horizon = horizon,
                    .samples = 500,
+                   .temperature = 1,
                    .variance = squares(deviation, 1),
                    .input_min = low,
-                   .input_max = high};
+                   .input_max = high,
+                   .control_cost_discount = 0};
   compare(problem, mppi, start, {false, 16}, 3);
   if (can_fuse<P::inputs>) compare(problem, mppi, start, {true, 32}, 3);
-  SvgMppiOptions svg{.horizon = horizon, .samples = 500, .input_min = low, .input_max = high};
+  SvgMppiOptions svg = slalom::testing::closed_form(1);
+  svg.horizon = horizon;
+  svg.samples = 500;
+  svg.input_min = low;
+  svg.input_max = high;
   svg.variance = svg.variance_max = svg.guides.restart_variance = squares(deviation, 1);
   svg.guides.variance = svg.guides.gradient_variance = squares(deviation, 0.5);
   svg.variance_min = svg.guides.step = squares(deviation, 0.25);
@@ -168,9 +175,11 @@ TEST(GpuSettings, RefusesOptionsThatAGpuLacksByName) {
     }
     return "";
   };
-  EXPECT_EQ(refusal(MppiOptions{.samples = 2048}), "");
-  EXPECT_EQ(refusal(MppiOptions{.noise = {.knots = 4}}), "mppi.noise_knots: 4 must be 0 on a GPU");
-  EXPECT_EQ(refusal(MppiOptions{.horizon = 5000}),
+  EXPECT_EQ(refusal(MppiOptions{.samples = 2048, .temperature = 1}), "");
+  EXPECT_EQ(refusal(MppiOptions{}), "mppi.temperature: 0 must be above 0 on a GPU");
+  EXPECT_EQ(refusal(MppiOptions{.temperature = 1, .noise = {.knots = 4}}),
+            "mppi.noise_knots: 4 must be 0 on a GPU");
+  EXPECT_EQ(refusal(MppiOptions{.horizon = 5000, .temperature = 1}),
             "mppi.horizon: 5000 steps of 2 inputs do not fit into 64 KiB of a GPU's shared memory");
 }
 

@@ -24,7 +24,7 @@ class GpuErrors : public ::testing::Test {
     const int layout[] = {sizeof(Pendulum), alignof(Pendulum), sizeof(Arguments<Pendulum>), 1};
     std::copy_n(layout, 4, fake_layout);
   }
-  const MppiOptions options_{.horizon = 10, .samples = 64};
+  const MppiOptions options_{.horizon = 10, .samples = 64, .temperature = 1};
 };
 
 TEST_F(GpuErrors, ThereMustBeCodeOfThisVersionAndMemory) {

@@ -25,8 +25,9 @@ std::vector<float> first_plans(const Task& task, simd::Target target, std::size_
   if (child == 0) {
     setenv("SLALOM_TARGET", simd::name(target), 1);
     for (std::size_t seed = 0; seed < seeds; ++seed) {
-      const auto plan =
-          task.run({.options = suite::scaled_options(task), .first = seed, .count = 1, .steps = 1}).plan;
+      SolverOptions options = suite::default_options("svg_mppi", task);
+      *options.find<int>("batches") = 1;  // the choice of a best sample may differ
+      const auto plan = task.run({.options = options, .first = seed, .count = 1, .steps = 1}).plan;
       const std::size_t bytes = plan.size() * sizeof(float);
       if (write(ends[1], plan.data(), bytes) != static_cast<ssize_t>(bytes)) _exit(1);
     }

@@ -6,6 +6,7 @@
 
 #include "slalom/problems/passing_point.hpp"
 #include "slalom/slalom.hpp"
+#include "solvers/closed_form.hpp"
 
 /// The claim of Honda et al. as figures: with two ways round an obstacle, forward KL (mppi) averages them,
 /// SVG-MPPI commits to one. A point passes a disc that lies on its way; left and right are equally good.
@@ -61,22 +62,23 @@ class ModeSeeking : public ::testing::TestWithParam<double> {};
 TEST_P(ModeSeeking, SvgMppiCommitsWhereMppiAverages) {
   const double temperature = GetParam();
   std::printf("[ modes    ] temperature %g\n", temperature);
-  const Outcome mppi = outcome(MppiOptions{.temperature = temperature});
-  const Outcome both =
-      outcome(SvgMppiOptions{.temperature = temperature, .guides = {.gradient_temperature = temperature}});
-  const Outcome paper = outcome(SvgMppiOptions{.temperature = temperature,
-                                               .guides = {.count = 1,
-                                                          .gradient_samples = 100,
-                                                          .gradient_temperature = temperature,
-                                                          .weight = GuideWeight::importance,
-                                                          .restart = false,
-                                                          .sample_around = SampleCentre::solution},
-                                               .published = {.fit_standard_deviation = true}});
-  const Outcome nominal = outcome(SvgMppiOptions{.temperature = temperature,
-                                                 .guides = {.gradient_temperature = temperature},
-                                                 .adapt_covariance = false});
-  const Outcome covariance = outcome(SvgMppiOptions{
-      .temperature = temperature, .guides = {.gradient_temperature = temperature}, .use_nominal = false});
+  const SvgMppiOptions closed = testing::closed_form(temperature);
+  const Outcome mppi = outcome(testing::with_control_term(temperature));
+  const Outcome both = outcome(closed);
+  SvgMppiOptions options = closed;
+  options.guides.count = 1;
+  options.guides.gradient_samples = 100;
+  options.guides.weight = GuideWeight::importance;
+  options.guides.restart = false;
+  options.guides.sample_around = SampleCentre::solution;
+  options.published.fit_standard_deviation = true;
+  const Outcome paper = outcome(options);
+  options = closed;
+  options.adapt_covariance = false;
+  const Outcome nominal = outcome(options);
+  options = closed;
+  options.use_nominal = false;
+  const Outcome covariance = outcome(options);
   print("mppi", mppi);
   print("svg_mppi", both);
   print("svg_mppi as printed", paper);

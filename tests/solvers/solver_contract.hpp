@@ -64,7 +64,8 @@ inline std::vector<OptionSet> option_sets() {
       {"svg_mppi_nominal_only", SvgMppiOptions{.adapt_covariance = false}},
       {"svg_mppi_covariance_only", SvgMppiOptions{.use_nominal = false}},
       {"svg_mppi_neither", SvgMppiOptions{.use_nominal = false, .adapt_covariance = false}},
-      {"svg_mppi_five_guides", SvgMppiOptions{.guides = {.count = 5, .weight = GuideWeight::importance}}},
+      {"svg_mppi_five_guides",
+       SvgMppiOptions{.guides = {.count = 5, .gradient_temperature = 1, .weight = GuideWeight::importance}}},
       {"svg_mppi_pooled_paths",
        SvgMppiOptions{.guides = {.count = 3}, .published = {.fit_all_guides = true}}},
       {"svg_mppi_around_solution", SvgMppiOptions{.guides = {.count = 1,
@@ -82,7 +83,7 @@ inline std::vector<OptionSet> option_sets() {
       {"icem_mean", IcemOptions{.send_best = false}},
       {"dial_mpc_all_parts",
        DialMpcOptions{.noise = {.exponent = 1}, .weighting = {.target_ess_fraction = 0.03}}},
-      {"svg_mppi_knots", SvgMppiOptions{.noise = {.knots = 5}}},
+      {"svg_mppi_knots", SvgMppiOptions{.noise = {.exponent = 0, .knots = 5}}},
       {"cem_coloured", CemOptions{.noise = {.exponent = 2}}}};
   sets.insert(sets.end(), std::begin(variants), std::end(variants));
   return sets;

@@ -9,6 +9,7 @@
 #include "slalom/core/option_access.hpp"
 #include "slalom/gpu/kernels/guides.hpp"
 #include "slalom/gpu/kernels/samples.hpp"
+#include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 
@@ -40,14 +41,23 @@ struct Shape {
   }
 };
 
-/// Refuses options with another value than the default that a GPU does not have.
+/// The values that a GPU needs of options that it does not have: one batch of white noise.
+template <class Options>
+Options gpu_defaults() {
+  Options o;
+  o.noise = {};
+  if constexpr (requires { o.batches; }) o.batches = 1;
+  return o;
+}
+
+/// Refuses options that a GPU does not have, and temperatures that would follow from the costs.
 template <class Options>
 void require_supported(const Options& options) {
   constexpr std::string_view supported =
       " horizon samples temperature variance input_min input_max shift_warm_start control_cost_discount seed "
       "threads guides guide_iterations guide_step guide_variance gradient_samples gradient_variance "
       "gradient_temperature restart_guides restart_variance variance_min variance_max ";
-  const auto defaults = list_options(Options{});
+  const auto defaults = list_options(gpu_defaults<Options>());
   const auto entries = list_options(options);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::string name = entries[i].declaration.name;
@@ -57,6 +67,8 @@ void require_supported(const Options& options) {
                                   to_text(entries[i].value) + " must be " + to_text(defaults[i].value) +
                                   " on a GPU");
     }
+    if (name.ends_with("temperature") && known && to_text(entries[i].value) == "0")
+      throw std::invalid_argument(std::string(Options::method) + "." + name + ": 0 must be above 0 on a GPU");
   }
 }
 
@@ -72,10 +84,16 @@ inline int guide_floats_of(const Settings& s, int rows) {
 /// The settings of a solve. Throws std::invalid_argument on options out of range, on options that a GPU does
 /// not have, and where a tile or a guide does not fit into the shared memory. Tests give a shape.
 template <class Options>
-Settings settings_of(const Options& o, int inputs, std::optional<Shape> given = {}) {
+Settings settings_of(const Options& given_options, int inputs, std::optional<Shape> given = {}) {
   constexpr bool guided = std::is_same_v<Options, SvgMppiOptions>;
-  validate_options(o, Options::method, inputs);
-  require_supported(o);
+  validate_options(given_options, Options::method, inputs);
+  require_supported(given_options);
+  Options o = given_options;
+  if constexpr (guided) {
+    o = slalom::detail::with_guide_variances(o, inputs);
+  } else {
+    o = slalom::detail::with_variances(o, inputs);
+  }
   if (inputs > most_inputs)
     throw std::invalid_argument("problem: has " + std::to_string(inputs) + " inputs, a GPU takes at most " +
                                 std::to_string(most_inputs));

@@ -16,14 +16,14 @@ struct CemOptions {
 
   int horizon = 30;
   int samples = 512;      ///< control sequences drawn in each iteration
-  PerInput variance = 1;  ///< variance at the start of every solve
+  PerInput variance = 0;  ///< variance at the start of every solve
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
   int iterations = 5;
   double elite_share = 0.1;
   double smoothing = 0.1;
-  PerInput variance_min = 1e-4;
+  PerInput variance_min = 0;
   bool send_best = false;
 
   NoiseOptions noise{};  ///< shape of the noise; white and normal

@@ -18,8 +18,8 @@ struct DialMpcOptions {
 
   int horizon = 30;
   int samples = 512;  ///< control sequences drawn in each update
-  double temperature = 1;
-  PerInput variance = 1;  ///< variance in the first update, at the last step
+  double temperature = 0;
+  PerInput variance = 0;  ///< variance in the first update, at the last step
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 

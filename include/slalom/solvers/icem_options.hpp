@@ -18,14 +18,14 @@ struct IcemOptions {
 
   int horizon = 30;
   int samples = 320;      ///< control sequences drawn in the first iteration
-  PerInput variance = 1;  ///< variance at the start of every solve
+  PerInput variance = 0;  ///< variance at the start of every solve
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
   int iterations = 5;
   double elite_share = 0.03;  ///< share of the first iteration's samples
   double smoothing = 0.1;
-  PerInput variance_min = 1e-4;
+  PerInput variance_min = 0;
   double kept_elite_share = 0.3;
   double sample_decay = 1.25;
   bool send_best = true;

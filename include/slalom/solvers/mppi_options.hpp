@@ -10,20 +10,20 @@
 namespace slalom {
 
 /// Options of `mppi`, model predictive path integral control. Defaults are the method of Williams et al.
-/// (2018).
+/// (2018) without control term, and with a temperature from the costs.
 /// `visit_options` below describes the fields.
 struct MppiOptions {
   static constexpr const char* method = "mppi";  ///< name in configurations
 
   int horizon = 30;
   int samples = 1024;
-  double temperature = 1;
-  PerInput variance = 1;
+  double temperature = 0;
+  PerInput variance = 0;
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
   NoiseOptions noise{};          ///< shape of the noise; white and normal
   WeightingOptions weighting{};  ///< how costs become weights; exponentially
-  double control_cost_discount = 0;
+  double control_cost_discount = 1;
   double zero_mean_share = 0;
   bool shift_warm_start = true;
   std::uint64_t seed = 0;

@@ -36,14 +36,24 @@ void visit_sampling_options(Options& o, Visit&& visit) {
   visit(o.horizon,
         {"horizon", "steps", "inputs of a control sequence; the rollout has one state more", 1, 10000, "T"});
   visit(o.samples, {"samples", "", "control sequences drawn in a solve", 1, 4194304, "K"});
-  if constexpr (requires { o.temperature; }) {
+  if constexpr (requires { o.weighting; }) {
+    visit(
+        o.temperature,
+        {"temperature", "",
+         "cost difference at which a weight falls by a factor of e; 0: follows from the costs of each solve",
+         0, finite, "lambda"});
+  } else if constexpr (requires { o.temperature; }) {
     visit(
         o.temperature,
         {"temperature", "",
          "cost difference at which a weight falls by a factor of e; small: the best sample, large: the mean",
          1e-6, finite, "lambda"});
   }
-  visit(o.variance, {"variance", "input^2", "variance of the samples", 0, finite, "Sigma"});
+  visit(
+      o.variance,
+      {"variance", "input^2",
+       "variance of the samples; 0: the square of a quarter of the range between the bounds, 1 without them",
+       0, finite, "Sigma"});
   visit(o.input_min, {"input_min", "input", "lower bound of the inputs"});
   visit(o.input_max, {"input_max", "input", "upper bound of the inputs"});
   visit(o.zero_mean_share,
@@ -69,10 +79,11 @@ void visit_noise_options(Options& o, Visit&& visit) {
 
 template <class Options, class Visit>
 void visit_weighting_options(Options& o, Visit&& visit) {
-  visit(
-      o.target_ess_fraction,
-      {"target_ess_fraction", "",
-       "effective sample size, as a fraction of the samples, to which the temperature adapts; 0: off", 0, 1});
+  visit(o.target_ess_fraction, {"target_ess_fraction", "",
+                                "effective sample size, as a fraction of the samples, to which the "
+                                "temperature adapts; 0: 0.6 sqrt(K) / "
+                                "K where temperature is 0",
+                                0, 1});
 }
 
 template <class Options, class Visit>
@@ -82,7 +93,7 @@ void visit_cross_entropy_options(Options& o, Visit&& visit) {
         {"elite_share", "", "share of the samples to which the distribution is refitted; at least one sample",
          0, 1, "rho"});
   visit(o.smoothing, {"smoothing", "", "share of the old distribution kept in an update", 0, 1});
-  visit(o.variance_min, {"variance_min", "input^2", "least variance", 0, finite});
+  visit(o.variance_min, {"variance_min", "input^2", "least variance; 0: 1e-4 of variance", 0, finite});
   visit(o.send_best, {"send_best", "", "send the best sample seen instead of the mean"});
 }
 

@@ -36,17 +36,17 @@ inline const char* const* enum_names(SampleCentre) {
 /// The guide particles of `svg_mppi`, which follow a gradient to a mode.
 /// `visit_guide_options` below describes the fields.
 struct GuideOptions {
-  int count = 4;
-  int iterations = 10;
-  PerInput step = 0.125;
-  PerInput variance = 1;
-  int gradient_samples = 25;
-  PerInput gradient_variance = 0.25;
-  double gradient_temperature = 1;
+  int count = 2;
+  int iterations = 2;
+  PerInput step = 0;
+  PerInput variance = 0;
+  int gradient_samples = 7;
+  PerInput gradient_variance = 0;
+  double gradient_temperature = 0;
   GuideWeight weight = GuideWeight::state_cost;
   /// Restarted guides search for other modes; the best guide is kept until another is better.
   bool restart = true;
-  PerInput restart_variance = 1;
+  PerInput restart_variance = 0;
   /// If `use_nominal` is false, samples are always drawn around the last solution.
   SampleCentre sample_around = SampleCentre::nominal;
 };
@@ -58,19 +58,20 @@ struct SvgMppiOptions {
 
   int horizon = 30;
   int samples = 1024;
-  double temperature = 1;
-  PerInput variance = 1;  ///< variance of the samples if it is not adapted
+  int batches = 0;
+  double temperature = 0;
+  PerInput variance = 0;  ///< variance of the samples if it is not adapted
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
   GuideOptions guides{};  ///< the guide particles
   bool use_nominal = true;
   bool adapt_covariance = true;
-  PerInput variance_min = 0.01;
-  PerInput variance_max = 1;
+  PerInput variance_min = 0;
+  PerInput variance_max = 0;
 
-  NoiseOptions noise{};          ///< shape of the noise; by default white and normal
-  WeightingOptions weighting{};  ///< how costs become weights
+  NoiseOptions noise{.exponent = 2};  ///< shape of the noise; coloured and normal
+  WeightingOptions weighting{};       ///< how costs become weights
   double control_cost_discount = 0;
   double zero_mean_share = 0;
   bool shift_warm_start = true;  ///< the guides are shifted, too
@@ -88,21 +89,25 @@ void visit_guide_options(Options& o, Visit&& visit) {
         {"guide_iterations", "", "number of steps by which the guides move in a solve", 1, 1000, "L"});
   visit(o.step,
         {"guide_step", "input^2",
-         "step size: a step moves a guide by epsilon / Sigma_g of the way to its samples' weighted mean", 0,
-         finite, "epsilon"});
-  visit(o.variance,
-        {"guide_variance", "input^2", "variance of the initial guides, and the variance in their weights", 0,
-         finite, "Sigma"});
+         "step size: a step moves a guide by epsilon / Sigma_g of the way to its samples' weighted mean; 0: "
+         "half of gradient_variance",
+         0, finite, "epsilon"});
+  visit(o.variance, {"guide_variance", "input^2",
+                     "variance of the initial guides, and the variance in their weights; 0: half of variance",
+                     0, finite, "Sigma"});
   visit(o.gradient_samples, {"gradient_samples", "", "samples for the gradient of a guide", 1, 65536, "N"});
   visit(o.gradient_variance,
-        {"gradient_variance", "input^2", "variance of the samples for the gradient", 0, finite, "Sigma_g"});
+        {"gradient_variance", "input^2", "variance of the samples for the gradient; 0: half of variance", 0,
+         finite, "Sigma_g"});
   visit(o.gradient_temperature,
-        {"gradient_temperature", "", "temperature of the weights of the gradient", 1e-6, finite, "lambda"});
+        {"gradient_temperature", "",
+         "temperature of the weights of the gradient; 0: follows from the costs of its samples", 0, finite,
+         "lambda"});
   visit(o.weight, {"guide_weight", "", "how the weights of the gradient are computed"});
   visit(o.restart, {"restart_guides", "",
                     "all guides but the best restart in every solve, at smooth deviations from the best"});
-  visit(o.restart_variance,
-        {"restart_variance", "input^2", "variance of the deviations at which guides restart", 0, finite});
+  visit(o.restart_variance, {"restart_variance", "input^2",
+                             "variance of the deviations at which guides restart; 0: variance", 0, finite});
   visit(o.sample_around, {"sample_around", "",
                           "mean of the samples: the nominal sequence, or the last solution as in the paper"});
 }
@@ -112,9 +117,10 @@ void visit_variance_options(Options& o, Visit&& visit) {
   visit(o.use_nominal, {"use_nominal", "", "use the best guide as the nominal sequence (NS), equation (12)"});
   visit(o.adapt_covariance,
         {"adapt_covariance", "", "fit the variances to the path of the best guide (AC), equation (13)"});
-  visit(o.variance_min, {"variance_min", "input^2", "least adapted variance", 0, finite});
-  visit(o.variance_max,
-        {"variance_max", "input^2", "largest adapted variance; variance_min where it is less", 0, finite});
+  visit(o.variance_min,
+        {"variance_min", "input^2", "least adapted variance; 0: a quarter of variance", 0, finite});
+  visit(o.variance_max, {"variance_max", "input^2",
+                         "largest adapted variance; variance_min where it is less; 0: variance", 0, finite});
 }
 
 }  // namespace detail
@@ -123,6 +129,12 @@ template <class Options, class Visit>
 requires is_options_of<Options, SvgMppiOptions>
 void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
+  visit(
+      o.batches,
+      {"batches", "",
+       "parts of the samples, each drawn around the mean of the last; 1: the paper's closed form; 0: by the "
+       "number of samples, 4 to 8. Always 1 with samples around the solution",
+       0, 1000});
   detail::visit_guide_options(o.guides, visit);
   detail::visit_variance_options(o, visit);
   detail::visit_noise_options(o.noise, visit);

@@ -5,6 +5,7 @@
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/solvers/cem_options.hpp"
+#include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/icem_options.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
@@ -199,7 +200,7 @@ class CemSolver final : public SolverBase {
     for (std::size_t r = 0; r < size(); ++r) {
       const float least = std::min(min_variance_[r], first_variance_[r]);
       const float variance = static_cast<float>(sums_[r]);
-      variance_[r] = std::clamp(variance + kept_share * (variance_[r] - variance), least, 1e12f);
+      variance_[r] = std::clamp(variance + kept_share * (variance_[r] - variance), least, 1e30f);
       mean_[r] = elite_mean_[r] + kept_share * (mean_[r] - elite_mean_[r]);
     }
     clamp(mean_.data());
@@ -229,7 +230,8 @@ class CemSolver final : public SolverBase {
 
 std::unique_ptr<Solver> make_solver(const CemOptions& options, int inputs, std::shared_ptr<ThreadPool> pool) {
   validate_options(options, CemOptions::method, inputs);
-  return std::make_unique<CemSolver>(CemOptions::method, options, Memory{}, inputs, std::move(pool));
+  return std::make_unique<CemSolver>(CemOptions::method, detail::with_variances(options, inputs), Memory{},
+                                     inputs, std::move(pool));
 }
 
 std::unique_ptr<Solver> make_solver(const IcemOptions& o, int inputs, std::shared_ptr<ThreadPool> pool) {
@@ -250,7 +252,8 @@ std::unique_ptr<Solver> make_solver(const IcemOptions& o, int inputs, std::share
                            .seed = o.seed,
                            .threads = o.threads};
   const Memory memory{o.kept_elite_share, o.sample_decay, true};
-  return std::make_unique<CemSolver>(IcemOptions::method, options, memory, inputs, std::move(pool));
+  return std::make_unique<CemSolver>(IcemOptions::method, detail::with_variances(options, inputs), memory,
+                                     inputs, std::move(pool));
 }
 
 }  // namespace slalom

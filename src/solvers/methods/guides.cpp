@@ -6,6 +6,7 @@
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "solvers/methods/gaussian_fit.hpp"
+#include "solvers/sampling/seek_temperature.hpp"
 
 namespace slalom::detail {
 
@@ -34,9 +35,28 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
     std::fill_n(gradient, v.rows, 0.0f);
     return false;
   }
-  const double sum =
-      kernels::exponential_weights(totals, totals, least, s.temperature, block, weights).weight;
-  const double temperature = s.temperature;
+  const auto weigh = [&](double temperature) {
+    return kernels::exponential_weights(totals, totals, least, static_cast<float>(temperature), block,
+                                        weights);
+  };
+  double temperature = s.temperature;
+  if (!(temperature > 0)) {
+    double excess = 0;
+    int counted = 0;
+    for (int i = block.first; i < block.first + samples; ++i) {
+      if (!(totals[i] < infinite)) continue;
+      excess += static_cast<double>(totals[i]) - static_cast<double>(least);
+      ++counted;
+    }
+    const auto effective_size = [&](double t) {
+      const WeightSums<float> sums = weigh(t);
+      const double weight = static_cast<double>(sums.weight);
+      return weight * weight / static_cast<double>(sums.squared);
+    };
+    const double wanted = std::max(default_effective_size(samples), 1.0);
+    temperature = excess > 0 ? seek_temperature(wanted, excess / counted, 0, effective_size) : 1;
+  }
+  const double sum = weigh(temperature).weight;
   const double floor = s.subtract_minimum ? s.floor : s.floor * std::exp(least / temperature);
   kernels::weighted_sums(v, weights, s.centre, block, gradient);
   for (int r = 0; r < v.rows; ++r) {
@@ -225,7 +245,7 @@ void Guides::step(int g, int iteration) noexcept {
 void Guides::begin_move(const float* solution, const float* nominal, int shares) noexcept {
   for (int r = 0; r < rows_; ++r) {
     const double inverse =
-        options_.guides.gradient_temperature *
+        weight_temperature() *
         inverse_variance<double>(weight_variance_[r], reproduction().inverse_variance_offset);
     const double u = solution[r], n = nominal[r];
     solution_[r] = solution[r];
@@ -272,11 +292,18 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
   return iterations_;
 }
 
+float Guides::cost(const BatchEvaluator& evaluator, const float* sequence) noexcept {
+  ends_.set_sample(0, std::span<const float>(sequence, rows_));
+  evaluator.evaluate(ends_, 0, 1, end_costs_.data(), end_collided_.data());
+  kernels::make_finite({0, padded(1)}, end_costs_.data());
+  return end_costs_[0];
+}
+
 /// Computes q* (equation (5)) at points of the paths: exp(-S / lambda), multiplied by the density around the
 /// nominal sequence if the fit target is the optimal density. The sum over the points is 1.
-void Guides::densities(std::span<const int> points) noexcept {
+void Guides::densities(double temperature, std::span<const int> points) noexcept {
   const bool with_prior = reproduction().fit_target == FitTarget::optimal_density;
-  const double temperature = with_prior ? options_.temperature : reproduction().fit_temperature;
+  if (!with_prior) temperature = reproduction().fit_temperature;
   double largest = -std::numeric_limits<double>::infinity();
   log_error_ = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -286,8 +313,7 @@ void Guides::densities(std::span<const int> points) noexcept {
     if (with_prior) {
       for (int r = 0; r < rows_; ++r) {
         const double difference = theta[r] - theta_[best_][r];
-        logarithm -=
-            0.5 * difference * difference * distance_weight_[r] / options_.guides.gradient_temperature;
+        logarithm -= 0.5 * difference * difference * distance_weight_[r] / weight_temperature();
       }
     }
     density_[i] = logarithm;
@@ -310,15 +336,16 @@ double Guides::fit_row(int r, std::span<const int> points) noexcept {
   return reproduction().fit_standard_deviation ? std::sqrt(variance) : variance;
 }
 
-void Guides::fit_variance(float* variance) noexcept {
+void Guides::fit_variance(double temperature, float* variance) noexcept {
   int count = 0;
   for (int l = 0; l < iterations_; ++l)
     for (int g = 0; g < count_; ++g)
       if (reproduction().fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
   const std::span<const int> points(fit_points_.data(), count);
-  const bool known = best_cost_ < infinite && count > 0;
+  const bool has_temperature = temperature > 0 || reproduction().fit_target == FitTarget::state_cost;
+  const bool known = has_temperature && best_cost_ < infinite && count > 0;
   if (known) {
-    densities(points);
+    densities(temperature, points);
     fit_weights(density_.data(), count, square_.data(), logarithm_.data());
   }
   for (int r = 0; r < rows_; ++r) {

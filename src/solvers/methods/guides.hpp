@@ -21,7 +21,7 @@ namespace slalom::detail {
 /// whose samples are all bad. The weights are computed relative to the minimum in both cases, so that they do
 /// not all underflow; the floor is scaled accordingly.
 struct SurrogateGradient {
-  float temperature = 1;                    ///< lambda
+  float temperature = 0;                    ///< lambda; 0: follows from the costs
   bool subtract_minimum = true;             ///< whether the weights are relative to the lowest J
   double floor = 0;                         ///< added to the sum of the weights
   const float* centre = nullptr;            ///< theta [row]
@@ -74,7 +74,10 @@ class Guides {
 
   /// Fits the variances [row] to the paths of the last move (equation (13)), within `variance_min` and
   /// `variance_max`.
-  void fit_variance(float* variance) noexcept;
+  /// `temperature` is that of q*; 0 if it is unknown yet: the variances are then `variance_max`.
+  void fit_variance(double temperature, float* variance) noexcept;
+  /// The cost of a control sequence [row] from the present state; infinite if it is not finite.
+  float cost(const BatchEvaluator& evaluator, const float* sequence) noexcept;
 
   /// All guides.
   SequenceList sequences() const noexcept { return {guides_.values(), count_}; }
@@ -89,9 +92,14 @@ class Guides {
   void fill_blocks(RandomKey key, int first, int last) noexcept;
   void estimate_gradient(int guide) noexcept;
   void step(int guide, int iteration) noexcept;
-  void densities(std::span<const int> points) noexcept;
+  void densities(double temperature, std::span<const int> points) noexcept;
   double fit_row(int r, std::span<const int> points) noexcept;
 
+  /// The factor between the control terms of weights and inverse variances; 1 where the temperature follows
+  /// from the costs, which is allowed for weights without such a term alone.
+  double weight_temperature() const noexcept {
+    return options_.guides.gradient_temperature > 0 ? options_.guides.gradient_temperature : 1;
+  }
   /// The index of a point of the paths: a guide after an iteration.
   int point(int iteration, int guide) const noexcept { return iteration * count_ + guide; }
   /// Copies `theta_` to `guides_`.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/dial_mpc_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "solvers/methods/mppi_update.hpp"
@@ -119,7 +120,8 @@ class MppiSolver final : public SolverBase {
 std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, MppiOptions::method, inputs);
-  return std::make_unique<MppiSolver>(MppiOptions::method, options, Annealing{}, inputs, std::move(pool));
+  return std::make_unique<MppiSolver>(MppiOptions::method, detail::with_variances(options, inputs),
+                                      Annealing{}, inputs, std::move(pool));
 }
 
 std::unique_ptr<Solver> make_solver(const DialMpcOptions& o, int inputs, std::shared_ptr<ThreadPool> pool) {
@@ -138,7 +140,8 @@ std::unique_ptr<Solver> make_solver(const DialMpcOptions& o, int inputs, std::sh
                             .seed = o.seed,
                             .threads = o.threads};
   const Annealing annealing{o.iterations, o.first_iterations, o.iteration_decay, o.horizon_decay};
-  return std::make_unique<MppiSolver>(DialMpcOptions::method, options, annealing, inputs, std::move(pool));
+  return std::make_unique<MppiSolver>(DialMpcOptions::method, detail::with_variances(options, inputs),
+                                      annealing, inputs, std::move(pool));
 }
 
 }  // namespace slalom

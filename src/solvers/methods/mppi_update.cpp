@@ -21,14 +21,15 @@ WeightSums<double> Weighting::weigh(SampleSet& samples, float least, ThreadPool&
 }
 
 WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcept {
-  const double wanted = std::max(share_ * samples.samples(), 1.0);
+  const double wanted =
+      std::max(share_ > 0 ? share_ * samples.samples() : default_effective_size(samples.samples()), 1.0);
   const float least = samples.mix_totals(0, pool);
   const double scale = samples.mean_excess(least);
   const auto weigh_at = [&](double temperature) {
     temperature_ = temperature;
     return weigh(samples, samples.mix_totals(static_cast<float>(temperature), pool), pool);
   };
-  if (!(scale > 0)) return weigh_at(given_temperature_);
+  if (!(scale > 0)) return weigh_at(first_temperature_ > 0 ? first_temperature_ : 1.0);
   const double found = seek_temperature(wanted, scale, temperature_,
                                         [&](double temperature) { return effective(weigh_at(temperature)); });
   return weigh_at(found);

@@ -15,17 +15,17 @@ namespace slalom::detail {
 /// of lambda.
 class Weighting {
  public:
-  /// `temperature` is lambda. `share` is the wanted effective sample size / samples, or 0 if lambda is fixed;
-  /// if lambda is adapted, `temperature` is used where all costs are equal.
+  /// `temperature` is lambda; 0: adapted. With a `share` above 0 it is adapted, too, to an effective sample
+  /// size of that share of the samples, and `temperature` is its first value.
   Weighting(double temperature, double share)
-      : given_temperature_(temperature), share_(share), temperature_(first()) {}
+      : first_temperature_(temperature), share_(share), temperature_(temperature) {}
 
   /// Whether the temperature is adapted.
-  bool seeks() const noexcept { return share_ > 0; }
-  /// The temperature of the last weights; 0 before the first ones if it is adapted.
+  bool seeks() const noexcept { return share_ > 0 || first_temperature_ == 0; }
+  /// The temperature of the last weights.
   double temperature() const noexcept { return temperature_; }
-  /// Forgets the last solve.
-  void reset() noexcept { temperature_ = first(); }
+  /// Returns to the configured temperature.
+  void reset() noexcept { temperature_ = first_temperature_; }
 
   /// Sets the samples' weights from their totals. `least` is the lowest total. The weights are not
   /// normalised. Returns their sums.
@@ -36,9 +36,7 @@ class Weighting {
   WeightSums<double> seek(SampleSet& samples, ThreadPool& pool) noexcept;
 
  private:
-  double first() const noexcept { return seeks() ? 0 : given_temperature_; }
-
-  double given_temperature_, share_, temperature_;
+  double first_temperature_, share_, temperature_;
 };
 
 /// The closed-form update of MPPI (Williams et al., "Information-Theoretic Model Predictive Control", IEEE
@@ -66,6 +64,8 @@ class MppiUpdate {
         sums_(deviation_.size()) {}
 
   SampleSet& samples() noexcept { return samples_; }
+  /// The temperature of the last weights; 0 before the first ones if it is adapted.
+  double temperature() const noexcept { return weighting_.temperature(); }
   /// Returns to the configured temperature.
   void reset() noexcept { weighting_.reset(); }
 

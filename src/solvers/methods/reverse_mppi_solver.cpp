@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
@@ -277,7 +278,8 @@ class ReverseMppiSolver final : public SolverBase {
 std::unique_ptr<Solver> make_solver(const ReverseMppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, ReverseMppiOptions::method, inputs);
-  return std::make_unique<ReverseMppiSolver>(options, inputs, std::move(pool));
+  return std::make_unique<ReverseMppiSolver>(detail::with_variances(options, inputs), inputs,
+                                             std::move(pool));
 }
 
 }  // namespace slalom

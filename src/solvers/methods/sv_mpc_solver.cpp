@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/sv_mpc_options.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/stein.hpp"
@@ -267,7 +268,7 @@ class SvMpcSolver final : public SolverBase {
 std::unique_ptr<Solver> make_solver(const SvMpcOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, SvMpcOptions::method, inputs);
-  return std::make_unique<SvMpcSolver>(options, inputs, std::move(pool));
+  return std::make_unique<SvMpcSolver>(detail::with_variances(options, inputs), inputs, std::move(pool));
 }
 
 }  // namespace slalom

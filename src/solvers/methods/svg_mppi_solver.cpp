@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/methods/guides.hpp"
 #include "solvers/methods/mppi_update.hpp"
@@ -12,20 +13,26 @@ namespace {
 
 /// `svg_mppi` (Honda et al., "Stein Variational Guided Model Predictive Path Integral Control", ICRA 2024):
 /// guides lead the closed form of MPPI to one mode. If the samples are drawn around the nominal sequence, the
-/// control term of equation (8) is zero.
+/// control term of equation (8) is zero. They are then drawn in several batches, as in `icem` (Pinneri et al.
+/// 2020): each has the mean and the variance of the weighted samples of the last one, and contains that mean
+/// and the best sequence so far. The best sequence or the last mean, whichever costs less, is the solution.
 class SvgMppiSolver final : public SolverBase {
  public:
+  /// `options` has the size of a batch in place of that of all samples, and their number.
   SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
         shift_(options.shift_warm_start),
         use_nominal_(options.use_nominal),
         around_nominal_(options.use_nominal && options.guides.sample_around == SampleCentre::nominal),
         adapt_covariance_(options.adapt_covariance),
+        batches_(options.batches),
         guides_(options, inputs, low(), high()),
         update_(options, inputs),
         mean_(size()),
         shifted_(size()),
         nominal_(size()),
+        kept_(2 * size()),
+        squares_(size()),
         variance_(spread(options.variance)),
         fixed_variance_(variance_) {
     reset(options.seed);
@@ -48,6 +55,7 @@ class SvgMppiSolver final : public SolverBase {
     std::fill(nominal_.begin(), nominal_.end(), 0.0f);
     clamp(mean_.data());
     variance_ = fixed_variance_;
+    has_best_ = false;
     result_ = {};
     bind_result();
   }
@@ -73,12 +81,16 @@ class SvgMppiSolver final : public SolverBase {
     }
     if (around_nominal_) mean_ = nominal_;
     // (c) The variances are fitted to the path of the best guide (equation (13)).
-    if (adapt_covariance_) guides_.fit_variance(variance_.data());
+    variance_ = fixed_variance_;
+    if (adapt_covariance_) guides_.fit_variance(update_.temperature(), variance_.data());
     result_.times.guide = detail::seconds(start, detail::Clock::now());
 
     // (d) MPPI with that nominal sequence and those variances (equations (7) and (8)).
-    result_.status = update_.update(evaluator, key(samples), nominal_.data(), variance_.data(), low().data(),
-                                    high().data(), pool(), deadline, mean_.data(), result_);
+    if (batches_ > 1) {
+      draw_batches(evaluator, deadline);
+    } else {
+      result_.status = update(evaluator, nominal_.data(), samples, deadline);
+    }
     result_.guides = guides_.sequences();
     result_.guide_path = guides_.path();
     next_solve();
@@ -88,7 +100,7 @@ class SvgMppiSolver final : public SolverBase {
 
  private:
   /// The random streams of a solve.
-  enum Stage { first_guides, samples, gradients, restarts = 65535 };
+  enum Stage { first_guides, samples, gradients, later_batches = 60000, restarts = 65535 };
 
   /// Points the spans of the result to this solver's values.
   void bind_result() noexcept {
@@ -138,19 +150,75 @@ class SvgMppiSolver final : public SolverBase {
     result_.iterations = guides_.end_move(evaluator);
   }
 
+  Status update(const BatchEvaluator& evaluator, const float* nominal, int stage,
+                const Deadline& deadline) noexcept {
+    return update_.update(evaluator, key(stage), nominal, variance_.data(), low().data(), high().data(),
+                          pool(), deadline, mean_.data(), result_);
+  }
+
+  /// Makes one update for each batch, then replaces the mean by the best sequence if that costs less.
+  void draw_batches(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
+    detail::SampleSet& set = update_.samples();
+    const int few_samples_before = result_.few_samples_solves;
+    float least = std::numeric_limits<float>::infinity();
+    for (int batch = 0; batch < batches_; ++batch) {
+      if (batch > 0 && deadline.passed()) {
+        result_.status = Status::deadline;
+        break;
+      }
+      std::copy(mean_.begin(), mean_.end(), kept(1));
+      const int first = has_best_ ? 0 : 1, count = std::min(2 - first, set.samples() / 4);
+      set.propose({std::span(kept_).subspan(first * size(), count * size()), count});
+      result_.few_samples_solves = few_samples_before;  // the last batch counts for the solve
+      result_.status = update(evaluator, mean_.data(), batch > 0 ? later_batches + batch : samples, deadline);
+      const std::span<const float> costs = set.costs();
+      const auto best = std::min_element(costs.begin(), costs.end());
+      if (!(*best < std::numeric_limits<float>::infinity())) break;
+      if (*best < least) {
+        least = *best;
+        set.values().get_sample(static_cast<int>(best - costs.begin()), std::span(kept_).first(size()));
+        has_best_ = true;
+      }
+      if (result_.status == Status::deadline) break;
+      if (batch + 1 < batches_) narrow_variance(set);
+    }
+    if (has_best_ && !(guides_.cost(evaluator, mean_.data()) <= least))
+      std::copy_n(kept(0), size(), mean_.data());
+  }
+
+  /// Moves the variance to that of the weighted samples.
+  void narrow_variance(detail::SampleSet& set) noexcept {
+    constexpr float kept_share = 0.1f, least_share = 1e-4f;
+    set.weighted_squares(mean_.data(), squares_.data(), pool());
+    for (std::size_t r = 0; r < size(); ++r) {
+      const float found = static_cast<float>(squares_[r]);
+      variance_[r] = std::max(found + kept_share * (variance_[r] - found), least_share * fixed_variance_[r]);
+    }
+  }
+
+  /// A kept sequence: 0 is the best one, 1 the mean.
+  float* kept(int index) noexcept { return kept_.data() + static_cast<std::size_t>(index) * size(); }
+
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
     shift_sequence(mean_.data(), horizon(), inputs(), steps, shifted_.data());
     std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
     shift_sequence(nominal_.data(), horizon(), inputs(), steps, shifted_.data());
     std::swap_ranges(nominal_.begin(), nominal_.end(), shifted_.begin());
+    shift_sequence(kept(0), horizon(), inputs(), steps, shifted_.data());
+    std::copy(shifted_.begin(), shifted_.end(), kept(0));
     guides_.shift(steps);
   }
 
   bool shift_, use_nominal_, around_nominal_, adapt_covariance_;
+  int batches_;
+  bool has_best_ = false;  ///< whether there is a best sequence
   detail::Guides guides_;
   detail::MppiUpdate update_;
-  std::vector<float> mean_, shifted_, nominal_, variance_, fixed_variance_;  ///< [row]
+  std::vector<float> mean_, shifted_, nominal_;   ///< [row]
+  std::vector<float> kept_;                       ///< [2][row]
+  std::vector<double> squares_;                   ///< [row]
+  std::vector<float> variance_, fixed_variance_;  ///< [row]
 };
 
 }  // namespace
@@ -158,7 +226,15 @@ class SvgMppiSolver final : public SolverBase {
 std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, SvgMppiOptions::method, inputs);
-  return std::make_unique<SvgMppiSolver>(options, inputs, std::move(pool));
+  SvgMppiOptions o = detail::with_guide_variances(options, inputs);
+  if (o.guides.weight != GuideWeight::state_cost && o.guides.gradient_temperature == 0)
+    throw std::invalid_argument(
+        "svg_mppi.gradient_temperature: 0 must be above 0 unless guide_weight is state_cost");
+  const bool one = !o.use_nominal || o.guides.sample_around == SampleCentre::solution;
+  const int wanted = o.batches > 0 ? o.batches : std::clamp(o.samples / 40, 4, 8);
+  o.batches = one ? 1 : std::min(wanted, o.samples);
+  o.samples /= o.batches;
+  return std::make_unique<SvgMppiSolver>(o, inputs, std::move(pool));
 }
 
 }  // namespace slalom

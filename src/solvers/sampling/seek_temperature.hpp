@@ -6,6 +6,12 @@
 
 namespace slalom::detail {
 
+/// The effective sample size that weights of `samples` samples should have, if no option states it. Chosen on
+/// the seeds from 1000 of the problem suite, with 7 to 1024 samples.
+inline double default_effective_size(int samples) {
+  return 0.6 * std::sqrt(static_cast<double>(samples));
+}
+
 /// Finds the temperature at which weights have the effective sample size `wanted`. It grows with the
 /// temperature, so the logarithm of the temperature is bracketed with doubling steps, then found by false
 /// position, until the size is within 1 %. `scale` is the mean excess of the costs over the least one, above

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "slalom/slalom.hpp"
+#include "solvers/closed_form.hpp"
 #include "solvers/methods/guides.hpp"
 #include "solvers/problems.hpp"
 
@@ -37,7 +38,7 @@ class Waiting final : public BatchEvaluator {
 };
 
 TEST(GuidePath, HasTheCostsOfItsPoints) {
-  SvgMppiOptions options;
+  SvgMppiOptions options = testing::closed_form(1);
   options.horizon = 20;
   options.guides.step = 20;
   options.guides.gradient_variance = 0.1;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "solvers/closed_form.hpp"
 #include "solvers/problems.hpp"
 
 namespace slalom {
@@ -33,17 +34,16 @@ double two_ways(double v) {
 
 /// A solver of one step and one input, as the paper prints it, but for what a test changes.
 SvgMppiOptions printed() {
-  SvgMppiOptions options;
+  SvgMppiOptions options = testing::closed_form(0.7);
   options.horizon = 1;
   options.samples = 200000;
-  options.temperature = options.guides.gradient_temperature = 0.7;
   options.guides.count = 1;
   options.guides.restart = false;
   options.guides.sample_around = SampleCentre::solution;
   options.guides.gradient_samples = 60000;
   options.guides.gradient_variance = 0.09;
   options.guides.step = 0.03;
-  options.variance_min = 0;
+  options.variance_min = 1e-9;
   options.variance_max = 100;
   options.shift_warm_start = false;
   options.seed = 3;
@@ -180,7 +180,7 @@ TEST(PaperEquations, FitRecoversTheVarianceOfAGaussian) {
       << "two points do not determine a parabola";
   EXPECT_EQ(fitted([&](SvgMppiOptions& o) {
               printed_target(o);
-              o.guides.step = 0;
+              o.guides.step = 1e-12;
             }),
             100)
       << "a guide that does not move determines nothing";

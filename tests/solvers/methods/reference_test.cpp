@@ -8,6 +8,7 @@
 
 #include "reference/svg_mppi.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "solvers/closed_form.hpp"
 #include "solvers/problems.hpp"
 
 namespace slalom {
@@ -54,10 +55,9 @@ Json recorded(const reference::Sequence& values) {
 /// Solves with both, and compares them. Returns the random numbers and the results of the plain loops.
 Json solve_with_both(reference::SvgMppi paper, int horizon, int guides, int solves) {
   const int inputs = 2, rows = horizon * inputs;
-  SvgMppiOptions options;
+  SvgMppiOptions options = testing::closed_form(paper.lambda);
   options.horizon = horizon;
   options.samples = paper.K;
-  options.temperature = options.guides.gradient_temperature = paper.lambda;
   options.guides.count = guides;
   options.guides.iterations = paper.L;
   options.guides.step = paper.epsilon;

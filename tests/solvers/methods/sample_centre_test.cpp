@@ -5,6 +5,7 @@
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "solvers/closed_form.hpp"
 #include "solvers/problems.hpp"
 
 /// The centre of the samples of `svg_mppi`: docs/algorithms/svg-mppi.md.
@@ -20,7 +21,7 @@ auto spring() {
 }
 
 SvgMppiOptions options(SampleCentre centre) {
-  SvgMppiOptions o;
+  SvgMppiOptions o = testing::closed_form(temperature);
   o.horizon = sample_steps;
   o.samples = 60000;
   o.temperature = temperature;

@@ -7,6 +7,7 @@
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "solvers/closed_form.hpp"
 
 namespace slalom::testing {
 
@@ -55,7 +56,7 @@ inline std::vector<Wall> beside_lane(double half_width, double y = 0) {
 
 /// SVG-MPPI that plans steering with 512 samples.
 inline SvgMppiOptions few_steering_samples() {
-  SvgMppiOptions method;
+  SvgMppiOptions method = closed_form(1);
   method.horizon = 20;
   method.samples = 512;
   method.variance = 0.03;
