@@ -128,6 +128,42 @@ BatchOutcome SolverBase::evaluate(const BatchEvaluator& evaluator, const Sequenc
   return outcome;
 }
 
+void SolverBase::watch() noexcept {
+  const Symptom found = suspicion();
+  const bool again = found == result_.suspicion && found != Symptom::none;
+  // The count has a limit, so that it cannot overflow.
+  result_.suspicious_solves =
+      again ? std::min(result_.suspicious_solves + 1, 1'000'000) : found != Symptom::none;
+  result_.suspicion = found;
+}
+
+/// The first symptom of which the present result has the sign.
+Symptom SolverBase::suspicion() noexcept {
+  if (result_.status == Status::degenerate || result_.costs.empty()) return Symptom::none;
+  const double least = result_.minimum_cost, effective = result_.effective_sample_size;
+  const bool steady = std::abs(least - steady_cost_) <= 0.02 * std::abs(steady_cost_);
+  if (!steady) steady_cost_ = least;
+  highest_cost_ = std::max(highest_cost_, least);
+  if (result_.temperature > 0 && effective < 3) return Symptom::few_samples;
+
+  double most = least;
+  for (const float cost : result_.costs)
+    if (std::isfinite(cost)) most = std::max<double>(most, cost);
+  const double rounding = std::numeric_limits<float>::epsilon() * std::abs(least);
+  const bool equal_weights =
+      result_.temperature > 0 && effective > 0.9 * static_cast<double>(result_.costs.size());
+  if (most - least <= rounding || equal_weights) return Symptom::equal_costs;
+  if (small_variance_) return Symptom::small_variance;
+
+  int saturated = 0;
+  for (std::size_t r = 0; r < size(); ++r) {
+    const float range = high_[r] - low_[r], value = result_.inputs[r];
+    saturated += std::isfinite(range) && std::min(value - low_[r], high_[r] - value) <= 0.1f * range;
+  }
+  if (10 * saturated >= 9 * rows()) return Symptom::saturated_inputs;
+  return steady && 4 * least > highest_cost_ ? Symptom::no_progress : Symptom::none;
+}
+
 void shift_sequence(const float* sequence, int steps, int inputs, double shift, float* result) noexcept {
   shift_rows(sequence, steps, inputs, shift, result);
 }

@@ -70,7 +70,7 @@ TEST_P(SolverRuntimeContract, ACopyGoesOnWithTheSameBits) {
       all.insert(all.end(), part.begin(), part.end());
     for (int row = 0; r.samples && row < r.samples->rows(); ++row)
       all.insert(all.end(), (*r.samples)[row].begin(), (*r.samples)[row].end());
-    all.push_back(static_cast<float>(r.few_samples_solves));
+    all.push_back(static_cast<float>(r.suspicious_solves));
     return all;
   };
   auto original = make(1, small);

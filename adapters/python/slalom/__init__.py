@@ -24,8 +24,8 @@ else:  # built without the layers for cars
 _DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "World", "courses", "drive_lap", "plan_path")
 
 
-class FewSamplesWarning(RuntimeWarning):
-    """The effective sample size of a controller stays below 3, so its plans follow single samples."""
+class SymptomWarning(RuntimeWarning):
+    """A likely reason for poor plans of a controller, `Plan.symptom`, has stayed for 20 solves."""
 
 
 def __getattr__(name: str) -> object:
@@ -39,4 +39,4 @@ display.install(_slalom)
 for _module in filter(None, (_slalom, _driving)):
     display.set_pickles(_module)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
-__all__ += ["CompileError", "FewSamplesWarning", "__version__"]
+__all__ += ["CompileError", "SymptomWarning", "__version__"]

@@ -70,8 +70,6 @@ void bind_results(py::class_<Plan>& plan) {
   number("minimum_cost", &SolveResult::minimum_cost, "the lowest cost of a sample");
   number("expected_cost", &SolveResult::expected_cost, "weighted mean of the samples' costs");
   number("effective_sample_size", &SolveResult::effective_sample_size, "1 / sum of squared weights");
-  number("few_samples_solves", &SolveResult::few_samples_solves,
-         "solves in a row, with this one, whose effective sample size was below 3");
   number("collided_share", &SolveResult::collided_share, "fraction of the samples that collide, 0 ... 1");
   number("iterations", &SolveResult::iterations, "number of guide or distribution updates");
   number("temperature", &SolveResult::temperature, "the temperature in use");
@@ -103,8 +101,11 @@ void bind_plan(py::module_& module) {
   bind_results(plan);
   const auto read = reader(plan);
   read("samples", "float32 [samples, horizon, inputs], the last samples", &samples);
-  read("has_few_samples", "whether there were 20 or more of them; a FewSamplesWarning says so once",
-       [](const Plan& p) { return p.result().has_few_samples(); });
+  read("symptom",
+       "a likely reason for poor plans that stays for 20 solves, of which a SymptomWarning tells once: "
+       "'none', "
+       "'few_samples', 'equal_costs', 'small_variance', 'saturated_inputs' or 'no_progress'",
+       [](const Plan& p) { return std::string(name(p.result().symptom())); });
   read("times", "wall-clock time (s) of each stage", &times);
   read("status",
        "'ok', 'deadline', 'all_collided', 'degenerate' or 'non_finite_state'; a time that is not valid is an "

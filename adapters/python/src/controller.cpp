@@ -49,7 +49,7 @@ SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
 /// The options with variances in the units of the problem's inputs.
 SolverOptions scaled(const AnyProblem& problem, SolverOptions options) {
   bool other = false;
-  for (int i = 0; i < problem.inputs(); ++i) other = other || problem.unit_variance(i) != 1;
+  for (int i = 0; i < problem.inputs(); ++i) other = other || problem.unit_variance(i) > 0;
   if (other)
     scale_variances(options, problem.inputs(), [&](int input) { return problem.unit_variance(input); });
   return options;
@@ -77,14 +77,12 @@ void check_times(const SolveRequest& request, double time_step) {
     throw std::invalid_argument("deadline: " + to_text(request.deadline) + " must be at least 0");
 }
 
-/// Warns with slalom.FewSamplesWarning. Throws if the program's warning filter turns it into an error.
-void warn_of_few_samples() {
-  const py::object category = py::module_::import("slalom").attr("FewSamplesWarning");
-  const std::string text = "the effective sample size was below " +
-                           std::to_string(static_cast<int>(SolveResult::few_samples)) + " in " +
-                           std::to_string(SolveResult::few_samples_patience) +
-                           " solves in a row, so plans follow single samples: raise temperature, reduce the "
-                           "variances, or set target_ess_fraction";
+/// Warns with slalom.SymptomWarning. Throws if the program's warning filter turns it into an error.
+void warn_of(Symptom symptom) {
+  const py::object category = py::module_::import("slalom").attr("SymptomWarning");
+  const std::string text = std::string(name(symptom)) + " in " +
+                           std::to_string(SolveResult::symptom_patience) +
+                           " solves in a row: " + explanation(symptom);
   if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
 }
 
@@ -169,7 +167,7 @@ void Controller::finish() {
     corrections_ += check_inputs(std::span(inputs_).subspan(at, before.size()), before, bounds_, any);
   status_ = result().status;
   problem_->finish();
-  if (result().few_samples_solves == SolveResult::few_samples_patience) warn_of_few_samples();
+  if (result().suspicious_solves == SolveResult::symptom_patience) warn_of(result().suspicion);
 }
 
 void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,

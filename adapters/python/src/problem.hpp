@@ -49,7 +49,7 @@ class AnyProblem {
   virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
   virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
   /// The unit of an input's variances, input^2; not 1 for an input in levels.
-  virtual double unit_variance(int /*input*/) const { return 1; }
+  virtual double unit_variance(int /*input*/) const { return 0; }
   /// Limits the rates of u [step][input], where `previous` was applied before, if the problem limits rates.
   virtual void hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {}
   /// Sets the input applied before the next rollouts, for a problem that limits rates, or the remainder for

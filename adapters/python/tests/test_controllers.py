@@ -255,19 +255,18 @@ def test_everything_public_says_what_it_is():
     assert not silent
 
 
-def test_plans_that_follow_single_samples_are_reported_once():
+def test_a_symptom_that_stays_is_reported_once():
     cold = slalom.Mppi(linear(), horizon=10, samples=64, temperature=1e-6)
-    with pytest.warns(slalom.FewSamplesWarning, match="raise temperature") as caught:
+    with pytest.warns(slalom.SymptomWarning, match="few_samples in 20 solves in a row: .* single samples") as caught:
         for solve in range(1, 31):
-            plan = cold.solve([1.0, 0.0])
-            assert plan.few_samples_solves == solve and plan.has_few_samples == (solve >= 20)
+            assert cold.solve([1.0, 0.0]).symptom == ("few_samples" if solve >= 20 else "none")
     assert len(caught) == 1 and caught[0].filename == __file__
 
-    warm = slalom.Mppi(linear(), horizon=10, samples=64, temperature=100)
+    warm = slalom.Mppi(linear(), horizon=10, samples=64)
     with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        for _ in range(30):
-            assert warm.solve([1.0, 0.0]).few_samples_solves == 0
+        warnings.simplefilter("error", slalom.SymptomWarning)
+        for k in range(30):
+            assert warm.solve([1.0 - k / 10, 0.0]).symptom == "none"
 
 
 def test_proposals_compete_with_the_samples():

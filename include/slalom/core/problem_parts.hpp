@@ -224,15 +224,15 @@ SLALOM_INLINE_CALLS Levels<T, P::inputs> levels_of(const P& problem) {
   return levels;
 }
 
-/// The unit of an input's variances, input^2: for an input in levels 0.03 of the squared distance between two
-/// of them, since larger variances make it leave its level in most steps; otherwise 1.
+/// The unit of the variances of an input in levels, input^2: 0.03 of the squared distance between two of
+/// them, since larger variances make it leave its level in most steps. 0 for other inputs.
 template <class P>
 double unit_variance(const P& problem, int input) noexcept {
   if constexpr (has_levels<P>) {
     const double spacing = levels_of<double>(problem).spacing[input];
     if (spacing > 0) return 0.03 * spacing * spacing;
   }
-  return 1;
+  return 0;
 }
 
 /// Replaces each input by the level nearest to it and the remainder of the step before, and keeps the new

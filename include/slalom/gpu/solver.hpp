@@ -229,8 +229,6 @@ class GpuSolver final : public Solver {
     const auto samples = static_cast<float>(a_.settings.samples);
     result_.minimum_cost = r.least_cost, result_.expected_cost = r.mean_cost;
     result_.effective_sample_size = r.effective_samples;
-    const bool few = result_.effective_sample_size < SolveResult::few_samples;
-    result_.few_samples_solves = few ? result_.few_samples_solves + 1 : 0;
     result_.collided_share = r.collided / samples;
     result_.temperature = a_.settings.temperature;
     result_.iterations = guided ? a_.settings.iterations : 1;

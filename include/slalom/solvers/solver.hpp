@@ -7,6 +7,7 @@
 
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/status.hpp"
+#include "slalom/solvers/symptom.hpp"
 
 namespace slalom {
 
@@ -50,10 +51,8 @@ struct StageTimes {
 
 /// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
 struct SolveResult {
-  /// If the effective sample size is below this value, the plan is hardly more than the best sample.
-  static constexpr double few_samples = 3;
-  /// Number of such solves in a row after which `has_few_samples` is true.
-  static constexpr int few_samples_patience = 20;
+  /// Number of solves in a row with the same suspicion after which it is a symptom.
+  static constexpr int symptom_patience = 20;
 
   Status status = Status::ok;        ///< how the solve ended
   std::span<const float> inputs;     ///< the control sequence to apply, [step][input]
@@ -67,20 +66,22 @@ struct SolveResult {
   std::span<const float> weights;          ///< weights of the samples; the sum is 1, or less with a
                                            ///< `normaliser_offset`. Meaningless if no cost is finite
 
-  SequenceList guides;               ///< last positions of the guide particles (empty without guides)
-  SequenceList guide_path;           ///< all guides after each transport step, [iteration x guide]
-  double minimum_cost = 0;           ///< the least cost of a sample
-  double expected_cost = 0;          ///< weighted mean of the samples' costs
-  double effective_sample_size = 0;  ///< 1 / sum of squared weights
-  int few_samples_solves = 0;        ///< solves below `few_samples` in a row, this one included
-  double collided_share = 0;         ///< share of the samples that collide, 0 ... 1
-  double temperature = 0;            ///< lambda in use; 0 with `cem` and `icem`, which have none
-  int iterations = 0;                ///< guide or distribution updates made
-  StageTimes times;                  ///< times of the stages
+  SequenceList guides;                ///< last positions of the guide particles (empty without guides)
+  SequenceList guide_path;            ///< all guides after each transport step, [iteration x guide]
+  double minimum_cost = 0;            ///< the least cost of a sample
+  double expected_cost = 0;           ///< weighted mean of the samples' costs
+  double effective_sample_size = 0;   ///< 1 / sum of squared weights
+  double collided_share = 0;          ///< share of the samples that collide, 0 ... 1
+  double temperature = 0;             ///< lambda in use; 0 with `cem` and `icem`, which have none
+  int iterations = 0;                 ///< guide or distribution updates made
+  Symptom suspicion = Symptom::none;  ///< the first symptom of which this solve has the sign
+  int suspicious_solves = 0;          ///< solves in a row with this suspicion, this one included
+  StageTimes times;                   ///< times of the stages
 
-  /// Whether the effective sample size stays below `few_samples`: the plans then follow single samples. A
-  /// larger temperature, smaller variances or `target_ess_fraction` raise it.
-  bool has_few_samples() const noexcept { return few_samples_solves >= few_samples_patience; }
+  /// The likely reason for poor plans: a suspicion that stays. `explanation` says it in words.
+  Symptom symptom() const noexcept {
+    return suspicious_solves >= symptom_patience ? suspicion : Symptom::none;
+  }
 };
 
 /// A method that solves any problem through the interface `BatchEvaluator`. `solve`, `reset` and `prepare` do

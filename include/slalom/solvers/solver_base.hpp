@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -60,7 +61,16 @@ class SolverBase : public Solver {
   template <class Options>
   SolverBase(const Options& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options.horizon, inputs, options.input_min, options.input_max, options.seed,
-                   pool ? std::move(pool) : std::make_shared<ThreadPool>(options.threads)) {}
+                   pool ? std::move(pool) : std::make_shared<ThreadPool>(options.threads)) {
+    if constexpr (requires { options.variance; }) {
+      small_variance_ = true;
+      for (int i = 0; i < inputs; ++i) {
+        const double range = options.input_max[i] - options.input_min[i];
+        small_variance_ =
+            small_variance_ && 1e4 * options.variance[i] < range * range && std::isfinite(range);
+      }
+    }
+  }
 
   int rows() const noexcept { return horizon_ * inputs_; }  ///< values of a control sequence
   std::size_t size() const noexcept {
@@ -72,12 +82,17 @@ class SolverBase : public Solver {
   RandomKey key(int stage) const noexcept {
     return {seed_, (solves_ << 16) | static_cast<std::uint64_t>(stage)};
   }
-  /// Counts a solve, so that the next one has other random numbers. Call it once per solve.
-  void next_solve() noexcept { ++solves_; }
+  /// Looks for symptoms in `result_`, and counts a solve, so that the next one has other random numbers. Call
+  /// it once per solve, at its end.
+  void next_solve() noexcept {
+    watch();
+    ++solves_;
+  }
   /// Restarts the random numbers from `seed`. Call it in `reset`.
   void restart(std::uint64_t seed) noexcept {
     seed_ = seed;
     solves_ = 0;
+    steady_cost_ = highest_cost_ = 0;
   }
 
   /// Returns one value for each row, [step][input], from one for each input.
@@ -103,6 +118,8 @@ class SolverBase : public Solver {
  private:
   SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
              std::uint64_t seed, std::shared_ptr<ThreadPool> pool);
+  void watch() noexcept;
+  Symptom suspicion() noexcept;
 
   int horizon_;
   int inputs_;
@@ -110,6 +127,9 @@ class SolverBase : public Solver {
   std::uint64_t seed_;
   std::uint64_t solves_ = 0;
   std::vector<float> low_, high_;  ///< [row]
+  bool small_variance_ = false;    ///< whether the deviations are below a hundredth of the ranges
+  double steady_cost_ = 0;         ///< least cost of the solve since which it has stayed the same
+  double highest_cost_ = 0;        ///< highest least cost since the last reset
 };
 
 /// Moves a control sequence [step][input] forward by `shift` >= 0 steps, by linear interpolation, and holds

@@ -117,7 +117,7 @@ class CemSolver final : public SolverBase {
     result_.status = status;
     result_.iterations = iteration;
     const StageTimes times = result_.times;
-    detail::report_samples(batch, statistics, batch.sum_weights(), result_);
+    detail::report_samples(batch, statistics, batch.sum_weights(batch.samples()), result_);
     result_.times = times;
     next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());

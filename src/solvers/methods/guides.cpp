@@ -45,13 +45,11 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
     int counted = 0;
     for (int i = block.first; i < block.first + samples; ++i) {
       if (!(totals[i] < infinite)) continue;
-      excess += static_cast<double>(totals[i]) - static_cast<double>(least);
-      ++counted;
+      excess += static_cast<double>(totals[i]) - least, ++counted;
     }
     const auto effective_size = [&](double t) {
       const WeightSums<float> sums = weigh(t);
-      const double weight = static_cast<double>(sums.weight);
-      return weight * weight / static_cast<double>(sums.squared);
+      return static_cast<double>(sums.weight) * sums.weight / sums.squared;
     };
     const double wanted = std::max(default_effective_size(samples), 1.0);
     temperature = excess > 0 ? seek_temperature(wanted, excess / counted, 0, effective_size) : 1;
@@ -65,6 +63,7 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
   }
   return true;
 }
+
 Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float> low,
                std::span<const float> high)
     : options_(options),

@@ -92,14 +92,13 @@ class MppiSolver final : public SolverBase {
 
   void make_updates(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     const int wanted = has_solution_ ? annealing_.iterations : annealing_.first_iterations;
-    const int few_samples_before = result_.few_samples_solves;
     double scale = 1;
     result_.iterations = 0;
     for (int i = 0; i < wanted; ++i, scale *= annealing_.iteration_decay * annealing_.iteration_decay) {
       for (std::size_t r = 0; r < size(); ++r) variance_[r] = static_cast<float>(scale * first_variance_[r]);
-      result_.few_samples_solves = few_samples_before;  // the last update counts for the solve
-      result_.status = update_.update(evaluator, key(i), zero_.data(), variance_.data(), low().data(),
-                                      high().data(), pool(), deadline, mean_.data(), result_);
+      result_.status =
+          update_.update(evaluator, key(i), zero_.data(), variance_.data(), low().data(), high().data(),
+                         pool(), deadline, mean_.data(), result_, update_.samples().proposed());
       if (result_.status == Status::deadline || result_.status == Status::degenerate) return;
       has_solution_ = true;
       result_.iterations = i + 1;

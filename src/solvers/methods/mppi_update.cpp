@@ -20,7 +20,7 @@ WeightSums<double> Weighting::weigh(SampleSet& samples, float least, ThreadPool&
   return samples.weigh(least, static_cast<float>(temperature_), pool);
 }
 
-WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcept {
+WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool, int outsiders) noexcept {
   const double wanted =
       std::max(share_ > 0 ? share_ * samples.samples() : default_effective_size(samples.samples()), 1.0);
   const float least = samples.mix_totals(0, pool);
@@ -29,9 +29,11 @@ WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcep
     temperature_ = temperature;
     return weigh(samples, samples.mix_totals(static_cast<float>(temperature), pool), pool);
   };
-  if (!(scale > 0)) return weigh_at(first_temperature_ > 0 ? first_temperature_ : 1.0);
-  const double found = seek_temperature(wanted, scale, temperature_,
-                                        [&](double temperature) { return effective(weigh_at(temperature)); });
+  if (!(scale > 0)) return weigh_at(given_temperature_ > 0 ? given_temperature_ : 1.0);
+  const double found = seek_temperature(wanted, scale, temperature_, [&](double temperature) {
+    const WeightSums<double> sums = weigh_at(temperature);
+    return effective(outsiders > 0 ? samples.sum_weights(samples.samples() - outsiders) : sums);
+  });
   return weigh_at(found);
 }
 
@@ -60,7 +62,8 @@ void MppiUpdate::set_control_term(double temperature, const float* mean, const f
 
 Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal,
                           const float* variance, const float* low, const float* high, ThreadPool& pool,
-                          const Deadline& deadline, float* mean, SolveResult& result) noexcept {
+                          const Deadline& deadline, float* mean, SolveResult& result,
+                          int outsiders) noexcept {
   const std::size_t rows = deviation_.size();
   for (std::size_t r = 0; r < rows; ++r) deviation_[r] = std::sqrt(variance[r]);
   // If the temperature is adapted, the control term is stored separately, in units of the temperature.
@@ -76,7 +79,7 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
   if (statistics.finite > 0) {
     if (seeks) {
       samples_.keep_terms(linear_.data(), pool);
-      sums = weighting_.seek(samples_, pool);
+      sums = weighting_.seek(samples_, pool, outsiders);
     } else {
       sums = weighting_.weigh(samples_, statistics.minimum_total, pool);
     }

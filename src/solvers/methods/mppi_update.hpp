@@ -16,27 +16,31 @@ namespace slalom::detail {
 class Weighting {
  public:
   /// `temperature` is lambda; 0: adapted. With a `share` above 0 it is adapted, too, to an effective sample
-  /// size of that share of the samples, and `temperature` is its first value.
+  /// size of that share of the samples, and `temperature` is used where all costs are equal.
   Weighting(double temperature, double share)
-      : first_temperature_(temperature), share_(share), temperature_(temperature) {}
+      : given_temperature_(temperature), share_(share), temperature_(first()) {}
 
   /// Whether the temperature is adapted.
-  bool seeks() const noexcept { return share_ > 0 || first_temperature_ == 0; }
-  /// The temperature of the last weights.
+  bool seeks() const noexcept { return share_ > 0 || given_temperature_ == 0; }
+  /// The temperature of the last weights; 0 before the first ones if it is adapted.
   double temperature() const noexcept { return temperature_; }
-  /// Returns to the configured temperature.
-  void reset() noexcept { temperature_ = first_temperature_; }
+  /// Forgets the last solve.
+  void reset() noexcept { temperature_ = first(); }
 
   /// Sets the samples' weights from their totals. `least` is the lowest total. The weights are not
   /// normalised. Returns their sums.
   WeightSums<double> weigh(SampleSet& samples, float least, ThreadPool& pool) noexcept;
 
   /// Adapts the temperature, then sets the weights as `weigh` does. The samples' stored terms are their
-  /// control terms in units of the temperature. If all costs are equal, uses the configured one.
-  WeightSums<double> seek(SampleSet& samples, ThreadPool& pool) noexcept;
+  /// control terms in units of the temperature. If all costs are equal, uses the configured one. The last
+  /// `outsiders` samples do not count for the temperature, so that one that is far better than all others
+  /// decides.
+  WeightSums<double> seek(SampleSet& samples, ThreadPool& pool, int outsiders = 0) noexcept;
 
  private:
-  double first_temperature_, share_, temperature_;
+  double first() const noexcept { return seeks() ? 0 : given_temperature_; }
+
+  double given_temperature_, share_, temperature_;
 };
 
 /// The closed-form update of MPPI (Williams et al., "Information-Theoretic Model Predictive Control", IEEE
@@ -70,11 +74,11 @@ class MppiUpdate {
   void reset() noexcept { weighting_.reset(); }
 
   /// Replaces `mean` [row] (u) by the new solution, clamped to the bounds. `nominal`, `variance`, `low` and
-  /// `high` are [row]. If no cost is finite, `mean` does not change. Writes the statistics to `result` and
-  /// returns the status.
+  /// `high` are [row]. The last `outsiders` samples are proposals of other controllers. If no cost is finite,
+  /// `mean` does not change. Writes the statistics to `result` and returns the status.
   Status update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal, const float* variance,
                 const float* low, const float* high, ThreadPool& pool, const Deadline& deadline, float* mean,
-                SolveResult& result) noexcept;
+                SolveResult& result, int outsiders = 0) noexcept;
 
  private:
   void set_control_term(double temperature, const float* mean, const float* nominal,

@@ -243,7 +243,7 @@ class ReverseMppiSolver final : public SolverBase {
   void report(const detail::BatchStatistics& statistics) noexcept {
     std::copy_n(evaluated_.begin(), samples_.weights().size(), samples_.weights().begin());
     const StageTimes times = result_.times;
-    detail::report_samples(samples_, statistics, samples_.sum_weights(), result_);
+    detail::report_samples(samples_, statistics, samples_.sum_weights(samples_.samples()), result_);
     result_.times = times;
     result_.temperature = options_.temperature;
   }

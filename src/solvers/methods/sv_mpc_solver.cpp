@@ -71,7 +71,6 @@ class SvMpcSolver final : public SolverBase {
     const auto begin = detail::Clock::now();
     const Deadline deadline(begin, request.deadline);
     result_.times = {};
-    next_solve();
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     set_prior();
     int iteration = 0;
@@ -104,6 +103,7 @@ class SvMpcSolver final : public SolverBase {
                      : all_collided                      ? Status::all_collided
                                                          : Status::ok;
     result_.times.update = detail::seconds(evaluated, detail::Clock::now());
+    next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());
     return result_;
   }

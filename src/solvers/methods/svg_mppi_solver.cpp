@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
@@ -15,7 +16,8 @@ namespace {
 /// guides lead the closed form of MPPI to one mode. If the samples are drawn around the nominal sequence, the
 /// control term of equation (8) is zero. They are then drawn in several batches, as in `icem` (Pinneri et al.
 /// 2020): each has the mean and the variance of the weighted samples of the last one, and contains that mean
-/// and the best sequence so far. The best sequence or the last mean, whichever costs less, is the solution.
+/// and the best sequence so far; the first batch contains the elites of the last solve. The best sequence or
+/// the last mean, whichever costs less, is the solution.
 class SvgMppiSolver final : public SolverBase {
  public:
   /// `options` has the size of a batch in place of that of all samples, and their number.
@@ -31,7 +33,8 @@ class SvgMppiSolver final : public SolverBase {
         mean_(size()),
         shifted_(size()),
         nominal_(size()),
-        kept_(2 * size()),
+        order_(options.samples),
+        kept_((most_elites + 1) * size()),
         squares_(size()),
         variance_(spread(options.variance)),
         fixed_variance_(variance_) {
@@ -55,7 +58,7 @@ class SvgMppiSolver final : public SolverBase {
     std::fill(nominal_.begin(), nominal_.end(), 0.0f);
     clamp(mean_.data());
     variance_ = fixed_variance_;
-    has_best_ = false;
+    elites_ = 0;
     result_ = {};
     bind_result();
   }
@@ -99,6 +102,7 @@ class SvgMppiSolver final : public SolverBase {
   }
 
  private:
+  static constexpr int most_elites = 4;  ///< sequences that are kept from one solve to the next
   /// The random streams of a solve.
   enum Stage { first_guides, samples, gradients, later_batches = 60000, restarts = 65535 };
 
@@ -159,31 +163,40 @@ class SvgMppiSolver final : public SolverBase {
   /// Makes one update for each batch, then replaces the mean by the best sequence if that costs less.
   void draw_batches(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::SampleSet& set = update_.samples();
-    const int few_samples_before = result_.few_samples_solves;
     float least = std::numeric_limits<float>::infinity();
     for (int batch = 0; batch < batches_; ++batch) {
       if (batch > 0 && deadline.passed()) {
         result_.status = Status::deadline;
         break;
       }
-      std::copy(mean_.begin(), mean_.end(), kept(1));
-      const int first = has_best_ ? 0 : 1, count = std::min(2 - first, set.samples() / 4);
-      set.propose({std::span(kept_).subspan(first * size(), count * size()), count});
-      result_.few_samples_solves = few_samples_before;  // the last batch counts for the solve
+      if (batch > 0) elites_ = std::min(elites_, 1);  // more of them would narrow the samples too soon
+      std::copy(mean_.begin(), mean_.end(), kept(elites_));
+      const int count = std::min(elites_ + 1, set.samples() / 4);
+      set.propose({std::span(kept_).first(count * size()), count});
       result_.status = update(evaluator, mean_.data(), batch > 0 ? later_batches + batch : samples, deadline);
-      const std::span<const float> costs = set.costs();
-      const auto best = std::min_element(costs.begin(), costs.end());
-      if (!(*best < std::numeric_limits<float>::infinity())) break;
-      if (*best < least) {
-        least = *best;
-        set.values().get_sample(static_cast<int>(best - costs.begin()), std::span(kept_).first(size()));
-        has_best_ = true;
-      }
+      const float best = keep_elites(set, least);
+      if (!(best < std::numeric_limits<float>::infinity())) break;
+      least = std::min(least, best);
       if (result_.status == Status::deadline) break;
       if (batch + 1 < batches_) narrow_variance(set);
     }
-    if (has_best_ && !(guides_.cost(evaluator, mean_.data()) <= least))
+    if (elites_ > 0 && !(guides_.cost(evaluator, mean_.data()) <= least))
       std::copy_n(kept(0), size(), mean_.data());
+  }
+
+  /// Keeps the samples of least cost, unless that is above `least`. Returns the least cost.
+  float keep_elites(const detail::SampleSet& set, float least) noexcept {
+    const std::span<const float> costs = set.costs();
+    std::iota(order_.begin(), order_.end(), 0);
+    const auto better = [&](int a, int b) { return costs[a] < costs[b] || (costs[a] == costs[b] && a < b); };
+    const int most = std::min(most_elites, set.samples());
+    std::partial_sort(order_.begin(), order_.begin() + most, order_.end(), better);
+    const float best = costs[order_[0]];
+    if (best > least) return best;
+    for (elites_ = 0; elites_ < most && costs[order_[elites_]] < std::numeric_limits<float>::infinity();
+         ++elites_)
+      set.values().get_sample(order_[elites_], std::span(kept_).subspan(elites_ * size(), size()));
+    return best;
   }
 
   /// Moves the variance to that of the weighted samples.
@@ -196,7 +209,7 @@ class SvgMppiSolver final : public SolverBase {
     }
   }
 
-  /// A kept sequence: 0 is the best one, 1 the mean.
+  /// A kept sequence: the elites, the best first, then the mean.
   float* kept(int index) noexcept { return kept_.data() + static_cast<std::size_t>(index) * size(); }
 
   void shift(double steps) noexcept {
@@ -205,18 +218,21 @@ class SvgMppiSolver final : public SolverBase {
     std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
     shift_sequence(nominal_.data(), horizon(), inputs(), steps, shifted_.data());
     std::swap_ranges(nominal_.begin(), nominal_.end(), shifted_.begin());
-    shift_sequence(kept(0), horizon(), inputs(), steps, shifted_.data());
-    std::copy(shifted_.begin(), shifted_.end(), kept(0));
+    for (int i = 0; i < elites_; ++i) {
+      shift_sequence(kept(i), horizon(), inputs(), steps, shifted_.data());
+      std::copy(shifted_.begin(), shifted_.end(), kept(i));
+    }
     guides_.shift(steps);
   }
 
   bool shift_, use_nominal_, around_nominal_, adapt_covariance_;
   int batches_;
-  bool has_best_ = false;  ///< whether there is a best sequence
+  int elites_ = 0;  ///< number of elites
   detail::Guides guides_;
   detail::MppiUpdate update_;
   std::vector<float> mean_, shifted_, nominal_;   ///< [row]
-  std::vector<float> kept_;                       ///< [2][row]
+  std::vector<int> order_;                        ///< of the samples by their costs
+  std::vector<float> kept_;                       ///< [most_elites + 1][row]
   std::vector<double> squares_;                   ///< [row]
   std::vector<float> variance_, fixed_variance_;  ///< [row]
 };

@@ -263,9 +263,9 @@ WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& 
   return all;
 }
 
-WeightSums<double> SampleSet::sum_weights() const noexcept {
+WeightSums<double> SampleSet::sum_weights(int count) const noexcept {
   WeightSums<double> all;
-  for (int i = 0; i < samples(); ++i) {
+  for (int i = 0; i < count; ++i) {
     const double w = weights_[i];
     all.weight += w;
     all.squared += w * w;
@@ -327,9 +327,6 @@ void report_samples(const SampleSet& set, const BatchStatistics& statistics, con
   result.minimum_cost = statistics.minimum_cost;
   result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
   result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
-  const bool few = sums.squared > 0 && result.effective_sample_size < SolveResult::few_samples;
-  // The count has a limit, so that it cannot overflow.
-  result.few_samples_solves = few ? std::min(result.few_samples_solves + 1, 1'000'000) : 0;
   result.collided_share =
       statistics.evaluated > 0 ? static_cast<double>(statistics.collided) / statistics.evaluated : 0;
   result.times.draw += statistics.draw_time;

@@ -99,8 +99,8 @@ class SampleSet {
   /// sums.
   WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;
 
-  /// Sums over the present weights.
-  WeightSums<double> sum_weights() const noexcept;
+  /// Sums over the present weights of the first `count` samples.
+  WeightSums<double> sum_weights(int count) const noexcept;
 
   /// Multiplies the weights by a factor, then computes sums[row] = sum of w (v - centre).
   void weighted_sums(const float* centre, double* sums, ThreadPool& pool, double factor = 1) noexcept;

@@ -1,0 +1,72 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "slalom/solvers/controllers.hpp"
+#include "slalom/solvers/registry.hpp"
+#include "solvers/problems.hpp"
+
+/// Signs of poor plans in the samples of a solve.
+namespace slalom {
+namespace {
+
+/// The symptom after many solves with a cost that is a function of the inputs, summed over the steps.
+template <class Cost>
+Symptom after_solves(SolverOptions options, Cost cost, int solves = 2 * SolveResult::symptom_patience) {
+  *options.find<int>("horizon") = 8;
+  *options.find<int>("samples") = 256;
+  *options.find<PerInput>("input_min") = -1;
+  *options.find<PerInput>("input_max") = 1;
+  const auto solver = make_solver(options, 1);
+  const auto evaluator = testing::sum_over_steps([&](double u, int) { return cost(u); });
+  for (int i = 0; i < solves; ++i) solver->solve(evaluator, {});
+  return solver->result().symptom();
+}
+
+double spring(double u) {
+  return (u - 0.3) * (u - 0.3);
+}
+
+TEST(Symptoms, AreNamedWhenTheyStay) {
+  const MppiOptions cold{.temperature = 1e-6}, hot{.temperature = 1e6}, narrow{.variance = 1e-6};
+  EXPECT_EQ(after_solves(cold, spring), Symptom::few_samples);
+  EXPECT_EQ(after_solves(cold, spring, SolveResult::symptom_patience - 1), Symptom::none);
+  EXPECT_EQ(after_solves(hot, spring), Symptom::equal_costs);
+  EXPECT_EQ(after_solves(narrow, spring), Symptom::small_variance);
+  for (const char* method : {"mppi", "svg_mppi", "icem", "cem", "dial_mpc"}) {
+    const SolverOptions options = solver_options(method);
+    EXPECT_EQ(after_solves(options, [](double) { return 3.0; }), Symptom::equal_costs) << method;
+    EXPECT_EQ(after_solves(options, [](double u) { return 1e7 + spring(u); }), Symptom::equal_costs)
+        << method;
+    EXPECT_EQ(after_solves(options, [](double u) { return 3 - u; }), Symptom::saturated_inputs) << method;
+    EXPECT_EQ(after_solves(options, [](double u) { return 3 + spring(u); }), Symptom::no_progress) << method;
+  }
+}
+
+TEST(Symptoms, AreNoneOnTheWayAndAtTheGoal) {
+  for (const char* method : {"mppi", "svg_mppi", "icem", "cem", "dial_mpc"}) {
+    SolverOptions options = solver_options(method);
+    *options.find<PerInput>("input_min") = -2;
+    *options.find<PerInput>("input_max") = 2;
+    Controller controller(testing::DoubleIntegrator{}, options);
+    testing::DoubleIntegrator::State<double> x{2, 0};
+    for (int k = 0; k < 100; ++k) {
+      const auto plan = controller.solve(x, {.elapsed = 0.1});
+      EXPECT_STREQ(name(plan.stats.symptom()), "none") << method << " " << k;
+      x = controller.problem().step(x, plan.inputs[0]);
+    }
+  }
+}
+
+TEST(Symptoms, EndWithAReset) {
+  const auto solver = make_solver(MppiOptions{.horizon = 8, .samples = 64, .temperature = 1e-6}, 1);
+  const auto evaluator = testing::sum_over_steps([](double u, int) { return spring(u); });
+  for (int i = 1; i < 4; ++i) EXPECT_EQ(solver->solve(evaluator, {}).suspicious_solves, i);
+  solver->reset(1);
+  EXPECT_EQ(solver->solve(evaluator, {}).suspicious_solves, 1);
+  for (int i = 0; i < 6; ++i)
+    EXPECT_EQ(std::string(explanation(static_cast<Symptom>(i))).empty(), i == 0) << i;
+}
+
+}  // namespace
+}  // namespace slalom
