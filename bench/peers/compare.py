@@ -58,11 +58,12 @@ def ways(Kind):
         if PEER:
             yield f"pytorch_mppi {PEER}", lambda seed: PytorchMppi(Kind(torch), *common, seed).solve
     own = callables(p)
-    yield "slalom `mppi`, numpy callables", lambda seed: of_slalom(slalom.Mppi, own, p, seed, variance=p.variance)
+    yield "slalom `mppi`, numpy callables", lambda seed: of_slalom(
+        slalom.Mppi, own, p, seed, variance=p.variance, control_cost_discount=0)
     built_in = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive()}.get(p.name)
     if built_in:
         yield "slalom `mppi`, compiled problem", lambda seed: of_slalom(
-            slalom.Mppi, built_in, p, seed, variance=p.variance)
+            slalom.Mppi, built_in, p, seed, variance=p.variance, control_cost_discount=0)
         yield "slalom `svg_mppi`, compiled problem", lambda seed: of_slalom(
             slalom.SvgMppi, built_in, p, seed, **guided(p))
 

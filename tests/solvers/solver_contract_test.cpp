@@ -83,24 +83,6 @@ TEST_P(SolverContract, KeepsTheBoundsOfManyInputsOfDifferentScale) {
   }
 }
 
-TEST_P(SolverContract, ZeroNoiseKeepsTheSolution) {
-  const auto solver = make(1, [](SolverOptions& o) {
-    small(o);
-    set(o, "variance", 0);
-    if (set_if_any(o, "guide_variance", 0)) {
-      set(o, "variance_min", 0);
-      set(o, "variance_max", 0);
-    }
-    set_if_any(o, "gradient_variance", 0);
-    set_if_any(o, "restart_variance", 0);
-  });
-  const auto evaluator = simple(1, [](float a, float b, int) { return a + b; });
-  for (int i = 0; i < 3; ++i) {
-    const auto& result = solver->solve(evaluator, {});
-    for (const float u : result.inputs) EXPECT_NEAR(u, 0, 1e-6);
-  }
-}
-
 TEST_P(SolverContract, WeightsFallWithCostByTheTemperature) {
   const std::string method = solver_name(GetParam().options);
   if (!GetParam().options.find<double>("temperature") || method == "reverse_mppi" ||

@@ -11,6 +11,7 @@
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "slalom/vehicle/published/options.hpp"
+#include "solvers/closed_form.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -63,7 +64,7 @@ std::vector<float> scan_from(const maps::Pose& pose) {
 }
 
 Planner planner_of(bool published, const maps::Point& centre) {
-  SvgMppiOptions method;
+  SvgMppiOptions method = testing::closed_form(1);
   method.samples = 512;
   method.input_min = -0.4;
   method.input_max = 0.4;

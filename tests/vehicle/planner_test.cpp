@@ -112,7 +112,7 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   VehicleOptions car = small_car();
   car.model = vehicle_model("kinematic_acceleration");
   car.max_acceleration = car.max_deceleration = 6;
-  SvgMppiOptions method;
+  SvgMppiOptions method = testing::closed_form(1);
   method.horizon = 20;
   method.samples = 1024;
   method.variance = {0.03, 4};

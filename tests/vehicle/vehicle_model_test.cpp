@@ -15,6 +15,7 @@
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/model/problem_model.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
+#include "solvers/closed_form.hpp"
 #include "support/lane.hpp"
 #include "support/thrown_words.hpp"
 
@@ -202,7 +203,7 @@ struct Trolley {
 static_assert(VehicleProblem<Trolley>);
 
 TEST(ProblemModel, LetsThePlannerDriveAnyVehicleProblem) {
-  MppiOptions method;
+  MppiOptions method = testing::with_control_term(1);
   method.horizon = 10;
   method.samples = 128;
   Planner planner({}, std::make_unique<ProblemModel<Trolley>>(Trolley{}), lane(), make_solver(method, 1));

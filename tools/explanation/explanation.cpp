@@ -39,8 +39,24 @@ Prior prior_of(const SolverOptions& options) {
   Prior prior;
   if (const auto* variance = options.find<PerInput>("variance")) prior.variance = (*variance)[0];
   const auto* temperature = options.find<double>("temperature");
-  prior.temperature = temperature ? *temperature : MppiOptions{}.temperature;
+  if (temperature) prior.temperature = *temperature;
   return prior;
+}
+
+/// The paper's closed form, with one batch of white noise.
+SvgMppiOptions closed_form() {
+  SvgMppiOptions o;
+  o.batches = 1;
+  o.guides.count = 4;
+  o.guides.iterations = 10;
+  o.guides.step = 0.125;
+  o.guides.variance = o.guides.restart_variance = o.variance_max = 1;
+  o.guides.gradient_samples = 25;
+  o.guides.gradient_variance = 0.25;
+  o.guides.gradient_temperature = 1;
+  o.variance_min = 0.01;
+  o.noise = {};
+  return o;
 }
 
 /// Histogram of the places beside the disc of many samples of the prior, weighted by exp(-S / lambda).
@@ -132,11 +148,13 @@ void tell_outcome(const SolveResult& result, int steps, Explanation& e) {
 }  // namespace
 
 std::vector<ExplainedMethod> explained_methods() {
+  SvgMppiOptions nominal = closed_form(), covariance = closed_form();
+  nominal.adapt_covariance = covariance.use_nominal = false;
   std::vector<ExplainedMethod> methods = {
-      {"mppi", "forward KL, in closed form", MppiOptions{}},
-      {"svg_mppi", "guides find a mode, MPPI solves near it", SvgMppiOptions{}},
-      {"svg_mppi_nominal", "the guide as nominal alone (NS)", SvgMppiOptions{.adapt_covariance = false}},
-      {"svg_mppi_covariance", "the fitted covariance alone (AC)", SvgMppiOptions{.use_nominal = false}},
+      {"mppi", "forward KL, in closed form", MppiOptions{.control_cost_discount = 0}},
+      {"svg_mppi", "guides find a mode, MPPI solves near it", closed_form()},
+      {"svg_mppi_nominal", "the guide as nominal alone (NS)", nominal},
+      {"svg_mppi_covariance", "the fitted covariance alone (AC)", covariance},
       {"reverse_mppi", "reverse KL, by mirror descent", ReverseMppiOptions{}},
       {"sv_mpc", "particles, moved by SVGD", SvMpcOptions{}},
       {"cem", "refitted to the best samples", CemOptions{}},
@@ -149,6 +167,8 @@ std::vector<ExplainedMethod> explained_methods() {
   }
   for (ExplainedMethod& method : methods) {
     *method.options.find<int>("horizon") = 20;
+    *method.options.find<PerInput>("variance") = 1;
+    if (double* const temperature = method.options.find<double>("temperature")) *temperature = 1;
     *method.options.find<PerInput>("input_min") = -3;
     *method.options.find<PerInput>("input_max") = 3;
   }

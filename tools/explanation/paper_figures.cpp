@@ -138,7 +138,7 @@ Drawing fitted_gaussian(const Explanation& e) {
   std::size_t step = 0;
   double moved = -1;
   for (std::size_t k = 0; k < first.size(); ++k) {
-    if (variance(k) > 0.99 * SvgMppiOptions{}.variance_max[0]) continue;  // undetermined
+    if (variance(k) > 0.99) continue;  // undetermined: the largest variance, 1
     if (std::abs(last[k][0] - first[k][0]) <= moved) continue;
     moved = std::abs(last[k][0] - first[k][0]);
     step = k;

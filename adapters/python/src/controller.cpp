@@ -167,7 +167,10 @@ void Controller::finish() {
     corrections_ += check_inputs(std::span(inputs_).subspan(at, before.size()), before, bounds_, any);
   status_ = result().status;
   problem_->finish();
-  if (result().suspicious_solves == SolveResult::symptom_patience) warn_of(result().suspicion);
+  // A robot that has arrived makes no progress, either: not worth a warning.
+  if (result().suspicious_solves == SolveResult::symptom_patience &&
+      result().suspicion != Symptom::no_progress)
+    warn_of(result().suspicion);
 }
 
 void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,

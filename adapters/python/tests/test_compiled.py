@@ -178,7 +178,7 @@ def test_exceptions_of_callables_leave_a_batch():
         return x[:, 0] ** 2
 
     problem = slalom.Problem(lambda x, u: x + u, cost, states=1, inputs=1)
-    batch = [slalom.Mppi(problem, horizon=2, samples=8, variance=0) for _ in range(2)]
+    batch = [slalom.Mppi(problem, horizon=2, samples=8, variance=1e-12) for _ in range(2)]
     with pytest.raises(ArithmeticError, match="too far"):
         slalom.solve_batch(batch, [[0.5], [2]], threads=2)
     assert slalom.solve_batch(batch, [[0.5], [0.1]])[1].ok

@@ -72,10 +72,10 @@ def test_mistakes_name_the_option_the_value_and_the_rule(make, error, text):
 
 
 def test_results_are_views_of_the_controller():
-    controller = slalom.SvgMppi(slalom.Pendulum(), horizon=8, samples=100, guides=3, input_min=-5, input_max=5)
+    controller = slalom.SvgMppi(slalom.Pendulum(), horizon=8, samples=100, batches=1, guides=3, input_min=-5, input_max=5)
     plan = controller.solve([1.0, 0.0])
     shapes = {"inputs": (8, 1), "nominal": (8, 1), "variances": (8, 1), "samples": (100, 8, 1), "costs": (100,),
-              "weights": (100,), "samples_collided": (100,), "guides": (3, 8, 1), "guide_path": (30, 8, 1)}
+              "weights": (100,), "samples_collided": (100,), "guides": (3, 8, 1), "guide_path": (6, 8, 1)}
     for name, shape in shapes.items():
         array = getattr(plan, name)
         assert array.shape == shape and array.base is not None and not array.flags.writeable, name
@@ -295,7 +295,7 @@ def test_proposals_that_do_not_fit_are_errors():
 
 def test_signatures_name_options_and_arguments():
     options = inspect.signature(slalom.SvgMppi).parameters
-    assert list(options)[0] == "problem" and options["guides"].default == 4
+    assert list(options)[0] == "problem" and options["guides"].default == 2
     assert inspect.signature(slalom.Pendulum).parameters["dt"].default == slalom.Pendulum().dt
     assert inspect.signature(slalom.Problem).parameters["sampler"].default is None
     solve = inspect.signature(slalom.Mppi(linear()).solve).parameters

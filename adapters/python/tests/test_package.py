@@ -135,7 +135,7 @@ def test_there_is_an_object_of_every_class():
 
 
 def test_copies_of_a_plan_stay_valid():
-    controller = slalom.SvgMppi(slalom.CartPole(), horizon=8, samples=64)
+    controller = slalom.SvgMppi(slalom.CartPole(), horizon=8, samples=64, batches=1)
     plan = controller.solve([0, 0, 0.1, 0])
     arrays = plan.to_numpy()
     shapes = {"inputs": (8, 1), "states": (9, 4), "nominal": (8, 1), "variances": (8, 1), "samples": (64, 8, 1),

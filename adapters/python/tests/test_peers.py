@@ -55,7 +55,7 @@ def test_mppi_on_the_same_samples_plans_as_the_loop_on_numpy(kind):
     problem = slalom.Problem(p.dynamics, p.cost, p.terminal_cost, states=len(p.start), inputs=len(p.variance), dt=p.dt,
                              sampler=lambda *_: noise(p))
     mppi = slalom.Mppi(problem, horizon=HORIZON, samples=SAMPLES, temperature=p.temperature, variance=p.variance,
-                       input_min=p.low, input_max=p.high)
+                       control_cost_discount=0, input_min=p.low, input_max=p.high)
     first = mppi.solve(p.start, elapsed=p.dt).inputs.copy()
     loop = NumpyMppi(p, *settings(p))
     loop.random = Fixed(noise(p))

@@ -231,7 +231,7 @@ class SvgMppiSolver final : public SolverBase {
   detail::Guides guides_;
   detail::MppiUpdate update_;
   std::vector<float> mean_, shifted_, nominal_;   ///< [row]
-  std::vector<int> order_;                        ///< of the samples by their costs
+  std::vector<int> order_;                        ///< sample indices, by cost
   std::vector<float> kept_;                       ///< [most_elites + 1][row]
   std::vector<double> squares_;                   ///< [row]
   std::vector<float> variance_, fixed_variance_;  ///< [row]

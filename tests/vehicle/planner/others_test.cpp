@@ -90,10 +90,9 @@ TEST(PlannerAmongOthers, PassesACarThatIsSlower) {
 double lead_after_following(double time_behind, std::uint64_t seed) {
   constexpr double followed = 0.8 * speed, gap = 1;  // m/s, m
   constexpr int updates = 200, counted = 40;
-  MppiOptions method;
+  MppiOptions method = testing::with_control_term(3);
   method.horizon = 20;
   method.samples = 1024;
-  method.temperature = 3;
   method.variance = {0.05, 4};
   method.input_min = {-0.4, -9};
   method.input_max = {0.4, 9};
