@@ -20,7 +20,7 @@ vehicle::Configuration configure(const std::string& method, const std::string& c
     configuration = vehicle::load_configuration(vehicle::find_configuration(config, folders), folders);
   }
   for (const auto& [key, value] : options)
-    vehicle::set_option(configuration, key.cast<std::string>(), text_of(value), method);
+    vehicle::set_option(configuration, value_as<std::string>(key, "options"), text_of(value), method);
   return configuration;
 }
 
@@ -29,7 +29,8 @@ evaluation::LapSettings take_world_options(py::dict& options) {
   evaluation::LapSettings settings;
   py::dict others;
   for (const auto& [key, value] : options)
-    if (!evaluation::set_world_option(settings, key.cast<std::string>(), text_of(value))) others[key] = value;
+    if (!evaluation::set_world_option(settings, value_as<std::string>(key, "options"), text_of(value)))
+      others[key] = value;
   options = others;
   return settings;
 }

@@ -42,7 +42,7 @@ T value_as(const py::handle& value, const std::string& name) {
     return value.cast<T>();
   } catch (const py::cast_error&) {
     throw py::type_error(name + ": " + std::string(py::repr(py::type::handle_of(value))) +
-                         " must be a number or a list of the right form");
+                         " has the wrong form");
   }
 }
 
@@ -52,7 +52,7 @@ inline std::string text_of(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return to_text(value.cast<bool>());
   if (PyNumber_Check(object) && !PyIndex_Check(object)) return to_text(value_as<double>(value, "an option"));
   if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
-    return py::str(value).cast<std::string>();
+    return value_as<std::string>(py::str(value), "an option");
   std::string text;
   for (const py::handle& each : value) text.append(text.empty() ? "[" : ", ").append(text_of(each));
   return text.empty() ? "[]" : text + "]";
