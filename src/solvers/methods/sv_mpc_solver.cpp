@@ -71,6 +71,7 @@ class SvMpcSolver final : public SolverBase {
     const auto begin = detail::Clock::now();
     const Deadline deadline(begin, request.deadline);
     result_.times = {};
+    next_solve();  // here, so that the published program's random numbers stay; symptoms are a solve late
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     set_prior();
     int iteration = 0;
@@ -103,7 +104,6 @@ class SvMpcSolver final : public SolverBase {
                      : all_collided                      ? Status::all_collided
                                                          : Status::ok;
     result_.times.update = detail::seconds(evaluated, detail::Clock::now());
-    next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());
     return result_;
   }
