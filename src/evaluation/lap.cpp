@@ -71,7 +71,11 @@ struct LapDrive::State {
 
   double progress() const noexcept { return std::clamp(drive.world.laps(0)->progress() / length, 0.0, 1.0); }
   bool at_finish() const noexcept {
-    if (ends_with_path(setup)) return drive.world.laps(0)->progress() >= length;
+    if (ends_with_path(setup)) {
+      const double driven = drive.world.laps(0)->progress(), stands = 0.2;  // m, m/s
+      return driven >= length + 2 * finish_tolerance ||
+             (driven >= length && std::abs(drive.world.observe(0).speed) < stands);
+    }
     if (setup.settings.rounds > 1) return drive.world.laps(0)->laps() >= setup.settings.rounds;
     return rules->lap_complete(drive.world, progress());
   }

@@ -39,8 +39,12 @@ bool has_planner(const LapSettings& settings, int index) noexcept {
 }
 
 std::optional<HardwareConditions> hardware_of(const LapSettings& settings) {
-  if (settings.hardware || !settings.localised) return settings.hardware;
-  return HardwareConditions::sensors(settings.range_noise, settings.dropout);
+  if (!settings.hardware && !settings.localised) return std::nullopt;
+  HardwareConditions conditions = settings.hardware
+                                      ? *settings.hardware
+                                      : HardwareConditions::sensors(settings.range_noise, settings.dropout);
+  for (const auto& [name, text] : settings.localiser) set_option(conditions.localiser, name, text);
+  return conditions;
 }
 
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept {
@@ -50,15 +54,22 @@ sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept {
 }
 
 bool set_world_option(LapSettings& settings, std::string_view key, std::string_view text) {
-  constexpr std::string_view section = "world.";
-  if (key.substr(0, section.size()) != section) return false;
-  const std::string_view option = key.substr(section.size());
+  const std::size_t point = key.find('.');
+  const std::string_view section = key.substr(0, point),
+                         option = key.substr(std::min(point, key.size() - 1) + 1);
+  const bool of_localiser = section == "localiser";
+  if (section != "world" && !of_localiser) return false;
+  vehicle::LocaliserOptions localiser;
+  const auto entries = of_localiser ? list_options(localiser) : list_options(settings);
   std::string rule;
   try {
-    if (set_option(settings, option, text)) return true;
-    for (const OptionEntry& entry : list_options(settings))
+    if (of_localiser ? set_option(localiser, option, text) : set_option(settings, option, text)) {
+      if (of_localiser) settings.localiser.emplace_back(option, text);
+      return true;
+    }
+    for (const OptionEntry& entry : entries)
       rule += (rule.empty() ? "" : ", ") + std::string(entry.declaration.name);
-    rule = "must be one of these of the world: " + rule;
+    rule = "must be one of these of the " + std::string(section) + ": " + rule;
   } catch (const std::invalid_argument& error) {
     rule = error.what();
   }

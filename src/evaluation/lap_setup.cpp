@@ -13,7 +13,6 @@ namespace slalom::evaluation {
 namespace {
 
 constexpr double timeout_laps = 3;         // laps at the speed profile
-constexpr double finish_tolerance = 0.5;   // m before the end of an open course
 constexpr double least_speed_share = 0.5;  // least factor of vehicle.speed_share
 
 void require(bool holds, const std::string& message) {
@@ -30,11 +29,14 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
   require(settings.threads >= 1 && settings.threads <= 1024,
           "threads: " + std::to_string(settings.threads) + " must be in [1, 1024]");
   rules.check(settings);
-  if (settings.hardware) {
-    validate_options(*settings.hardware, "hardware");
-    validate_options(settings.hardware->wheels, "wheel_odometry");
-    validate_options(settings.hardware->inertial, "imu");
-    settings.hardware->localiser.validate();
+  if (const auto hardware = hardware_of(settings)) {
+    validate_options(*hardware, "hardware");
+    validate_options(hardware->wheels, "wheel_odometry");
+    validate_options(hardware->inertial, "imu");
+    hardware->localiser.validate();
+  } else {
+    require(settings.localiser.empty(),
+            "localiser: its options act only on a lap with --hardware or world.localised=true");
   }
   require(settings.opponents == 0 || closed,
           "world.opponents: " + std::to_string(settings.opponents) + " must be 0 on an open course");
@@ -108,7 +110,10 @@ double LapSetup::length() const {
   const sim::LapPath& path = *environment->track->lap_path();
   if (!ends_with_path(*this)) return settings.rounds * path.length();
   const maps::Pose from = start();
-  return environment->course.length - path.project({from.x, from.y}).arc - finish_tolerance;
+  const double arc = path.project({from.x, from.y}).arc, end = environment->course.length;
+  // Beyond the end of an open path lies the way back to its beginning, where the first point itself may
+  // project.
+  return end - (arc > end ? 0 : arc) - finish_tolerance;
 }
 
 sim::WorldOptions world_options(const LapSetup& setup) {

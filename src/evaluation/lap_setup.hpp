@@ -16,6 +16,8 @@ long long steps_per_command(const LapSetup& setup, const sim::WorldOptions& worl
 std::vector<maps::ReferencePoint> path_of(const LapSetup& setup);
 /// Makes the planner that `setup.driver` describes.
 vehicle::Planner make_planner(const LapSetup& setup);
+/// m before the end of an open path, from where on a car that stands has finished.
+constexpr double finish_tolerance = 0.5;
 /// Whether the finish of a lap is the end of an open path.
 bool ends_with_path(const LapSetup& setup) noexcept;
 /// Checks what LapSetup::validate checks, except for the options of drivers. Throws std::invalid_argument.

@@ -161,7 +161,8 @@ std::string Experiment::label() const {
 }
 
 bool Experiment::tracks() const {
-  return sets_other_than(*this, "world.tracking", "off");
+  return sets_other_than(*this, "world.tracking", "off") &&
+         sets_other_than(*this, "world.tracking", "automatic");
 }
 
 bool Experiment::has_opponents() const {

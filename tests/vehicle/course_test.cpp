@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "slalom/core/error.hpp"
+#include "slalom/vehicle/course/speed_profile.hpp"
 #include "support/thrown_words.hpp"
 #include "vehicle/course_folder.hpp"
 
@@ -190,6 +191,21 @@ INSTANTIATE_TEST_SUITE_P(Courses, ExternalCourse,
                                            OutsideCourse{"oschersleben", 1252, 250.28, 8.0},
                                            OutsideCourse{"spielberg", 1228, 338.05, 20.0}),
                          [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Course, AGapOfAClosedCourseIsFilled) {
+  Course course;
+  for (double a = 0; a < 5.5; a += 0.1)
+    course.waypoints.push_back({10 * std::cos(a), 10 * std::sin(a), 0, a});
+  Course open = course;
+  complete_course(open);
+  EXPECT_FALSE(open.closed);
+  const std::size_t before = course.waypoints.size();
+  complete_course(course, true);
+  EXPECT_GT(course.waypoints.size(), before);
+  std::vector<maps::Point> points;
+  for (const Waypoint& point : course.waypoints) points.push_back({point.x, point.y});
+  EXPECT_TRUE(path_geometry(points).closed) << "as a planner sees it, which knows only the points";
+}
 
 }  // namespace
 }  // namespace slalom::vehicle

@@ -56,6 +56,29 @@ TEST(LocaliserConstruction, RejectsInvalidMaps) {
   EXPECT_NE(with(map).find("origin"), std::string::npos);
 }
 
+/// A course of 340 m around a field, free inside and outside of its walls, as maps of racetracks are drawn.
+Course free_outside() {
+  Course course;
+  constexpr int side = 900;
+  course.map = {side, side, 0.1, {}, std::vector<maps::Occupancy>(std::size_t{side} * side)};
+  for (const int away : {20, 30})  // cells from the border: two square walls
+    for (int i = away; i < side - away; ++i)
+      for (const auto& [x, y] : {std::pair{i, away}, {i, side - 1 - away}, {away, i}, {side - 1 - away, i}})
+        course.map.at(x, y) = maps::Occupancy::occupied;
+  const double near = 2.5, far = 87.5;  // m, between the walls
+  for (const maps::Point& point : {maps::Point{near, near}, {far, near}, {far, far}, {near, far}})
+    course.waypoints.push_back({point.x, point.y, 0, 5});
+  complete_course(course, true);
+  return course;
+}
+
+TEST(Localiser, UsesTheLikelihoodFieldOnAMapThatIsTooLargeForATable) {
+  const Course course = free_outside();
+  EXPECT_EQ(Localiser(course.map).options().sensor_model, SensorModel::likelihood_field);
+  const Localiser inside(reachable_map(course));
+  EXPECT_EQ(inside.options().sensor_model, SensorModel::beam) << "of the space between the walls";
+}
+
 TEST(Localiser, FindsAStandingCarInARotatedMap) {
   const maps::OccupancyGrid map = room();
   const sim::Track track(map);

@@ -59,6 +59,7 @@ RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
     const auto map = maps::load_ros_map(arguments.input, maps::MapRule::map_server, &notes);
     std::optional<vehicle::GuideLine> guide;
     if (!arguments.line.empty()) guide = read_guide(arguments.line);
+    if (guide && !guide->note.empty()) notes.push_back(arguments.line + ": " + guide->note);
     RaceCourse course = vehicle::race_course(map, car, options, guide ? &*guide : nullptr);
     course.notes.insert(course.notes.begin(), notes.begin(), notes.end());
     return course;
@@ -74,7 +75,9 @@ RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
                          read.line.points[i].y - read.line.points[i - 1].y);
   const auto corridor = vehicle::corridor_from_widths(
       read.line.points, read.left, read.right, read.line.closed, vehicle::centre_line_step(car, length));
-  return vehicle::race_course(corridor, car, options);
+  RaceCourse made = vehicle::race_course(corridor, car, options);
+  if (!read.line.note.empty()) made.notes.push_back(arguments.input + ": " + read.line.note);
+  return made;
 }
 
 /// The command that makes the same course again.

@@ -13,12 +13,18 @@
 namespace slalom::tools {
 namespace {
 
+/// The world of `--conditions car`, as sweeps of `--set`.
+constexpr const char* car_conditions[] = {"world.saturating_tyres=true", "world.localised=true",
+                                          "world.range_noise=0.02",      "world.dropout=0.02",
+                                          "world.latency=0.02",          "world.friction=0.5,0.7,1.0"};
+
 struct EvalArguments {
   EvaluationArguments evaluation;
   std::vector<std::string> methods{"svg_mppi"}, scenarios{"oa"}, sweeps;
   int laps = 20;
   int obstacles = 5;
   bool report = false;
+  std::string conditions = "ideal";
   std::string check;
   int again = 3;
 };
@@ -55,8 +61,14 @@ int check_evaluation(const std::string& folder, int again) {
 int eval(const EvalArguments& arguments) {
   if (!arguments.check.empty()) return check_evaluation(arguments.check, arguments.again);
   if (arguments.evaluation.out.empty()) throw CommandLineError("--out", "is required");
-  const auto experiments = make_experiments(arguments.methods, arguments.scenarios, arguments.laps,
-                                            arguments.obstacles, arguments.sweeps);
+  std::vector<std::string> sweeps = arguments.sweeps;
+  if (arguments.conditions == "car") {
+    sweeps.insert(sweeps.begin(), std::begin(car_conditions), std::end(car_conditions));
+  } else if (arguments.conditions != "ideal") {
+    throw CommandLineError("--conditions", arguments.conditions, "must be ideal or car");
+  }
+  const auto experiments =
+      make_experiments(arguments.methods, arguments.scenarios, arguments.laps, arguments.obstacles, sweeps);
   Evaluated evaluated;
   if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return 1;
   const auto summary = evaluated.summary();
@@ -95,6 +107,10 @@ void declare_eval(Subcommand& command) {
               "repeated. Options of the simulated world, such as world.friction, can be varied, too; slalom "
               "options lists them")
       .repeatable();
+  command.option(
+      "--conditions", arguments->conditions,
+      "car: tyres that saturate, sensor noise, a localised pose, 20 ms of latency, and one experiment "
+      "each for friction 0.5, 0.7 and 1.0, which the planner is not told; ideal: none of these");
   command.flag("--report", arguments->report, "Also write report.html and its figures");
   Option out = add_evaluation_options(command, arguments->evaluation);
   const Option check =

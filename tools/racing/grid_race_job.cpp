@@ -75,20 +75,6 @@ std::vector<std::string> names_of(const std::vector<RaceDriver>& drivers) {
   return names;
 }
 
-/// The scenario of a race: unless an option says otherwise, every car tracks the others, with the pose that
-/// its planner has.
-Scenario race_scenario(const ScenarioArguments& arguments, const std::string& method) {
-  Scenario scenario = load_scenario(arguments, method);
-  const bool given = std::any_of(arguments.set.begin(), arguments.set.end(), [](const std::string& each) {
-    return each.rfind("world.tracking=", 0) == 0;
-  });
-  if (!given)
-    scenario.lap.tracking = scenario.lap.localised || scenario.lap.hardware
-                                ? evaluation::TrackingMode::localised
-                                : evaluation::TrackingMode::exact;
-  return scenario;
-}
-
 /// Races of several cars and their outputs.
 class GridRaceJob {
  public:
@@ -97,7 +83,7 @@ class GridRaceJob {
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         drivers_(race_drivers(scenario, method, arguments)),
-        scenario_(race_scenario(scenario, method)),
+        scenario_(load_scenario(scenario, method)),
         settings_(settings_json(scenario, scenario_, method)) {
     races_.names = names_of(drivers_);
     settings_["seed"] = arguments.seed;

@@ -120,11 +120,12 @@ void print_group(std::FILE* out, const char* label, const RaceStatistics& group,
   if (group.laps == 0) return;
   const std::string completed = std::to_string(group.completed) + " of " + std::to_string(group.laps);
   std::fprintf(out, "%-18s %9s", label, completed.c_str());
+  const double share = group.best / profile.time() - 1;
   if (group.completed > 0)
-    std::fprintf(out, " %9.3f %9.3f %9s %13.3f %+11.1f %% %18.2f %9.2f %9.2f %%", group.mean, group.best,
+    std::fprintf(out, " %9.3f %9.3f %9s %13.3f %13s %18.2f %9.2f %9.2f %%", group.mean, group.best,
                  ("(lap " + std::to_string(group.best_lap + 1) + ")").c_str(), group.ideal(),
-                 100 * (group.best / profile.time() - 1), group.grip.p50, group.grip.p99,
-                 100 * group.grip.beyond);
+                 profile.time() > 0 ? formatted("%+.1f %%", 100 * share).c_str() : "-", group.grip.p50,
+                 group.grip.p99, 100 * group.grip.beyond);
   std::fprintf(out, "\n");
 }
 

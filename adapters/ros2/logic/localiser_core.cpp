@@ -51,7 +51,7 @@ void LocaliserCore::use_course() {
   if (settings_.course.empty()) return;
   const vehicle::Course course = load_course(settings_.course);
   course_start_ = sim::rear_axle({}, {.x = course.start.x, .y = course.start.y, .yaw = course.start.yaw});
-  use_map(course.map);
+  use_map(reachable_map(course));
   outputs_.map(course.map);
 }
 

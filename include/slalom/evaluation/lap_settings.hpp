@@ -46,7 +46,9 @@ struct LapSettings {
   std::optional<maps::Pose> start{};  ///< pose of the centre of gravity; default: the environment's
   int threads = 1;                    ///< threads of the solver, 1 ... 1024; they do not change the result
   std::optional<HardwareConditions> hardware{};  ///< sensors of a real car; Protocol::true_physics only
-  std::optional<std::uint64_t> layout{};         ///< seed of the obstacle placement; default: the lap's
+  /// Options of the localiser that differ from those of the conditions: names and values.
+  std::vector<std::pair<std::string, std::string>> localiser{};
+  std::optional<std::uint64_t> layout{};  ///< seed of the obstacle placement; default: the lap's
   /// Driver of the `planning_opponents`, with the control period of the car. Null: the driver of the car.
   std::shared_ptr<const Driver> opponent_planner{};
   bool additional_costs = false;  ///< also compute `paper_model_cost` and `driven_cost` (slower)
@@ -70,7 +72,7 @@ struct LapSettings {
   double range_noise = 0.01;
   double dropout = 0;
   bool localised = false;
-  TrackingMode tracking = TrackingMode::off;
+  TrackingMode tracking = TrackingMode::automatic;
 };
 
 /// Declares the options of the world, in the section `world`.
@@ -120,8 +122,9 @@ std::optional<HardwareConditions> hardware_of(const LapSettings& settings);
 /// Returns the driver of opponent `index`, which has no planner.
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept;
 
-/// Sets the option that `key` names, for instance "world.friction", from text. Returns false if `key` does
-/// not begin with "world.". Throws std::invalid_argument naming the key, the value and the rule it breaks.
+/// Sets the option that `key` names, for instance "world.friction" or "localiser.particles", from text.
+/// Returns false if `key` begins with neither "world." nor "localiser.". Throws std::invalid_argument naming
+/// the key, the value and the rule it breaks.
 bool set_world_option(LapSettings& settings, std::string_view key, std::string_view text);
 
 }  // namespace slalom::evaluation

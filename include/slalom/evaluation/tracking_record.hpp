@@ -7,13 +7,14 @@ namespace slalom::evaluation {
 /// Whether a tracker of other cars runs on the scans of a lap, and on which pose. With a map, the planner is
 /// given what its objects will do.
 enum class TrackingMode {
+  automatic,  ///< with other cars that the planner predicts: on the pose that it is given; else off
   off,
   exact,      ///< tracker with the map and the true pose
   localised,  ///< tracker with the map and the pose of a localiser, which has scans and wheel odometry
   mapless,    ///< tracker without the map, with the pose of wheel odometry and gyro
 };
 inline const char* const* enum_names(TrackingMode) {
-  static constexpr const char* names[] = {"off", "exact", "localised", "mapless", nullptr};
+  static constexpr const char* names[] = {"automatic", "off", "exact", "localised", "mapless", nullptr};
   return names;
 }
 

@@ -16,6 +16,16 @@ vehicle::Odometry odometry_of(const sim::Observation& seen, double rear_length) 
   return {{seen.pose.x - rear_length * c, seen.pose.y - rear_length * s, seen.pose.yaw}, seen.speed};
 }
 
+/// The mode of the tracker of a car in a world; not `automatic`.
+TrackingMode tracking_of(const LapSetup& setup, const sim::World& world) {
+  const LapSettings& settings = setup.settings;
+  if (settings.tracking != TrackingMode::automatic) return settings.tracking;
+  const bool meets = world.cars() > 1 && setup.driver.configuration.planner.predict_others &&
+                     setup.environment->protocol == Protocol::true_physics;
+  if (!meets) return TrackingMode::off;
+  return hardware_of(settings) ? TrackingMode::localised : TrackingMode::exact;
+}
+
 }  // namespace
 
 PlanningDriver::PlanningDriver(const LapSetup& setup, const sim::World& world, std::size_t car,
@@ -28,10 +38,11 @@ PlanningDriver::PlanningDriver(const LapSetup& setup, const sim::World& world, s
   planner_.reset(solver_seed(seed, setup.driver.method + label));
   const maps::OccupancyGrid& map = setup.environment->course.map;
   if (const auto conditions = hardware_of(setup.settings))
-    hardware_.emplace(*conditions, map, world.options().car, world.state(car),
-                      solver_seed(seed, "hardware" + label));
-  if (setup.settings.tracking == TrackingMode::off) return;
-  tracking_.emplace(setup.settings.tracking, map, world, car, solver_seed(seed, "tracking" + label));
+    hardware_.emplace(*conditions, vehicle::reachable_map(setup.environment->course), world.options().car,
+                      world.state(car), solver_seed(seed, "hardware" + label));
+  const TrackingMode tracking = tracking_of(setup, world);
+  if (tracking == TrackingMode::off) return;
+  tracking_.emplace(tracking, map, world, car, solver_seed(seed, "tracking" + label));
   predictor_.emplace(path_of(setup));
 }
 

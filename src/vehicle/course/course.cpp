@@ -10,6 +10,7 @@
 #include "slalom/maps/ros_map.hpp"
 #include "vehicle/course/course_csv.hpp"
 #include "vehicle/course/course_yaml.hpp"
+#include "vehicle/racing/cell_regions.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -139,6 +140,20 @@ double complete(std::vector<Waypoint>& points) {
   return longest;
 }
 
+/// Adds waypoints on the straight way (m) from the last one to the first, at most `step` (m) apart.
+void close_gap(std::vector<Waypoint>& points, double gap, double step) {
+  const Waypoint first = points.front(), last = points.back();
+  const int pieces = static_cast<int>(std::ceil(gap / step));
+  for (int k = 1; k < pieces; ++k) {
+    const double share = static_cast<double>(k) / pieces;
+    Waypoint point;
+    point.x = last.x + share * (first.x - last.x);
+    point.y = last.y + share * (first.y - last.y);
+    point.speed = last.speed + share * (first.speed - last.speed);
+    points.push_back(point);
+  }
+}
+
 /// Returns the folder of a course's waypoints: that of its map, except for a folder map/NAME with a folder
 /// reference_path/NAME beside `map`.
 fs::path path_folder(const fs::path& folder) {
@@ -163,9 +178,14 @@ void complete_course(Course& course, std::optional<bool> closed) {
     throw std::invalid_argument(std::to_string(course.waypoints.size()) +
                                 " waypoints; at least 3 are needed");
   const double longest = complete(course.waypoints);
-  const Waypoint &first = course.waypoints.front(), &last = course.waypoints.back();
+  const double gap = distance(course.waypoints.back(), course.waypoints.front());
   // The ends of a lap seldom meet exactly: files omit one step or a little more.
-  course.closed = closed.value_or(distance(last, first) <= 3 * longest);
+  course.closed = closed.value_or(gap <= 3 * longest);
+  if (course.closed && gap > 3 * longest) {
+    close_gap(course.waypoints, gap, longest);
+    complete(course.waypoints);
+  }
+  const Waypoint &first = course.waypoints.front(), &last = course.waypoints.back();
   course.length = last.arc_length + (course.closed ? distance(last, first) : 0);
   course.start = {first.x, first.y, first.yaw};
   if (course.obstacle_path.empty())
@@ -213,6 +233,26 @@ void move_to_local_origin(Course& course) {
   course.origin = {course.origin.x + shift.x, course.origin.y + shift.y};
   complete_course(course, course.closed);
   if (!starts_at_first) course.start = start;
+}
+
+maps::OccupancyGrid reachable_map(const Course& course) {
+  maps::OccupancyGrid map = course.map;
+  const detail::CellRegions free(map.width, map.height, false,
+                                 [&](int x, int y) { return map.at(x, y) == maps::Occupancy::free; });
+  std::vector<char> reached(free.regions().size(), 0);
+  for (const Waypoint& point : course.waypoints) {
+    const maps::Point cell = in_cells(map, {point.x, point.y});
+    const int column = static_cast<int>(std::floor(cell.x)), row = static_cast<int>(std::floor(cell.y));
+    if (!map.contains(column, row)) continue;
+    if (const int region = free.at(column, row); region >= 0) reached[static_cast<std::size_t>(region)] = 1;
+  }
+  for (int row = 0; row < map.height; ++row)
+    for (int column = 0; column < map.width; ++column) {
+      const int region = free.at(column, row);
+      if (region >= 0 && !reached[static_cast<std::size_t>(region)])
+        map.at(column, row) = maps::Occupancy::unknown;
+    }
+  return map;
 }
 
 void cap_speed(Course& course, double max_speed) {

@@ -120,7 +120,8 @@ class DynamicPlanner final : public PlannerBase {
   /// Decides whether plans reverse, how urgent they are, and whether they follow a detour.
   void recover(const Odometry& odometry, const maps::Pose& start) noexcept {
     const int nearest = field_.nearest();
-    const bool at_end = speeds_.length() == 0 && path_.size() - 1 - static_cast<std::size_t>(nearest) < 2;
+    const double end = speeds_.arc(static_cast<int>(path_.size()) - 1);
+    const bool at_end = speeds_.length() == 0 && end - speeds_.arc(nearest) < end_reach;
     if (at_end) recovery_.watch_from(speeds_.arc(nearest));
     recovery_.update(speeds_.arc(nearest), speeds_.length(), odometry.speed,
                      speeds_.speeds()[static_cast<std::size_t>(nearest)], options_.control_period,
@@ -153,7 +154,8 @@ class DynamicPlanner final : public PlannerBase {
     const auto find = [&] {
       return manoeuvre_.search(obstacles, pose, field_.nearest(), turned ? -1e3 : way_past, sight);
     };
-    if (!manoeuvre_.active() && !find()) return false;
+    const bool was_active = manoeuvre_.active();
+    if (!was_active && !find()) return false;
     std::optional<Command> command =
         manoeuvre_.follow(obstacles, pose, input.odometry.speed, steer_estimate());
     if (!command && manoeuvre_.active()) {
@@ -162,7 +164,8 @@ class DynamicPlanner final : public PlannerBase {
       if (!command && stands) manoeuvre_.cancel();
       if (!command && !stands) command = Command{car_.state().now().steer, 0};
     }
-    recovery_.watch_from(speeds_.arc(field_.nearest()));
+    // A manoeuvre that cannot begin leaves the car to the recovery.
+    if (command || was_active) recovery_.watch_from(speeds_.arc(field_.nearest()));
     if (!command) return false;
     stop(manoeuvre_.reverses() ? PlannerStatus::blocked : PlannerStatus::fallback_plan);
     brakes_ = false;
@@ -213,6 +216,7 @@ class DynamicPlanner final : public PlannerBase {
 
   static constexpr double most_turned = 1.8;  ///< rad from the path, beyond which the car turns first
   static constexpr double standing = 0.15;    ///< m/s
+  static constexpr double end_reach = 1;      ///< m before the end of an open path, where the car may stop
   static constexpr double way_past = 1.5;     ///< m along the path, past the place where the car stands
 
   std::vector<maps::ReferencePoint> path_;

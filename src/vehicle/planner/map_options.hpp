@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,9 @@
 
 /// The options of the planner's maps, and its path.
 namespace slalom::vehicle::detail {
+
+/// The share of the largest deceleration with which the car stops at the end of an open path.
+constexpr double stopping_share = 0.5;
 
 /// Returns the highest speed (m/s) of a plan.
 inline double fastest(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
@@ -96,8 +100,21 @@ inline maps::ReferenceFieldOptions field_options(const PlannerOptions& options, 
   return made;
 }
 
+/// Lowers the speeds of an open path, so that the car stops at its end.
+inline void stop_at_end(std::vector<maps::ReferencePoint>& path, double deceleration) {
+  std::vector<maps::Point> points;
+  for (const maps::ReferencePoint& point : path) points.push_back({point.x, point.y});
+  const PathGeometry geometry = path_geometry(points);
+  if (geometry.closed) return;
+  path.back().speed = 0;
+  for (std::size_t i = path.size() - 1; i-- > 0;) {
+    const double next = path[i + 1].speed;
+    path[i].speed = std::min(path[i].speed, std::sqrt(next * next + 2 * deceleration * geometry.step[i]));
+  }
+}
+
 /// Returns the path with the speeds that the options allow; if plans seek the shortest time, all are
-/// `max_speed`.
+/// `max_speed`. An open path ends with a stop, except in the published program.
 inline std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
                                                       const PlannerOptions& options,
                                                       const VehicleTraits& traits) {
@@ -107,6 +124,7 @@ inline std::vector<maps::ReferencePoint> limited_path(std::span<const maps::Refe
   if (options.profile_friction > 0)
     make_feasible(made, grip_limits(options.profile_friction, options.max_speed, traits.max_acceleration,
                                     traits.max_deceleration));
+  if (!options.published.maps) stop_at_end(made, stopping_share * traits.max_deceleration);
   return made;
 }
 

@@ -1,6 +1,9 @@
 #include "slalom/vehicle/racing/corridor.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -43,6 +46,36 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
   }
   corridor.normal = detail::normals(corridor.centre_line, closed);
   return corridor;
+}
+
+void check_walls(const Corridor& corridor) {
+  constexpr double exact = 0.9, opposite = -0.5, beside = 0.8;
+  const auto& line = corridor.centre_line;
+  double widest = 0;
+  for (std::size_t i = 0; i < line.size(); ++i)
+    widest = std::max({widest, corridor.left[i], corridor.right[i]});
+  std::vector<std::size_t> by_x(line.size());
+  std::iota(by_x.begin(), by_x.end(), std::size_t{0});
+  std::sort(by_x.begin(), by_x.end(), [&](std::size_t a, std::size_t b) { return line[a].x < line[b].x; });
+  for (std::size_t m = 0; m < by_x.size(); ++m)
+    for (std::size_t n = m + 1; n < by_x.size(); ++n) {
+      const std::size_t i = by_x[m], k = by_x[n];
+      const maps::Point way{line[k].x - line[i].x, line[k].y - line[i].y};
+      if (way.x >= 2 * widest) break;
+      const maps::Point &here = corridor.normal[i], &there = corridor.normal[k];
+      if (here.x * there.x + here.y * there.y > opposite) continue;
+      const double apart = std::hypot(way.x, way.y), side = here.x * way.x + here.y * way.y;
+      const auto& widths = side > 0 ? corridor.left : corridor.right;
+      if (apart >= exact * (widths[i] + widths[k]) || std::abs(side) < beside * apart) continue;
+      char text[300];
+      std::snprintf(
+          text, sizeof text,
+          "centre_line: its walls cross: the parts at (%.2f, %.2f) and (%.2f, %.2f) are %.2f m apart, "
+          "and their widths to this side are %.2f and %.2f m; together they must be at most their "
+          "distance",
+          line[i].x, line[i].y, line[k].x, line[k].y, apart, widths[i], widths[k]);
+      throw std::invalid_argument(text);
+    }
 }
 
 double length(const Corridor& corridor) {

@@ -61,6 +61,31 @@ void save_course(const fs::path& folder, const maps::OccupancyGrid& map,
                  ", yaw: " + fixed(start.yaw, 4) + "}\nclosed: " + (closed ? "true" : "false") + "\n");
 }
 
+/// The number of points after which a line has come back to its first one and follows itself until its end; 0
+/// if it does not. `longest` is its longest step, m.
+std::size_t overlap_from(const std::vector<maps::Point>& points, double longest) {
+  const std::size_t n = points.size();
+  const auto apart = [&](std::size_t i, std::size_t k) {
+    return std::hypot(points[i].x - points[k].x, points[i].y - points[k].y);
+  };
+  const double near = std::max(1.5 * longest, 0.3), far = 4 * near;  // m
+  std::size_t at = 1;
+  while (at < n && apart(at, 0) < far) ++at;
+  while (at < n && apart(at, 0) > near) ++at;
+  while (at + 1 < n && apart(at + 1, 0) <= apart(at, 0)) ++at;
+  if (at + 1 >= n) return 0;
+  for (std::size_t k = at; k < n; ++k) {
+    bool follows = false;
+    for (std::size_t i = 0; i < std::min(k - at + k / 8 + 4, at) && !follows; ++i)
+      follows = apart(k, i) <= near;
+    if (!follows) return 0;
+  }
+  const double forwards = (points[at + 1].x - points[at].x) * (points[1].x - points[0].x) +
+                          (points[at + 1].y - points[at].y) * (points[1].y - points[0].y);
+  if (forwards <= 0) return 0;
+  return apart(at, 0) < 0.5 * apart(0, 1) ? at : at + 1;
+}
+
 }  // namespace
 
 void save_track(const GeneratedTrack& track, const fs::path& folder, const TrackLabel& label) {
@@ -136,6 +161,17 @@ CentreLineFile read_centre_line(const std::filesystem::path& file) {
     read.right.push_back(rows[i].right);
   }
   read.line.closed = apart(rows.back(), rows.front()) <= 3 * longest;
+  if (const std::size_t kept = overlap_from(read.line.points, longest); kept >= 4) {
+    read.line.closed = true;
+    read.line.note = "the last " + std::to_string(rows.size() - kept) + " of " + std::to_string(rows.size()) +
+                     " points follow the first ones again, from (" + fixed(rows[kept].x, 2) + ", " +
+                     fixed(rows[kept].y, 2) + ") on; they are left out, and the line is closed there";
+    read.line.points.resize(kept);
+    if (widths) {
+      read.left.resize(kept);
+      read.right.resize(kept);
+    }
+  }
   return read;
 }
 

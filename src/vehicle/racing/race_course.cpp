@@ -26,6 +26,7 @@ constexpr double max_yaw = 0.6;            // rad, of the way from the x axis at
 constexpr double most_cells = 2.5e7;       // cells of a map that is drawn
 constexpr double most_drawn = 3e8;         // cells that are visited to draw it
 constexpr double most_cells_of_car = 200;  // cells of a map across the car
+constexpr double run_out = 5;              // m beyond the ends of an open course, in widths of the car
 constexpr double half_turn = 3.14159265358979323846;  // rad
 
 std::string text_of(const maps::Point& point) {
@@ -190,6 +191,24 @@ void check_work(const Corridor& corridor, double side, double wall, double resol
                                 " m from the centre line cannot be drawn; they must be nearer to it");
 }
 
+/// The corridor of an open course with room to stop: straight on by `length` (m) beyond both ends.
+Corridor with_run_outs(Corridor corridor, double length) {
+  if (corridor.closed) return corridor;
+  auto& line = corridor.centre_line;
+  const auto beyond = [&](const maps::Point& end, const maps::Point& before) {
+    const double share = length / distance(before, end);
+    return maps::Point{end.x + share * (end.x - before.x), end.y + share * (end.y - before.y)};
+  };
+  const maps::Point first = beyond(line.front(), line[1]), last = beyond(line.back(), line[line.size() - 2]);
+  line.insert(line.begin(), first);
+  line.push_back(last);
+  for (auto* widths : {&corridor.left, &corridor.right}) {
+    widths->insert(widths->begin(), widths->front());
+    widths->push_back(widths->back());
+  }
+  return corridor;
+}
+
 }  // namespace
 
 double centre_line_step(const RacingCar& car, double length) {
@@ -235,7 +254,9 @@ RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const Rac
     std::swap(turned.left, turned.right);
     for (maps::Point& normal : turned.normal) normal = {-normal.x, -normal.y};
   }
-  course.map = draw_corridor(corridor, 0.16 * car.width, 0.64 * car.width);
+  course.map =
+      draw_corridor(with_run_outs(corridor, run_out * car.width), 0.16 * car.width, 0.64 * car.width);
+  check_walls(corridor);
   const detail::FreeSpace space(course.map, 0);
   complete(course, space, car, measure_for(car, length(corridor)), options.start);
   return course;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "vehicle/planner/map_options.hpp"
+
 namespace slalom::vehicle::detail {
 namespace {
 
@@ -133,6 +135,25 @@ TEST(FeasibleSpeeds, AnOpenPathKeepsItsLastSpeed) {
   EXPECT_NEAR(speeds.speeds().back(), 7, 1e-12) << "the path does not go on at its start";
   EXPECT_NEAR(speeds.speeds()[20], 3, 1e-12) << "0.6 m ahead";
   EXPECT_GT(speeds.speeds()[26], 3.1) << "0.6 m ahead, on the fast part";
+}
+
+TEST(LimitedPath, AnOpenPathEndsWithAStop) {
+  std::vector<maps::ReferencePoint> line, circle;
+  for (int i = 0; i <= 100; ++i) {
+    line.push_back({0.2 * i, 0, 0, 5});
+    const double angle = 2 * 3.14159265358979 * i / 101;
+    circle.push_back({5 * std::cos(angle), 5 * std::sin(angle), 0, 5});
+  }
+  VehicleTraits traits;
+  traits.max_deceleration = 8;
+  PlannerOptions options;
+  const auto open = limited_path(line, options, traits);
+  EXPECT_EQ(open.back().speed, 0);
+  EXPECT_NEAR(open[95].speed, std::sqrt(2 * 0.5 * 8 * 1.0), 1e-9) << "1 m before the end";
+  EXPECT_EQ(open.front().speed, 5);
+  for (const maps::ReferencePoint& point : limited_path(circle, options, traits)) EXPECT_EQ(point.speed, 5);
+  options.published.maps = true;
+  EXPECT_EQ(limited_path(line, options, traits).back().speed, 5) << "the published program does not stop";
 }
 
 }  // namespace

@@ -272,6 +272,42 @@ TEST_F(RaceCourseFile, CentreLinesHaveOneOfSeveralForms) {
   EXPECT_TRUE(open.left.empty());
 }
 
+/// A line round a circle of 6 m, `points` apart in 100 parts of it, as x and y.
+std::string circle(int points) {
+  std::string text;
+  for (int i = 0; i < points; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / 100;
+    text += std::to_string(6 * std::cos(angle)) + "," + std::to_string(6 * std::sin(angle)) + ",0.8,0.8\n";
+  }
+  return text;
+}
+
+TEST_F(RaceCourseFile, ALineThatOverlapsItsOwnStartIsClosedThere) {
+  for (const int points : {100, 104, 107, 130, 180}) {
+    const CentreLineFile read = read_centre_line(write("line.csv", circle(points)));
+    EXPECT_TRUE(read.line.closed) << points;
+    EXPECT_EQ(read.line.points.size(), 100u) << points;
+    EXPECT_EQ(read.left.size(), 100u) << points;
+    EXPECT_EQ(read.line.note.find("left out") != std::string::npos, points > 100) << read.line.note;
+  }
+  const CentreLineFile open = read_centre_line(write("line.csv", circle(60)));
+  EXPECT_FALSE(open.line.closed);
+  EXPECT_EQ(open.line.points.size(), 60u);
+}
+
+TEST(RaceCourse, SaysWhereTheWallsOfACentreLineCross) {
+  std::vector<maps::Point> line;  // a hairpin, 1.2 m wide
+  for (double x = 0; x < 5; x += 0.1) line.push_back({x, 0});
+  for (double a = -1.5; a < 1.5; a += 0.1) line.push_back({5 + 0.6 * std::cos(a), 0.6 + 0.6 * std::sin(a)});
+  for (double x = 5; x > 0; x -= 0.1) line.push_back({x, 1.2});
+  const auto corridor = [&](double left) {
+    const std::vector<double> widths(line.size(), left), outer(line.size(), 0.55);
+    check_walls(corridor_from_widths(line, widths, outer, false, 0.1));
+  };
+  EXPECT_NO_THROW(corridor(0.55));
+  expect_error_with<std::invalid_argument>({"walls cross", "(0.", "1.2"}, [&] { corridor(1.1); });
+}
+
 TEST_F(RaceCourseFile, SaysWhatIsWrongInACentreLine) {
   const std::pair<const char*, std::vector<const char*>> cases[] = {
       {"0,0,1,1\n1,0,x,1\n", {"line.csv:2", "3 (width)", "'x'"}},

@@ -66,6 +66,10 @@ void complete_course(Course& course, std::optional<bool> closed = {});
 /// to 1e-9 m, is the same as near the origin of the map frame, where a course does not change.
 void move_to_local_origin(Course& course);
 
+/// The map of a course for a Localiser: free cells that no way over free cells joins to a waypoint are
+/// unknown. Many maps are free outside of the walls, where the car cannot be.
+maps::OccupancyGrid reachable_map(const Course& course);
+
 /// Lowers every waypoint's speed to at most `max_speed` (m/s, > 0, else std::invalid_argument).
 void cap_speed(Course& course, double max_speed);
 

@@ -22,6 +22,10 @@ struct Corridor {
 Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std::vector<double>& left,
                               const std::vector<double>& right, bool closed, double step);
 
+/// Throws std::invalid_argument with both places where two parts of a corridor that lead in opposite
+/// directions overlap, so that no wall is between them. Widths may be a tenth too large.
+void check_walls(const Corridor& corridor);
+
 /// The length of the centre line, m.
 double length(const Corridor& corridor);
 

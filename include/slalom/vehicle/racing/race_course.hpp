@@ -28,6 +28,7 @@ struct RaceCourseOptions {
 struct GuideLine {
   std::vector<maps::Point> points;  ///< m, map frame, in the direction of driving
   bool closed = true;               ///< whether the first point follows the last one
+  std::string note{};               ///< points that were left out, and why; empty without any
 };
 
 /// A course made for a car.
@@ -74,8 +75,8 @@ struct CentreLineFile {
 /// Reads a centre line: rows `x, y, width to the right, width to the left` (m), or x and y alone, separated
 /// by commas or semicolons. Lines that begin with `#`, and a first row of names, are headers; if one names
 /// the left width before the right one, that is their order. The line is closed if its ends are at most three
-/// of its longest steps apart. Throws IoError with file, line, column, value and rule, also where the line
-/// jumps.
+/// of its longest steps apart, or if it comes back to its start and follows itself from there to its end;
+/// that part is left out. Throws IoError with file, line, column, value and rule, also where the line jumps.
 CentreLineFile read_centre_line(const std::filesystem::path& file);
 
 /// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), centerline.csv
