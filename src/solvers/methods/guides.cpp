@@ -39,21 +39,14 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
     return kernels::exponential_weights(totals, totals, least, static_cast<float>(temperature), block,
                                         weights);
   };
-  double temperature = s.temperature;
-  if (!(temperature > 0)) {
-    double excess = 0;
-    int counted = 0;
-    for (int i = block.first; i < block.first + samples; ++i) {
-      if (!(totals[i] < infinite)) continue;
-      excess += static_cast<double>(totals[i]) - least, ++counted;
-    }
-    const auto effective_size = [&](double t) {
-      const WeightSums<float> sums = weigh(t);
-      return static_cast<double>(sums.weight) * sums.weight / sums.squared;
-    };
-    const double wanted = std::max(default_effective_size(samples), 1.0);
-    temperature = excess > 0 ? seek_temperature(wanted, excess / counted, 0, effective_size) : 1;
-  }
+  const auto effective_size = [&](double t) {
+    const WeightSums<float> sums = weigh(t);
+    return static_cast<double>(sums.weight) * sums.weight / sums.squared;
+  };
+  const double temperature =
+      s.temperature > 0 ? s.temperature
+                        : default_temperature({totals + block.first, static_cast<std::size_t>(samples)},
+                                              least, effective_size);
   const double sum = weigh(temperature).weight;
   const double floor = s.subtract_minimum ? s.floor : s.floor * std::exp(least / temperature);
   kernels::weighted_sums(v, weights, s.centre, block, gradient);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace slalom::detail {
 
@@ -49,6 +50,22 @@ double seek_temperature(double wanted, double scale, double start, EffectiveSize
     was_too_low = too_low;
   }
   return scale * std::exp(at);
+}
+
+/// The temperature of the weights of samples with these totals, if no option states it; 1 if all are equal.
+/// `least`: the lowest total. Totals that are not finite do not count.
+template <class EffectiveSize>
+double default_temperature(std::span<const float> totals, double least, EffectiveSize&& effective_size) {
+  double excess = 0;
+  int counted = 0;
+  for (const float total : totals) {
+    if (!std::isfinite(total)) continue;
+    excess += static_cast<double>(total) - least;
+    ++counted;
+  }
+  if (!(excess > 0)) return 1;
+  const double wanted = std::max(default_effective_size(static_cast<int>(totals.size())), 1.0);
+  return seek_temperature(wanted, excess / counted, 0, effective_size);
 }
 
 }  // namespace slalom::detail
