@@ -5,7 +5,7 @@
 
 namespace slalom::evaluation {
 
-namespace {
+namespace manoeuvres {
 
 using maps::Pose;
 using navigation::BaseKind;
@@ -13,11 +13,11 @@ using Path = std::vector<Pose>;
 
 constexpr double pi = std::numbers::pi;
 
-sim::Box box(double x0, double y0, double x1, double y1) {
+static sim::Box box(double x0, double y0, double x1, double y1) {
   return {{(x0 + x1) / 2, (y0 + y1) / 2, 0}, x1 - x0, y1 - y0};
 }
 
-navigation::BaseOptions base_of(BaseKind kind, double turning_radius = 0.2) {
+static navigation::BaseOptions base_of(BaseKind kind, double turning_radius = 0.2) {
   navigation::BaseOptions base;
   base.kind = kind;
   base.min_turning_radius = turning_radius;
@@ -25,13 +25,13 @@ navigation::BaseOptions base_of(BaseKind kind, double turning_radius = 0.2) {
 }
 
 /// A scenario along a path.
-RoomScenario along(const char* name, const char* summary, const sim::Room& room, const Path& path) {
+static RoomScenario along(const char* name, const char* summary, const sim::Room& room, const Path& path) {
   RoomScenario made{name, summary, room, path.front(), path.back()};
   made.path = path;
   return made;
 }
 
-RoomScenario heading(const char* name, const char* summary, BaseKind kind) {
+static RoomScenario heading(const char* name, const char* summary, BaseKind kind) {
   RoomScenario made{name, summary, {10, 6, {}, {}}, {2, 3, 0}, {7, 3, 0}};
   made.base = base_of(kind, 0.4);
   made.any_heading = true;
@@ -39,7 +39,7 @@ RoomScenario heading(const char* name, const char* summary, BaseKind kind) {
 }
 
 /// Past the bay to a cusp, back on an arc, and straight in.
-RoomScenario bay() {
+static RoomScenario bay() {
   Path path;
   for (int i = 0; i < 40; ++i) path.push_back({1 + 0.1 * i, 3, 0});
   for (int i = 0; i < 32; ++i) path.push_back({5 - std::sin(0.05 * i), 2 + std::cos(0.05 * i), 0.05 * i});
@@ -51,18 +51,18 @@ RoomScenario bay() {
   return made;
 }
 
-RoomScenario straight(const char* name, const char* summary) {
+static RoomScenario straight(const char* name, const char* summary) {
   return along(name, summary, {12, 4, {}, {}}, {{1, 2, 0}, {10, 2, 0}});
 }
 
-RoomScenario delayed(const char* name, const char* summary, double delay, bool is_told) {
+static RoomScenario delayed(const char* name, const char* summary, double delay, bool is_told) {
   RoomScenario made = straight(name, summary);
   made.delay = delay;
   if (is_told) made.base.delay_forward = made.base.delay_turn = delay;
   return made;
 }
 
-std::vector<RoomScenario> make_scenarios() {
+static std::vector<RoomScenario> make_scenarios() {
   std::vector<RoomScenario> all;
   all.push_back(heading("heading", "an empty room, any heading at the goal", BaseKind::differential));
   all.push_back(heading("heading-omnidirectional", "the same", BaseKind::omnidirectional));
@@ -110,10 +110,10 @@ std::vector<RoomScenario> make_scenarios() {
   return all;
 }
 
-}  // namespace
+}  // namespace manoeuvres
 
 std::span<const RoomScenario> manoeuvre_scenarios() {
-  static const std::vector<RoomScenario> all = make_scenarios();
+  static const std::vector<RoomScenario> all = manoeuvres::make_scenarios();
   return all;
 }
 
