@@ -2,7 +2,7 @@ import type { BestLap } from "./best_lap";
 import { get } from "./dom";
 import { page, scalar } from "./page";
 
-const fewSamples = 3; // limit of SolveResult::has_few_samples
+const fewSamples = 3; // below it, Symptom::few_samples
 const fewFrames = 20; // in a row with few samples, before it is said
 
 function signed(value: number, digits: number) {
