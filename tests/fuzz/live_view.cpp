@@ -108,7 +108,8 @@ const Target commands_target(
       }
       require(session.refused() <= sent, "a command is refused once");
       return sent > 0 && session.refused() == 0;
-    });
+    },
+    max_commands);
 
 using testing::WebClient;
 constexpr std::size_t max_message = 1000;

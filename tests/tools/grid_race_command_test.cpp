@@ -43,7 +43,7 @@ TEST_F(GridRaceCommand, SaysWhoWonAndWhoHitWhom) {
   EXPECT_EQ(race["seed"], 4);
   EXPECT_EQ(race["interrupted"], false);
   ASSERT_EQ(race["standings"].size(), 3u);
-  EXPECT_EQ(r["settings"]["options"]["world"]["tracking"], "exact") << "every car tracks the others";
+  EXPECT_EQ(r["settings"]["options"]["world"]["tracking"], "automatic") << "every car tracks the others";
   EXPECT_EQ(r["settings"]["options"]["world"]["saturating_tyres"], true);
   std::set<int> grid;
   double kilometres = 0, before = 0;

@@ -26,6 +26,7 @@ std::string record(bool wall_clock, int ticks = 12, bool ghost = false, bool eve
   const auto where = environment();
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "64", "svg_mppi");
+  vehicle::set_option(configuration, "svg_mppi.batches", "1");
   evaluation::LapDrive loop({where, {configuration}, {.obstacles = 2}}, 5);
   std::ostringstream stream;
   Recorder recorder(stream,
@@ -65,6 +66,7 @@ bool shows_the_opponent(const evaluation::ControlStep& tick, const std::string& 
 TEST(FrameEncoder, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "64", "svg_mppi");
+  vehicle::set_option(configuration, "svg_mppi.batches", "1");
   for (const auto mode : {evaluation::TrackingMode::off, evaluation::TrackingMode::exact}) {
     evaluation::LapDrive loop(
         {environment(), {configuration}, {.opponents = 1, .opponent_gap = 3, .tracking = mode}}, 5);

@@ -30,6 +30,7 @@ inline vehicle::Configuration small() {
                                      {"input_max", "0.4"},
                                      {"temperature", "3"}})
       vehicle::set_option(configuration, key, value, method);
+  vehicle::set_option(configuration, "svg_mppi.batches", "1");
   return configuration;
 }
 

@@ -134,7 +134,7 @@ void declare_navigate(Subcommand& command) {
   add("Rooms", evaluation::room_scenarios());
   add("Manoeuvres", evaluation::manoeuvre_scenarios());
   command.examples({"navigate --scenario crowd-crossing --seeds 20 --pictures pictures",
-                    "navigate --scenario manoeuvres --methods svg_mppi --seeds 20 --table table.md"},
+                    "navigate --scenario manoeuvres --methods svg_mppi --seeds 20"},
                    names + "The exit status is 1 if a drive ended in a collision.");
   command.action([arguments] { return navigate(*arguments); });
 }

@@ -104,6 +104,8 @@ def stub(module):
     lines = [HEAD]
     if module is _slalom:
         lines += ["__version__: str", ""]
+    else:
+        lines += ["from slalom._slalom import OccupancyGrid", ""]
     for name, value in sorted(vars(module).items()):
         if name.startswith("_"):
             continue

@@ -102,9 +102,7 @@ void bind_navigator(py::module_& module) {
              navigation::NavigatorOptions set;
              set_from_keywords(set, options, "Navigator");
              SolverOptions of_solver = navigation::method_options(method, set.base);
-             for (const auto& [key, value] : solver)
-               if (!set_option(of_solver, key.cast<std::string>(), text_of(value)))
-                 throw py::type_error(method + ": unknown option '" + key.cast<std::string>() + "'");
+             set_from_keywords(of_solver, py::reinterpret_borrow<py::kwargs>(solver), method);
              return Navigator(footprint, set, of_solver, costmap);
            }),
            py::arg("footprint"), py::arg("costmap"), py::kw_only(), py::arg("method") = "svg_mppi",

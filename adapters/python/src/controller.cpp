@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "slalom/core/final_check.hpp"
-#include "slalom/core/option_access.hpp"
 
 namespace slalom::python {
 
@@ -65,16 +65,23 @@ InputBounds bounds_of(const SolverOptions& options, int inputs) {
   return bounds;
 }
 
+/// A number as Python prints it, with six digits.
+std::string short_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
 /// Throws std::invalid_argument if a time of the request is not one, or if the problem cannot use it.
 void check_times(const SolveRequest& request, double time_step) {
   if (!(request.elapsed >= 0 && std::isfinite(request.elapsed)))
-    throw std::invalid_argument("elapsed: " + to_text(request.elapsed) + " must be finite and at least 0");
+    throw std::invalid_argument("elapsed: " + short_text(request.elapsed) + " must be finite and at least 0");
   if (request.elapsed > 0 && !(time_step > 0))
     throw std::invalid_argument(
         "elapsed: the problem has no dt (the duration of its steps, s): make it with dt=..., or omit "
         "elapsed");
   if (!(request.deadline >= 0))
-    throw std::invalid_argument("deadline: " + to_text(request.deadline) + " must be at least 0");
+    throw std::invalid_argument("deadline: " + short_text(request.deadline) + " must be at least 0");
 }
 
 /// Warns with slalom.SymptomWarning. Throws if the program's warning filter turns it into an error.
@@ -125,7 +132,7 @@ void Controller::set_previous_input(std::vector<double> input) {
     throw std::invalid_argument("input: has " + std::to_string(input.size()) + " values, must have " +
                                 std::to_string(previous_.size()));
   for (const double value : input)
-    if (!std::isfinite(value)) throw std::invalid_argument("input: " + to_text(value) + " must be finite");
+    if (!std::isfinite(value)) throw std::invalid_argument("input: " + short_text(value) + " must be finite");
   const Busy busy(usage_);
   for (std::size_t i = 0; i < input.size(); ++i) previous_[i] = bounds_.nearest(i, input[i]);
   is_new_ = false;

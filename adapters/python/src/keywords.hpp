@@ -63,7 +63,7 @@ inline std::string text_of(const py::handle& value) {
 template <class Options>
 void set_from_keywords(Options& options, const py::kwargs& keywords, const std::string& where) {
   for (const auto& [key, value] : keywords) {
-    const std::string name = key.template cast<std::string>();
+    const auto name = value_as<std::string>(key, where + ": the name of an option");
     try {
       if (set_option(options, name, text_of(value))) continue;
     } catch (const std::invalid_argument& error) {

@@ -112,7 +112,8 @@ def objects():
              and cls != "Controller"]
     if hasattr(slalom, "Course"):
         course = slalom.Course("wren")
-        made += [course, slalom.World(course), slalom.Planner(course)]
+        costmap, body = slalom.Costmap(slalom.OccupancyGrid(np.zeros((30, 30)), 0.1)), slalom.Footprint.rectangle(0.2, 0.2, 0.3)
+        made += [course, slalom.World(course), slalom.Planner(course), costmap, body, slalom.Navigator(body, costmap)]
     return made
 
 
