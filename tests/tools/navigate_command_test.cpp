@@ -65,7 +65,8 @@ TEST_F(NavigateCommand, DrivesWithEveryMethod) {
 }
 
 TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
-  expect_refused("navigate --scenario kitchen", {"kitchen", "pallet-on-path"});
+  expect_refused("navigate --scenario kitchen",
+                 {"slalom: --scenario: 'kitchen' must be one of close-obstacle, pallet-on-path"});
   expect_refused("navigate --scenario no-way --methods dwa",
                  {"--methods", "'dwa'", "must be one of mppi, svg_mppi"});
   expect_refused("navigate --scenario no-way --methods mppi,svg_mppi,mppi",

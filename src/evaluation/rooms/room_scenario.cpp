@@ -209,7 +209,7 @@ const RoomScenario& room_scenario(std::string_view name) {
       if (name == each.name) return each;
       names += (names.empty() ? "" : ", ") + std::string(each.name);
     }
-  throw std::invalid_argument("scenario: " + std::string(name) + ": must be one of " + names);
+  throw std::invalid_argument("'" + std::string(name) + "' must be one of " + names);
 }
 
 }  // namespace slalom::evaluation
