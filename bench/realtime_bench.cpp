@@ -84,7 +84,6 @@ struct Part {
 
   template <class Update>
   void measure(Clock::time_point due, Update&& update) {
-    longest_stop = 0;
     const long allocated = testing::allocations(), faulted = page_faults();
     const auto begin = Clock::now();
     update();
@@ -124,6 +123,7 @@ int run(double minutes) {
     if (tick == warm_up)
       for (Part& part : parts) part.times.clear(), part.late = part.stopped = part.faults = 0;
     due = std::max(due + std::chrono::duration_cast<Clock::duration>(period), Clock::now());
+    longest_stop = 0;
     std::this_thread::sleep_until(due);
     parts[0].measure(due, [&] { planner.update(); });
     if (tick % 2 == 0)
