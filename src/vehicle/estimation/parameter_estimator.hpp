@@ -25,9 +25,10 @@ struct MeasuredMotion {
 /// state, uses the measured speed, and delays and scales the sent commands by the hypothesis. The logarithm
 /// of a hypothesis' weight falls by
 ///
-///     (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / 0.02 rad)^2)
+///     s (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / 0.02 rad)^2)
 ///
-/// with the errors of the predicted pose at the end. The factor allows for the overlap of successive windows.
+/// with the errors of the predicted pose at the end, and s = min(1, (a / 1.5 m/s^2)^2) with the root mean
+/// square a of the lateral acceleration in the window. The factor allows for the overlap of successive windows.
 /// Errors beyond five deviations count as five, so that a collision or a jump of the localisation decides
 /// nothing. The estimator forgets within 2 s of turning. On a straight line it can learn nothing
 /// about the tyres and forgets nothing either: there it learns the offset of the steering, from the error of
