@@ -175,7 +175,9 @@ void declare_course(Subcommand& command) {
   command.option("--friction", arguments->friction,
                  "Friction coefficient: acceleration in every direction, in g", {0.01, 10});
   command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s", {0.1, 200});
-  command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m", {0, 10});
+  command.option("--margin", arguments->margin,
+                 "Distance that the body keeps from walls, m; in narrow places less, down to 0.4 of it",
+                 {0, 10});
   const Option start =
       command.option("--start", arguments->start,
                      "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if "

@@ -163,15 +163,15 @@ class DriveJob {
 
   void say_estimates(const evaluation::EstimationRecord& record) const {
     const vehicle::ParameterEstimate& last = record.last;
-    std::fprintf(
-        words_,
-        "  friction %.3f +- %.3f, plans rely on %.3f; steering gain %.3f +- %.3f, delay %.3f +- %.3f s; "
-        "confidence %.2f\n  error of yaw rate %.3f rad/s, slip %.4f rad, speed %.3f m/s (root mean "
-        "square)\n",
-        last.friction, last.friction_deviation, last.cautious_friction, last.steering_gain,
-        last.steering_gain_deviation, last.delay, last.delay_deviation, last.confidence,
-        root_mean_square(record.yaw_rate_error), root_mean_square(record.slip_error),
-        root_mean_square(record.speed_error));
+    std::fprintf(words_,
+                 "  friction %.3f +- %.3f, plans rely on %.3f; steering gain %.3f +- %.3f, offset %.4f rad, "
+                 "delay %.3f +- %.3f s; "
+                 "confidence %.2f\n  error of yaw rate %.3f rad/s, slip %.4f rad, speed %.3f m/s (root mean "
+                 "square)\n",
+                 last.friction, last.friction_deviation, last.cautious_friction, last.steering_gain,
+                 last.steering_gain_deviation, last.steering_offset, last.delay, last.delay_deviation,
+                 last.confidence, root_mean_square(record.yaw_rate_error),
+                 root_mean_square(record.slip_error), root_mean_square(record.speed_error));
   }
 
   Json summary() const {

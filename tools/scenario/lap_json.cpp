@@ -50,6 +50,7 @@ Json estimation_json(const evaluation::EstimationRecord& record) {
           {"cautious_friction", last.cautious_friction},
           {"steering_gain", last.steering_gain},
           {"steering_gain_deviation", last.steering_gain_deviation},
+          {"steering_offset_rad", last.steering_offset},
           {"delay_s", last.delay},
           {"delay_deviation_s", last.delay_deviation},
           {"confidence", last.confidence},

@@ -306,6 +306,7 @@ Report PlannerCore::report() {
     r.add("friction that plans rely on", known_.cautious_friction);
     r.add("confidence of the friction", known_.confidence);
     r.add("steering gain", known_.steering_gain);
+    r.add("steering offset, rad", known_.steering_offset);
     r.add("steering delay, ms", 1e3 * known_.delay);
     r.add("slip angle, rad", slip_);
   }

@@ -20,11 +20,12 @@ struct PredictAll {
         for (std::size_t f = 0; f < HypothesisGrid::frictions; f += F::lanes, at += F::lanes) {
           const F gain(each), friction = F::load(grid.friction.data() + f);
           SingleTrackState<F> s{
-              F(0.0f),        F(0.0f),      F(0.0f), F(in.speed[0]), gain * F(in.angle[0][d]),
+              F(0.0f),        F(0.0f),      F(0.0f), F(in.speed[0]), gain * F(in.angle[0][d]) + F(in.offset),
               F(in.yaw_rate), F(in.lateral)};
           for (std::size_t k = 0; k < static_cast<std::size_t>(in.steps); ++k) {
             s.speed = F(in.speed[k]);
-            s = dynamics.advance(s, gain * F(in.angle[k + 1][d]), F(in.acceleration[k]), friction, period);
+            s = dynamics.advance(s, gain * F(in.angle[k + 1][d]) + F(in.offset), F(in.acceleration[k]),
+                                 friction, period);
           }
           const F dx = s.x - F(in.x), dy = s.y - F(in.y);
           (cosine * dy - sine * dx).store(lateral_error + at);

@@ -26,6 +26,7 @@ struct Stretch {
   std::array<std::array<float, HypothesisGrid::delays>, max_steps + 1> angle;
   std::array<float, max_steps + 1> speed;     ///< m/s, as measured
   std::array<float, max_steps> acceleration;  ///< m/s^2
+  float offset = 0;                           ///< rad, added to the angles
   float yaw_rate = 0, lateral = 0;            ///< rad/s, m/s, at the begin
   float x = 0, y = 0, yaw = 0;                ///< m, m, rad, the pose at the end as measured
 };

@@ -19,10 +19,12 @@ constexpr double window_time = 0.4;      // s of driving that each hypothesis pr
 constexpr double memory = 2.0;           // s of turning after which what was learned is forgotten
 constexpr double yaw_noise = 0.02;       // rad, deviation of a predicted heading
 constexpr double slowest = 1.0;          // m/s, below it tyres hardly slip
-constexpr double turning = 3.0;   // m/s^2, lateral acceleration at which old evidence fades at the full rate
-constexpr double farthest = 0.5;  // m or rad between poses: a jump of the localisation
-constexpr double largest_error = 5;  // deviations
-constexpr double strongest = 15;     // m/s^2, of a measured acceleration
+constexpr double turning = 3.0;  // m/s^2, lateral acceleration from which old evidence fades at the full rate
+constexpr double offset_time = 0.5;     // s of straight driving within which the offset is learned
+constexpr double largest_offset = 0.1;  // rad
+constexpr double farthest = 0.5;        // m or rad between poses: a jump of the localisation
+constexpr double largest_error = 5;     // deviations
+constexpr double strongest = 15;        // m/s^2, of a measured acceleration
 
 double ratio() noexcept {
   return std::log(highest_friction / lowest_friction) / (HypothesisGrid::frictions - 1);
@@ -60,6 +62,7 @@ ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, cons
       friction_(friction),
       delay_(delay),
       period_(period),
+      wheelbase_(dynamics.wheelbase()),
       window_(std::clamp(saturate_cast<int>(std::round(window_time / period)), 2, Stretch::max_steps)),
       log_prior_(HypothesisGrid::count),
       evidence_(log_prior_.size()),
@@ -75,6 +78,8 @@ ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, cons
         log_prior_[at++] =
             -0.5 * (square((delay_at(d) - delay_) / delay_spread) + square((gain_at(g) - 1) / gain_spread) +
                     square(std::log(friction_at(f) / friction_) / friction_spread));
+  given_ =
+      static_cast<std::size_t>(std::max_element(log_prior_.begin(), log_prior_.end()) - log_prior_.begin());
   reset();
 }
 
@@ -83,6 +88,7 @@ void ParameterEstimator::reset() noexcept {
   sent_.fill(0);
   newest_ = moments_ = 0;
   std::fill(evidence_.begin(), evidence_.end(), 0.0);
+  estimate_.steering_offset = 0;
   summarise();
 }
 
@@ -143,6 +149,7 @@ Stretch ParameterEstimator::last_stretch() const noexcept {
   Stretch stretch;
   stretch.steps = window_;
   stretch.period = static_cast<float>(period_);
+  stretch.offset = static_cast<float>(estimate_.steering_offset);
   stretch.yaw_rate = static_cast<float>(begin.yaw_rate);
   stretch.lateral = static_cast<float>(begin.speed * std::sin(begin.slip));
   stretch.x = static_cast<float>(moved.x);
@@ -173,8 +180,9 @@ double ParameterEstimator::turning_share() const noexcept {
 /// Updates the evidence for each hypothesis by the errors of its prediction of the window.
 void ParameterEstimator::weigh() noexcept {
   predict_all(dynamics_, grid_, last_stretch(), lateral_error_.data(), yaw_error_.data());
-  const double remembered = std::exp(-period_ / memory * turning_share());
-  const double share = 0.5 / window_, most = square(largest_error);
+  const double turned_share = turning_share();
+  const double remembered = std::exp(-period_ / memory * turned_share);
+  const double share = 0.5 * std::min(4 * turned_share, 1.0) / window_, most = square(largest_error);
   double best = -INFINITY;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     const double aside = square(lateral_error_[i] / lateral_noise_);
@@ -185,6 +193,17 @@ void ParameterEstimator::weigh() noexcept {
     best = std::max(best, evidence_[i]);
   }
   for (double& each : evidence_) each -= best;
+  learn_offset(1 - turned_share);
+}
+
+/// Moves the offset of the steering towards the one that explains the yaw at the end of the window.
+void ParameterEstimator::learn_offset(double straightness) noexcept {
+  const double yaw_per_angle = ago(0).motion.speed * window_ * period_ / wheelbase_;
+  const double missing = -static_cast<double>(yaw_error_[given_]) / yaw_per_angle;
+  if (!(std::abs(missing) < largest_offset)) return;
+  double& offset = estimate_.steering_offset;
+  offset =
+      std::clamp(offset + straightness * period_ / offset_time * missing, -largest_offset, largest_offset);
 }
 
 /// Returns the quantile of the friction's logarithm. The density is constant in the interval around a grid

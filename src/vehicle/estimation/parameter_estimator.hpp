@@ -17,7 +17,7 @@ struct MeasuredMotion {
   double slip = 0;      ///< rad, of the observer
 };
 
-/// Estimates friction, steering gain and steering delay of a car while it drives.
+/// Estimates friction, gain, offset and delay of the steering of a car while it drives.
 ///
 /// Each combination of values on a grid is a hypothesis: 16 frictions from 0.25 to 1.5, 5 gains from 0.85 to
 /// 1.15 and 9 delays from 0 to 0.2 s. In every control period, the dynamics predict the last 0.4 s (the
@@ -30,7 +30,8 @@ struct MeasuredMotion {
 /// with the errors of the predicted pose at the end. The factor allows for the overlap of successive windows.
 /// Errors beyond five deviations count as five, so that a collision or a jump of the localisation decides
 /// nothing. The estimator forgets within 2 s of turning. On a straight line it can learn nothing
-/// about the tyres and forgets nothing either. The prior consists of independent normal distributions around
+/// about the tyres and forgets nothing either: there it learns the offset of the steering, from the error of
+/// the yaw that the given values predict. The prior consists of independent normal distributions around
 /// the given values; that of the friction is for its logarithm.
 ///
 /// The means are those of the posterior; before the first turn they are the given values.
@@ -83,6 +84,7 @@ class ParameterEstimator {
   Stretch last_stretch() const noexcept;
   double turning_share() const noexcept;
   void weigh() noexcept;
+  void learn_offset(double straightness) noexcept;
   void summarise() noexcept;
   double log_quantile(const std::array<double, frictions>& shares) const noexcept;
   bool continues() const noexcept;
@@ -91,7 +93,9 @@ class ParameterEstimator {
   HypothesisGrid grid_;
   double friction_quantile_, lateral_noise_;
   double friction_, delay_, period_;
-  int window_;  ///< control periods
+  double wheelbase_;       ///< m
+  std::size_t given_ = 0;  ///< index of the hypothesis nearest to the given values
+  int window_;             ///< control periods
   std::array<Moment, kept> history_;
   std::array<double, kept> sent_{};
   int newest_ = 0, moments_ = 0;

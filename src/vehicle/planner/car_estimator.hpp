@@ -10,7 +10,7 @@
 namespace slalom::vehicle::detail {
 
 /// Estimates state and parameters of a car whose tyres slip. States and plans hold the angle of the wheels. A
-/// command is this angle divided by the car's steering gain.
+/// command is this angle less the car's steering offset, divided by its steering gain.
 class CarEstimator {
  public:
   CarEstimator(const PlannerOptions& options, const DynamicVehicleModel& model)
@@ -43,13 +43,13 @@ class CarEstimator {
   /// resolution of the steering.
   Command send(const Command& wheels, double steer_limit) noexcept {
     Command command = wheels;
-    const double gain = parameters().steering_gain;
-    command.steer = std::clamp(wheels.steer / gain, -steer_limit, steer_limit);
+    const double gain = parameters().steering_gain, offset = parameters().steering_offset;
+    command.steer = std::clamp((wheels.steer - offset) / gain, -steer_limit, steer_limit);
     if (const double step = steer_resolution_; step > 0) {
       const double most = std::floor(steer_limit / step);
       command.steer = step * std::clamp(std::round(command.steer / step), -most, most);
     }
-    observer_.send({command.steer * gain, command.speed});
+    observer_.send({command.steer * gain + offset, command.speed});
     parameters_.send(command.steer);
     return command;
   }

@@ -127,7 +127,7 @@ void complete(RaceCourse& course, const detail::FreeSpace& space, const RacingCa
 
 /// The measures of a corridor for a course of this length (m).
 detail::CorridorMeasure measure_for(const RacingCar& car, double length) {
-  return {wall_distance(car), centre_line_step(car, length), 0.5 * widest * car.width};
+  return {least_wall_distance(car), centre_line_step(car, length), 0.5 * widest * car.width};
 }
 
 /// The start that is given.
@@ -222,7 +222,7 @@ RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, con
   count(car.width, map.resolution, most_cells_of_car, "map: the width of the car");
   RaceCourse course;
   course.map = map;
-  const double keep = wall_distance(car);
+  const double keep = least_wall_distance(car);
   const detail::FreeSpace space(map, car.width);
   if (space.spots() > 0)
     course.notes.push_back(std::to_string(space.spots()) +

@@ -95,8 +95,8 @@ class RacelineProgram {
         closed_(corridor.closed),
         curvature_limit_(max_curvature(car)),
         top_square_(car.limits.top_speed * car.limits.top_speed) {
-    const double keep = wall_distance(car);
-    for (int i = 0; i < count_; ++i) {
+    for (std::size_t i = 0; i < corridor.left.size(); ++i) {
+      const double keep = wall_distance(car, corridor.left[i] + corridor.right[i]);
       lower_.push_back(keep - corridor.right[i]);
       upper_.push_back(corridor.left[i] - keep);
     }

@@ -99,7 +99,7 @@ RacingCar racing_car(const Configuration& configuration) {
   const double grip = tyres.friction * tyres.usable_grip * gravity;
   car.name = "configured";
   car.width = vehicle.body.width;
-  car.margin = 1.2 * vehicle.body.margin;
+  car.margin = 3 * vehicle.body.margin;
   car.wheelbase = vehicle.wheelbase();
   car.max_steering = configuration.planner.steer_limit;
   car.max_steering_rate = tyres.steer_rate;

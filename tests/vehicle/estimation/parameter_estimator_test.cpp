@@ -30,8 +30,9 @@ PathTrackingOptions car_options() {
 struct Drive {
   sim::Model tyres = sim::Model::saturating;
   double friction = 1.0489;
-  double gain = 1;   ///< of the steering
-  double delay = 0;  ///< s, besides the plant's dead time of 20 ms
+  double gain = 1;    ///< of the steering
+  double offset = 0;  ///< rad, added to the angle of the wheels; the driver steers against it
+  double delay = 0;   ///< s, besides the plant's dead time of 20 ms
   double given_friction = 1.0489, given_delay = 0.025;
   double speed = 4;                          ///< m/s
   double swing = 0.2;                        ///< rad, amplitude of the steering
@@ -61,12 +62,13 @@ ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {
     pose.y += drive.position_noise * noise.normal();
     pose.yaw += drive.yaw_noise * noise.normal();
     estimator.update({pose, state.speed, state.yaw_rate, state.slip});
-    const double steer = drive.swing * std::sin(2 * 3.14159 * time / 1.5) * std::cos(0.7 * time);
+    const double steer =
+        drive.swing * std::sin(2 * 3.14159 * time / 1.5) * std::cos(0.7 * time) - drive.offset;
     estimator.send(steer);
     for (int k = 0; k < std::lround(period / time_step); ++k) {
       commands.push_back(steer);
       // The servo's lag, before the plant's own dead time.
-      wheel += (drive.gain * commands.front() - wheel) * (1 - std::exp(-time_step / 0.05));
+      wheel += (drive.gain * commands.front() + drive.offset - wheel) * (1 - std::exp(-time_step / 0.05));
       commands.pop_front();
       plant.step({wheel, drive.speed});
     }
@@ -106,6 +108,13 @@ TEST(ParameterEstimator, KeepsTheGivenValuesWithoutTurningAndSaysSo) {
   EXPECT_GT(found.cautious_friction, 0.55);
   EXPECT_NEAR(found.delay, 0.025, 0.02);
   EXPECT_NEAR(found.steering_gain, 1, 0.02);
+}
+
+TEST(ParameterEstimator, FindsAnOffsetOfTheSteeringOnALongStraightAndNothingElse) {
+  const ParameterEstimate found = after({.offset = 0.01, .speed = 8, .swing = 0, .duration = 15});
+  EXPECT_LT(found.confidence, 0.1);
+  EXPECT_NEAR(found.friction, 1.0489, 0.05);
+  EXPECT_NEAR(found.steering_offset, 0.01, 0.001);
 }
 
 TEST(ParameterEstimator, StandsTheNoiseOfALocalisation) {

@@ -55,9 +55,22 @@ TEST(MinimumTime, OnACircleItIsTheInnerBound) {
   // v = sqrt(a r), so a lap takes 2 pi sqrt(r / a): the smallest radius is the fastest.
   const RacingCar car;
   const Raceline line = minimum_time_raceline(circle(5, 1), car);
-  const double radius = 5 - 1 + wall_distance(car);
+  const double radius = 5 - 1 + wall_distance(car, 2);
   EXPECT_NEAR(line.time, 2 * pi * std::sqrt(radius / car.limits.lateral_acceleration), 0.01);
   for (const RacelinePoint& point : line.points) EXPECT_NEAR(std::hypot(point.x, point.y), radius, 0.01);
+}
+
+TEST(MinimumTime, KeepsTheMarginWhereItFitsAndLessInANarrowPlace) {
+  const RacingCar car;
+  Corridor corridor = circle(5, 1);
+  const std::size_t narrow = corridor.left.size() / 2;
+  corridor.left[narrow] = corridor.right[narrow] = 0.24;
+  const Raceline line = minimum_time_raceline(corridor, car);
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    const double keep = i == narrow ? 0.5 * car.width + 0.4 * car.margin : 0.5 * car.width + car.margin;
+    EXPECT_LE(offset(corridor, line, i), corridor.left[i] - keep) << i;
+    EXPECT_GE(offset(corridor, line, i), keep - corridor.right[i]) << i;
+  }
 }
 
 TEST(MinimumTime, OnAnOpenStraightItIsStraightAtTheTopSpeed) {
@@ -81,7 +94,7 @@ TEST(MinimumTime, StaysInTheCorridorAndWithinTheLimits) {
   for (std::size_t i = 0; i < n; ++i) {
     const RacelinePoint &here = line.points[i], &next = line.points[(i + 1) % n];
     const double step = std::hypot(next.x - here.x, next.y - here.y);
-    EXPECT_LE(std::abs(offset(corridor, line, i)), 1.1 - wall_distance(car));
+    EXPECT_LE(std::abs(offset(corridor, line, i)), 1.1 - wall_distance(car, 2.2));
     EXPECT_LE(std::abs(here.curvature), max_curvature(car));
     EXPECT_LE(here.speed, car.limits.top_speed);
     EXPECT_LE(here.speed * here.speed * std::abs(here.curvature),
@@ -99,7 +112,7 @@ TEST(MinimumTime, StaysInTheCorridorAndWithinTheLimits) {
 TEST(MinimumTime, IsFasterThanTheLineOfLeastCurvature) {
   const RacingCar car;
   const Corridor corridor = winding(1.1);
-  const auto min_curvature = minimum_curvature_offsets(corridor.centre_line, 1.1 - wall_distance(car));
+  const auto min_curvature = minimum_curvature_offsets(corridor.centre_line, 1.1 - wall_distance(car, 2.2));
   EXPECT_LT(minimum_time_raceline(corridor, car).time, time_of(corridor, min_curvature, car));
 }
 
@@ -108,7 +121,7 @@ TEST(MinimumTime, NoSmoothChangeOfTheLineIsFaster) {
   const Corridor corridor = winding(0.9);
   const Raceline line = minimum_time_raceline(corridor, car);
   const std::size_t n = line.points.size();
-  const double bound = 0.9 - wall_distance(car);
+  const double bound = 0.9 - wall_distance(car, 1.8);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int trial = 0; trial < 60; ++trial) {

@@ -40,7 +40,7 @@ double least(const std::vector<double>& values) {
 void expect_rectangle(const RaceCourse& course) {
   EXPECT_TRUE(course.corridor.closed);
   EXPECT_NEAR(length(course.corridor), 45.5, 1.5);
-  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}) - 0.02);
+  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}, 2) - 0.02);
   for (std::size_t i = 0; i < course.corridor.left.size(); ++i) {
     const double width = course.corridor.left[i] + course.corridor.right[i];
     EXPECT_GT(width, 1.9) << i;
@@ -66,8 +66,8 @@ TEST(RaceCourse, TheLineUsesAllOfTheWidthAtAnyResolution) {
     map.origin = {scale * map.origin.x, scale * map.origin.y, 0};
     const RacingCar car;
     const RaceCourse course = race_course(map, car);
-    EXPECT_GE(least(course.distance), wall_distance(car) - 0.005) << resolution;
-    EXPECT_LE(least(course.distance), wall_distance(car) + 0.01) << resolution;
+    EXPECT_GE(least(course.distance), wall_distance(car, 2) - 0.005) << resolution;
+    EXPECT_LE(least(course.distance), wall_distance(car, 2) + 0.01) << resolution;
   }
 }
 
@@ -161,7 +161,7 @@ TEST(RaceCourse, PassesWhatStandsInTheRoad) {
   maps::OccupancyGrid map = rectangular_course();
   fill(map, 8, -0.4, 8.5, 0.1, Occupancy::occupied);
   const RaceCourse course = race_course(map, RacingCar{});
-  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}) - 0.02);
+  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}, 2) - 0.02);
   EXPECT_NEAR(length(course.corridor), 45.5, 1.5);
 }
 
@@ -187,7 +187,7 @@ TEST(RaceCourse, AnOpenLineIsDrivenFromEndToEnd) {
   const RaceCourse course = race_course(map, RacingCar{}, {}, &guide);
   EXPECT_FALSE(course.corridor.closed);
   EXPECT_FALSE(course.raceline.closed);
-  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}) - 0.02);
+  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}, 2) - 0.02);
   EXPECT_NEAR(length(course.corridor), 15.6, 1);
   EXPECT_NEAR(course.start.y, 2.5, 0.5);
 }
@@ -195,7 +195,7 @@ TEST(RaceCourse, AnOpenLineIsDrivenFromEndToEnd) {
 TEST(RaceCourse, MakesTheMapOfACorridor) {
   const RacingCar car;
   const RaceCourse course = race_course(testing::circle(6, 0.9), car);
-  EXPECT_GT(least(course.distance), wall_distance(car) - 0.08);
+  EXPECT_GT(least(course.distance), wall_distance(car, 1.8) - 0.08);
   const auto& map = course.map;
   const auto at = [&](double x, double y) {
     return map.at(static_cast<int>((x - map.origin.x) / map.resolution),

@@ -126,7 +126,7 @@ TEST(RacingCar, OfAConfigurationHasItsSizesAndTheGripOfItsPlans) {
   EXPECT_NO_THROW(validate(large));
   EXPECT_DOUBLE_EQ(large.wheelbase, 2.7);
   EXPECT_EQ(large.max_steering, 0.5);
-  EXPECT_DOUBLE_EQ(large.margin, 0.36);
+  EXPECT_DOUBLE_EQ(large.margin, 0.9);
   EXPECT_DOUBLE_EQ(large.limits.lateral_acceleration, 0.4 * 9.81);
   EXPECT_EQ(large.limits.acceleration, 2);
   EXPECT_DOUBLE_EQ(large.limits.braking, 0.4 * 9.81);

@@ -43,6 +43,7 @@ class SingleTrackDynamics {
 
   /// The friction in the options.
   double friction() const noexcept { return double(friction_); }
+  double wheelbase() const noexcept { return double(front_length_) + double(rear_length_); }  ///< m
 
   /// The acceleration (m/s^2, to either side) that tyres which turn the car leave for drive and brakes: with
   /// lateral acceleration v r no more than `usable_grip` of friction times gravity is used, and a part is

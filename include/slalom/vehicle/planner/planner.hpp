@@ -81,6 +81,7 @@ struct ParameterEstimate {
   double cautious_friction = 0;        ///< friction on which plans rely: a quantile, at most the given value
   double steering_gain = 1;            ///< angle of the wheels / commanded angle, mean
   double steering_gain_deviation = 0;  ///< standard deviation
+  double steering_offset = 0;          ///< rad, angle of the wheels at the command 0
   double delay = 0;                    ///< s, from sending a steering command to its first effect, mean
   double delay_deviation = 0;          ///< s, standard deviation
   double confidence = 0;  ///< 0 ... 1, how far the drive has reduced the variance of log(friction): 1 -

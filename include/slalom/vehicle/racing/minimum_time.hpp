@@ -23,7 +23,7 @@ struct Raceline {
 ///   minimise  sum_i 2 d_i / (v_i + v_{i+1})   over offsets n_i and speeds v_i, d_i = |p_{i+1} - p_i|,
 ///   p_i = c_i + n_i e_i  (c_i the centre line, e_i its normals)
 ///   subject to
-///     -(right_i - r) <= n_i <= left_i - r                   r = wall_distance(car)
+///     -(right_i - r) <= n_i <= left_i - r                   r = wall_distance()
 ///     |k_i| <= tan(max_steering) / wheelbase                k_i the curvature of p_{i-1}, p_i, p_{i+1}
 ///     v_i <= top_speed,    a_i v_i <= power                 a_i = (v_{i+1}^2 - v_i^2) / (2 d_i)
 ///     (v_j^2 k_j / lateral)^2 + (a_i / along)^2 <= 1        j = i, i+1; along: acceleration or braking

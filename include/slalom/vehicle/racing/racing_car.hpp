@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <string>
@@ -23,7 +24,7 @@ struct GripAtSpeed {
 struct RacingCar {
   std::string name = "f1tenth";                ///< name of the car, for messages
   double width = 0.31;                         ///< m, of the body
-  double margin = 0.06;                        ///< m, that the body keeps from walls
+  double margin = 0.15;                        ///< m, that the body keeps from walls; wall_distance()
   double wheelbase = 0.3302;                   ///< m
   double max_steering = 0.4;                   ///< rad, of the front wheels
   double max_steering_rate = 3.2;              ///< rad/s
@@ -44,7 +45,7 @@ std::vector<std::string> racing_car_names();
 /// `passenger` (a full-scale car on a dry road). Throws std::invalid_argument that lists the names.
 RacingCar racing_car(const std::string& name);
 
-/// The car of a configuration, with the grip that its plans may use (friction times usable_grip), and 1.2
+/// The car of a configuration, with the grip that its plans may use (friction times usable_grip), and three
 /// times their margin. The top speed is that of racing_car(), by the wheelbase: planner.max_speed is a limit
 /// for driving.
 RacingCar racing_car(const Configuration& configuration);
@@ -53,9 +54,15 @@ RacingCar racing_car(const Configuration& configuration);
 /// the rows of `grip`. Throws std::invalid_argument unless `friction` is finite and above 0.
 void set_friction(RacingCar& car, double friction);
 
-/// m that the centre of the car keeps from walls: half the width and the margin.
-inline double wall_distance(const RacingCar& car) {
-  return 0.5 * car.width + car.margin;
+/// m that the centre of the car keeps from the walls of a corridor of this width (m) there: half the width of
+/// the car and its margin. Where the corridor is narrow, the margin is a quarter of the room beside the car,
+/// but at least 0.4 of it.
+inline double wall_distance(const RacingCar& car, double corridor_width) {
+  return 0.5 * car.width + std::clamp(0.25 * (corridor_width - car.width), 0.4 * car.margin, car.margin);
+}
+/// The same in the narrowest place that the car can pass.
+inline double least_wall_distance(const RacingCar& car) {
+  return wall_distance(car, 0);
 }
 
 /// 1/m, the tightest curvature that the steering reaches: tan(max_steering) / wheelbase.
