@@ -7,7 +7,7 @@
 
 #include "bench/random_network.hpp"
 #include "slalom/gpu/gpu.hpp"
-#include "slalom/solvers/controllers.hpp"
+#include "slalom/solvers/registry.hpp"
 
 namespace slalom::bench {
 namespace {
@@ -18,21 +18,22 @@ constexpr int most = 131072;
 bool brief = false;
 int failed = 0;  ///< how many first plans differ from the processor's
 
-/// Times solves in a closed loop from `start`, from the state to the plan. Returns the sorted times, ms.
+/// Times solves in a closed loop, from the state to the plan. Returns the sorted times, ms.
 template <class P>
-std::vector<double> time_loop(Controller<P>& controller, const typename P::template State<double>& start,
-                              double limit) {
+std::vector<double> time_loop(ProblemEvaluator<P>& evaluator, Solver& solver,
+                              const typename P::template State<double>& start, double limit) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> times;
-  auto x = start;
-  const double dt = controller.evaluator().time_step();
   const auto end = Clock::now() + std::chrono::duration<double>(limit);
+  typename P::template State<double> states[2];
   for (int n = 0; n < (brief ? 1 : 1000) && (n < 8 || Clock::now() < end); ++n) {
-    if (n % 400 == 0) x = start;
     const auto begin = Clock::now();
-    const auto plan = controller.solve(x, {.elapsed = dt});
+    evaluator.set_state(n % 400 == 0 ? start : states[1]);
+    const SolveResult& result = solver.solve(evaluator, {.elapsed = evaluator.time_step()});
     times.push_back(1e3 * std::chrono::duration<double>(Clock::now() - begin).count());
-    x = plan.states[1];
+    Input<double, P::inputs> u;
+    for (int i = 0; i < P::inputs; ++i) u[i] = result.inputs[static_cast<std::size_t>(i)];
+    predict(evaluator.problem(), n % 400 == 0 ? start : states[1], &u, 1, states);
   }
   std::sort(times.begin(), times.end());
   return times;
@@ -42,28 +43,29 @@ std::vector<double> time_loop(Controller<P>& controller, const typename P::templ
 template <class P, class Options>
 void compare(const char* name, const P& problem, const typename P::template State<double>& start,
              double flops, Options options, const char* asked = "") {
-  gpu::GpuController<P, Options> controller(problem, options);
-  const std::vector<float> first(controller.solve(start).stats.inputs.begin(),
-                                 controller.solver().result().inputs.end());
-  Controller<P> one(problem, options);
-  const auto expected = one.solve(start).stats.inputs;
+  ProblemEvaluator<P> evaluator(problem);
+  evaluator.set_state(start);
+  gpu::GpuSolver<P, Options> gpu(problem, options);
+  gpu.connect(evaluator);
+  const auto first = gpu.solve(evaluator, {}).inputs;
+  const auto processor = make_solver(options, P::inputs);
+  const auto expected = processor->solve(evaluator, {}).inputs;
   float difference = 0;
   for (std::size_t r = 0; r < first.size(); ++r)
     difference = std::max(difference, std::abs(first[r] - expected[r]));
-  const std::vector<double> times = time_loop<P>(controller, start, 10);
+  const std::vector<double> times = time_loop(evaluator, gpu, start, 5);
   const double median = times[times.size() / 2];
-  const bool good = difference < 1e-3f && controller.fault().empty();
+  const bool good = difference < 1e-3f && gpu.fault().empty();
   failed += !good;
   std::printf("%s,%s,%d,%.1e,%.4f,%.4f,%.2f", name, Options::method, options.samples, difference, median,
               times[times.size() * 99 / 100], flops * options.samples * options.horizon / median * 1e-9);
   for (const int threads : {16, 1}) {
     if (brief) break;
     options.threads = threads;
-    Controller<P> processor(problem, options);
-    const std::vector<double> there = time_loop(processor, start, 0.4);
+    const std::vector<double> there = time_loop(evaluator, *make_solver(options, P::inputs), start, 0.4);
     std::printf(",%.4f", there[there.size() / 2]);
   }
-  std::printf(",%s%s%s\n", asked, good ? "" : " FAILED ", controller.fault().c_str());
+  std::printf(",%s%s%s\n", asked, good ? "" : " FAILED ", gpu.fault().c_str());
   std::fflush(stdout);
 }
 

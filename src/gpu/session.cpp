@@ -31,7 +31,7 @@ namespace {
   X(stream_query, "cuStreamQuery", void*) \
   X(allocate, "cuMemAlloc_v2", void**, std::size_t) \
   X(free, "cuMemFree_v2", void*) \
-  X(fill, "cuMemsetD8_v2", void*, unsigned char, std::size_t) \
+  X(fill, "cuMemsetD8Async", void*, unsigned char, std::size_t, void*) \
   X(host_allocate, "cuMemHostAlloc", void**, std::size_t, unsigned) \
   X(host_free, "cuMemFreeHost", void*) \
   X(copy_in, "cuMemcpyHtoDAsync_v2", void*, const void*, std::size_t, void*) \
@@ -64,7 +64,7 @@ const Driver& driver() {
 
 // Numbers of cuda.h.
 constexpr int multiprocessors = 16, dynamic_shared_bytes = 8, not_ready = 600;
-constexpr unsigned non_blocking = 1;
+constexpr unsigned non_blocking = 1, device_map = 2;
 
 }  // namespace
 
@@ -118,19 +118,19 @@ void* Session::allocate(std::size_t bytes) noexcept {
   void* address = nullptr;
   if (!call("memory", driver().allocate, &address, bytes)) return nullptr;
   memory_.push_back(address);
-  call("memory", driver().fill, address, static_cast<unsigned char>(0), bytes);
+  call("memory", driver().fill, address, static_cast<unsigned char>(0), bytes, stream_);
   return address;
 }
 
 void* Session::allocate_on_host(std::size_t bytes) noexcept {
   void* address = nullptr;
-  if (!call("memory of the host", driver().host_allocate, &address, bytes, 0u)) return nullptr;
+  if (!call("memory of the host", driver().host_allocate, &address, bytes, device_map)) return nullptr;
   host_memory_.push_back(address);
   return std::memset(address, 0, bytes);
 }
 
 bool Session::copy_in(void* to, const void* from, std::size_t bytes) noexcept {
-  return call("copy to the device", driver().copy_in, to, from, bytes, stream_);
+  return bytes == 0 || call("copy to the device", driver().copy_in, to, from, bytes, stream_);
 }
 
 bool Session::copy_out(void* to, const void* from, std::size_t bytes) noexcept {

@@ -30,7 +30,7 @@ int cuMemAlloc_v2(void** address, Size bytes) {
   return fake_allocation;
 }
 int cuMemFree_v2(void* address) { return std::free(address), 0; }
-int cuMemsetD8_v2(void* address, unsigned char value, Size bytes) { return std::memset(address, value, bytes), 0; }
+int cuMemsetD8Async(void* address, unsigned char value, Size bytes, void*) { return std::memset(address, value, bytes), 0; }
 int cuMemHostAlloc(void** address, Size bytes, unsigned) { return *address = std::malloc(bytes), 0; }
 int cuMemFreeHost(void* address) { return std::free(address), 0; }
 int cuMemcpyHtoDAsync_v2(void* to, const void* from, Size bytes, void*) { return std::memcpy(to, from, bytes), 0; }

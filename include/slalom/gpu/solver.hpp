@@ -56,12 +56,12 @@ class GpuSolver final : public Solver {
   /// std::invalid_argument if the problem reads memory that it does not declare, or if its costs differ.
   void connect(const BatchEvaluator& evaluator) override {
     constexpr std::size_t beyond = 256;  // read, but not used, behind the weights of a network
-    const P& problem = static_cast<const ProblemEvaluator<P>&>(evaluator).problem();
-    memory_ = memory_of(problem);
+    const auto& own = static_cast<const ProblemEvaluator<P>&>(evaluator);
+    memory_ = memory_of(own.problem());
     for (SharedMemory& m : memory_) m.copy = session_.allocate(m.data.size() + beyond);
     refresh();
-    redirected_ = point_to_copies(problem);
-    trial(evaluator);
+    redirected_ = take_in(own);
+    trial(own);
     reset(seed_);
   }
 
@@ -79,9 +79,10 @@ class GpuSolver final : public Solver {
         theta_[g * inputs_.size() + r] = std::clamp(z, s.low[i], s.high[i]);
       }
     }
-    session_.copy_in(a_.buffers.mean, inputs_.data(), sizeof(float) * inputs_.size());
-    session_.copy_in(a_.buffers.nominal, inputs_.data(), sizeof(float) * inputs_.size());
-    session_.copy_in(a_.buffers.variance, variance_.data(), sizeof(float) * inputs_.size());
+    const std::size_t bytes = sizeof(float) * inputs_.size();
+    session_.copy_in(a_.buffers.mean, inputs_.data(), bytes);
+    session_.copy_in(a_.buffers.nominal, inputs_.data(), bytes);
+    session_.copy_in(a_.buffers.variance, variance_.data(), bytes);
     session_.copy_in(a_.buffers.theta, theta_.data(), sizeof(double) * theta_.size());
     session_.synchronize();
     result_ = {};
@@ -94,12 +95,11 @@ class GpuSolver final : public Solver {
     result_.status = wait(start, request.deadline);  // for a solve that missed its deadline
     if (result_.status != Status::ok) return result_;
     const auto& own = static_cast<const ProblemEvaluator<P>&>(evaluator);
-    const bool moved = point_to_copies(own.problem()) != redirected_;
+    const bool moved = take_in(own) != redirected_;
     if (moved || !session_.fault().empty()) {
       result_.status = Status::degenerate;
       return result_;
     }
-    std::copy(own.start().begin(), own.start().end(), a_.start);
     const double steps = shifts_ ? std::min<double>(warm_start_shift(own, request), a_.settings.horizon) : 0;
     a_.shift = {int(steps), steps - int(steps)};
     a_.stream = (solves_ << 16) | (guided ? 1u : 0u);
@@ -113,8 +113,7 @@ class GpuSolver final : public Solver {
 
   /// Copies the contents of the memory that the problem reads again: after a map has changed, before a solve.
   void refresh() noexcept {
-    for (const SharedMemory& m : memory_)
-      if (!m.data.empty()) session_.copy_in(m.copy, m.data.data(), m.data.size());
+    for (const SharedMemory& m : memory_) session_.copy_in(m.copy, m.data.data(), m.data.size());
   }
 
   /// Why the device fails; empty if it does not.
@@ -127,16 +126,18 @@ class GpuSolver final : public Solver {
     if (count > 0) array = static_cast<T*>(session_.allocate(sizeof(T) * static_cast<std::size_t>(count)));
   }
 
-  /// Lets the problem in the arguments point to the copies; returns how many words it changed.
-  int point_to_copies(const P& problem) noexcept {
-    std::memcpy(a_.problem, static_cast<const void*>(&problem), sizeof problem);
+  /// Takes the problem and the start of its rollouts into the arguments, and lets the problem point to the
+  /// copies; returns how many words that changed.
+  int take_in(const ProblemEvaluator<P>& evaluator) noexcept {
+    std::memcpy(a_.problem, static_cast<const void*>(&evaluator.problem()), sizeof(P));
+    std::copy(evaluator.start().begin(), evaluator.start().end(), a_.start);
     int words = 0;
     for (const SharedMemory& m : memory_) words += redirect(a_.problem, m);
     return words;
   }
 
   /// Compares the costs of up to 1,000 samples around the first solution with those of the processor.
-  void trial(const BatchEvaluator& evaluator) {
+  void trial(const ProblemEvaluator<P>& evaluator) {
     const Settings& s = a_.settings;
     const std::vector<double> variance(s.variance, s.variance + P::inputs);
     const MppiOptions cpu{.horizon = s.horizon,
