@@ -123,9 +123,21 @@ TEST(GpuEmulation, AllProblems) {
   std::copy(Arm::start.begin(), Arm::start.end(), start.angle);
   compare_methods(Arm{}, start, 20, -1.5, 1.5);
 }
-TEST(GpuEmulation, ReadsDeclaredMemory) {
+TEST(GpuEmulation, ReadsCopiesOfDeclaredMemoryAsOfTheLastRefresh) {
   compare_methods(WithMemory{}, {1, 0}, 20, -5, 5);
-  EXPECT_EQ(memory_of(WithMemory{}).at(0).data.size(), 12u);
+  fake_launch = &emulate<WithMemory>;
+  Mppi<WithMemory> controller(WithMemory{}, {.horizon = 20, .samples = 64, .temperature = 1});
+  const auto first_input = [&] {
+    controller.reset(0);
+    return controller.solve({1, 0}).inputs[0][0];
+  };
+  const double before = first_input();
+  controller.problem().weights[2] = 300;
+  EXPECT_EQ(first_input(), before);
+  controller.refresh();
+  EXPECT_NE(first_input(), before);
+  controller.problem().weights.assign(1000, 1);  // elsewhere
+  EXPECT_EQ(controller.solve({1, 0}).status, Status::degenerate);
 }
 
 /// The error that making a controller throws.

@@ -30,7 +30,7 @@ constexpr long long guide_doubles(const Settings& s, int rows) {
   return static_cast<long long>(2 + s.iterations) * s.guides * rows + (s.iterations + 1ll) * s.guides;
 }
 
-/// Its parts.
+/// The parts of that memory.
 template <class P>
 struct GuideMemory {
   const Arguments<P>& a;
@@ -54,10 +54,12 @@ struct MovingGuide {
   const int columns = guide_columns(s), columns_log2 = log2_of(columns), stride = columns + 1;
   const bool ahead = draws_ahead(s, rows);
   double* const theta = reinterpret_cast<double*>(memory);  ///< [row]
-  float *const centre = memory + 2 * padded_rows(rows), *const deviation =
-                                                            centre + padded_rows(rows);   ///< [row]
-  float *const cost = deviation + 2 * padded_rows(rows), *const weight = cost + columns;  ///< [column]
-  float *const v = weight + columns, *const noise = ahead ? v + rows * stride : v;        ///< [row][column]
+  float* const centre = memory + 2 * padded_rows(rows);     ///< [row]
+  float* const deviation = centre + padded_rows(rows);      ///< [row]
+  float* const cost = deviation + 2 * padded_rows(rows);    ///< [column]
+  float* const weight = cost + columns;                     ///< [column]
+  float* const v = weight + columns;                        ///< [row][column]
+  float* const noise = ahead ? v + rows * stride : v;       ///< [row][column]
 
   void run() const {
     begin();
