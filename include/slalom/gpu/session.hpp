@@ -30,9 +30,9 @@ class Session {
  public:
   /// A kernel with the shared memory of its blocks.
   struct Kernel {
-    void* function = nullptr;
-    int shared_bytes = 0;
-    int resident_blocks = 0;  ///< blocks that the device holds at a time
+    void* function = nullptr;  ///< handle of the driver
+    int shared_bytes = 0;      ///< shared memory of a block
+    int resident_blocks = 0;   ///< blocks that the device holds at a time
   };
 
   /// Loads the first of the images that the device runs.
