@@ -92,12 +92,7 @@ namespace {
 template <class P>
 void compare_methods(const P& problem, const typename P::template State<double>& start, int horizon,
                      const PerInput& low, const PerInput& high) {
-  MppiOptions mppi{.horizon = horizon,
-                   .samples = 500,
-                   .temperature = 1,
-                   .input_min = low,
-                   .input_max = high,
-                   .control_cost_discount = 0};
+  MppiOptions mppi{.horizon = horizon, .samples = 500, .temperature = 1, .input_min = low, .input_max = high};
   compare(problem, mppi, start, 3);
   mppi.horizon = 21, mppi.samples = 32800;
   if (can_fuse<P>) compare(problem, mppi, start, 1);
@@ -166,6 +161,8 @@ TEST_F(GpuErrors, NameOptionsThatAGpuLacks) {
   EXPECT_EQ(refusal(MppiOptions{}), "mppi.temperature: 0 must be above 0 on a GPU");
   EXPECT_EQ(refusal(MppiOptions{.temperature = 1, .noise = {.knots = 4}}),
             "mppi.noise_knots: 4 must be 0 on a GPU");
+  EXPECT_EQ(refusal(MppiOptions{.temperature = 1, .control_cost_discount = 0}),
+            "mppi.control_cost_discount: 0 must be 1 on a GPU");
   EXPECT_EQ(refusal(MppiOptions{.horizon = 5000, .temperature = 1}),
             "mppi.horizon: 5000 steps of 1 inputs do not fit into 64 KiB of a GPU's shared memory");
 }

@@ -18,7 +18,7 @@ namespace slalom::gpu {
 template <class Options>
 void require_supported(const Options& options) {
   constexpr std::string_view supported =
-      " horizon samples temperature variance input_min input_max shift_warm_start control_cost_discount seed "
+      " horizon samples temperature variance input_min input_max shift_warm_start seed "
       "threads guides guide_iterations guide_step guide_variance gradient_samples gradient_variance "
       "gradient_temperature restart_guides restart_variance variance_min variance_max ";
   Options plain;  // one batch of white noise
@@ -95,7 +95,6 @@ Settings settings_of(const P& problem, Options o) {
     set(s.variance_min, o.variance_min), set(s.variance_max, o.variance_max);
   } else {
     o = slalom::detail::with_variances(o, P::inputs);
-    s.control_factor = float(o.temperature * (1 - o.control_cost_discount));
   }
   set(s.low, o.input_min), set(s.high, o.input_max), set(s.variance, o.variance);
   spread_samples<P>(s);

@@ -13,8 +13,8 @@ constexpr int most_inputs = 16;
 struct Settings {
   /// `tile` samples, a power of two, are rolled out at a time; a block takes a group of tiles.
   int horizon, samples, tile, tiles, groups;
-  int fused;                          ///< whether a thread draws the sample that it rolls out
-  float temperature, control_factor;  ///< control_factor = temperature (1 - discount); 0 in svg_mppi
+  int fused;  ///< whether a thread draws the sample that it rolls out
+  float temperature;
   float low[most_inputs], high[most_inputs], variance[most_inputs];
   // svg_mppi alone; `guides` is 0 in mppi
   int guides, iterations, gradient_samples, restart;
@@ -23,10 +23,10 @@ struct Settings {
       variance_min[most_inputs], variance_max[most_inputs];
 };
 
-/// Sums over the samples of a group; weights are relative to `least_total`.
+/// Sums over the samples of a group; weights are relative to the `least` cost.
 struct alignas(16) GroupSums {
-  float least_total, least_cost, weight, squared;
-  float cost, finite, collided, factor;
+  float least, weight, squared, cost;
+  float finite, collided, factor, unused;
 };
 
 /// Results of a solve besides the plan.

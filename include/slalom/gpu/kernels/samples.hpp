@@ -16,26 +16,26 @@ constexpr bool can_fuse = 8 % P::inputs == 0;
 
 /// The distribution of a row, and its weighted sum.
 struct alignas(16) Row {
-  float mean, deviation, linear, moment;
+  float mean, deviation, moment;
 };
 
 /// Shared memory of a block: a tile of samples, whose inputs are there only where the threads draw together.
 struct Tile {
   Row* row;
   GroupSums* sums;
-  float *cost, *total, *weight, *hit;  ///< [sample]
-  float* part;                         ///< [part][row]
-  float* v;                            ///< [row][sample and one more]
+  float *cost, *weight, *hit;  ///< [sample]
+  float* part;                 ///< [part][row]
+  float* v;                    ///< [row][sample and one more]
 
   Tile(float* memory, int rows, int samples) {
     row = reinterpret_cast<Row*>(memory);
     sums = reinterpret_cast<GroupSums*>(memory + 4 * rows);
     cost = memory + 4 * rows + 8;
-    total = cost + samples, weight = total + samples, hit = weight + samples, part = hit + samples;
+    weight = cost + samples, hit = weight + samples, part = hit + samples;
     v = part + parts_of_tile * rows;
   }
   static constexpr int floats(int rows, int samples, bool fused) {
-    return (4 + parts_of_tile) * rows + 8 + 4 * samples + (fused ? 0 : rows * (samples + 1));
+    return (4 + parts_of_tile) * rows + 8 + 3 * samples + (fused ? 0 : rows * (samples + 1));
   }
 };
 
@@ -56,10 +56,9 @@ struct SampleBlock {
     return clamped(row.mean + row.deviation * z, s.low[input_of<P>(r)], s.high[input_of<P>(r)]);
   }
 
-  /// Rolls out a sample that its thread draws, step by step: nothing is stored. Returns the term of the mean.
-  float roll_out_fused(int sample, Rollout<P>& rollout) const {
+  /// Rolls out a sample that its thread draws, step by step: nothing is stored.
+  void roll_out_fused(int sample, Rollout<P>& rollout) const {
     constexpr int steps = 8 / P::inputs;  // steps that eight normal values make
-    float term = 0;
     const auto roll_out_octet = [&](int octet, int count) {
       float z[8];
       normal_octet(key, sample, octet, z);
@@ -68,11 +67,7 @@ struct SampleBlock {
         if (j >= count) break;
         typename Rollout<P>::Inputs u;
         SLALOM_UNROLLED()
-        for (int i = 0; i < P::inputs; ++i) {
-          const int r = 8 * octet + j * P::inputs + i;
-          u[i] = input(r, z[j * P::inputs + i]);
-          term += t.row[r].linear * u[i];
-        }
+        for (int i = 0; i < P::inputs; ++i) u[i] = input(8 * octet + j * P::inputs + i, z[j * P::inputs + i]);
         rollout.step(u, steps * octet + j);
       }
     };
@@ -80,7 +75,6 @@ struct SampleBlock {
     if constexpr (unrolled_steps<P>() != 1)
       for (; step + steps <= s.horizon; step += steps) roll_out_octet(step / steps, steps);
     for (; step < s.horizon; step += steps) roll_out_octet(step / steps, s.horizon - step);
-    return term;
   }
 
   /// Draws and rolls out a tile.
@@ -92,18 +86,13 @@ struct SampleBlock {
     }
     Block::each(s.tile, [&](int k) {
       Rollout<P> rollout(a);
-      float term = 0;
       if (!s.fused) {
-        roll_out<unrolled_steps<P>()>(a, rollout, [&](int r) {
-          const float u = t.v[r * (s.tile + 1) + k];
-          term += t.row[r].linear * u;
-          return u;
-        });
+        roll_out<unrolled_steps<P>()>(a, rollout, [&](int r) { return t.v[r * (s.tile + 1) + k]; });
       } else if constexpr (can_fuse<P>) {
-        term = roll_out_fused(first + k, rollout);
+        roll_out_fused(first + k, rollout);
       }
       t.cost[k] = rollout.finish();
-      t.total[k] = t.cost[k] + term, t.hit[k] = rollout.collided() ? 1.0f : 0.0f;
+      t.hit[k] = rollout.collided() ? 1.0f : 0.0f;
     });
   }
 
@@ -138,30 +127,27 @@ struct SampleBlock {
   /// Weighs the samples of a tile relative to the least cost so far, and adds them to the sums. Returns the
   /// factor of the sums so far.
   float add_weights(int first, int count) const {
-    const auto total = [&](int k) { return k < count && is_finite(t.total[k]) ? t.total[k] : infinite; };
+    const auto cost = [&](int k) { return k < count ? t.cost[k] : infinite; };
     const auto w = [&](int k) { return t.weight[k]; };
     const GroupSums before = *t.sums;
     const float inverse_temperature = 1.0f / s.temperature;
-    const float now = fminf(Block::least(s.tile, total), before.least_total);
-    const float scale =
-        before.least_total < infinite ? std::exp((now - before.least_total) * inverse_temperature) : 0.0f;
+    const float now = fminf(Block::least(s.tile, cost), before.least);
+    const float scale = before.least < infinite ? std::exp((now - before.least) * inverse_temperature) : 0.0f;
     Block::each(s.tile, [&](int k) {
-      const float weight = now < infinite ? std::exp((now - total(k)) * inverse_temperature) : 0.0f;
+      const float weight = now < infinite ? std::exp((now - cost(k)) * inverse_temperature) : 0.0f;
       t.weight[k] = weight >= least_weight ? weight : 0.0f;
       if (b.costs && k < count) b.costs[first + k] = t.cost[k];
     });
     Block::barrier();
     if (Block::thread() < Block::lanes) {
       GroupSums sums = before;
-      const auto cost = [&](int k) { return k < count ? t.cost[k] : infinite; };
-      sums.least_total = now;
+      sums.least = now;
       sums.weight = before.weight * scale + Block::sum(s.tile, w);
       sums.squared = before.squared * scale * scale + Block::sum(s.tile, [&](int k) { return w(k) * w(k); });
       sums.cost =
           before.cost * scale + Block::sum(s.tile, [&](int k) { return w(k) > 0 ? w(k) * t.cost[k] : 0.0f; });
-      sums.finite += Block::sum(s.tile, [&](int k) { return total(k) < infinite ? 1.0f : 0.0f; });
+      sums.finite += Block::sum(s.tile, [&](int k) { return cost(k) < infinite ? 1.0f : 0.0f; });
       sums.collided += Block::sum(s.tile, [&](int k) { return k < count ? t.hit[k] : 0.0f; });
-      sums.least_cost = fminf(sums.least_cost, Block::least(s.tile, cost));
       if (Block::thread() == 0) *t.sums = sums;
     }
     return scale;
@@ -172,10 +158,9 @@ struct SampleBlock {
     Block::each(rows, [&](int r) {
       const float variance = s.guides > 0 ? b.variance[r] : s.variance[input_of<P>(r)];
       const float mean = s.guides > 0 ? b.nominal[r] : shifted(a, b.mean, r);
-      const bool pulls = s.control_factor > 0 && variance > 0;
-      t.row[r] = {mean, sqrtf(variance), pulls ? s.control_factor * mean / variance : 0.0f, 0};
+      t.row[r] = {mean, sqrtf(variance), 0};
     });
-    if (Block::thread() == 0) *t.sums = {infinite, infinite, 0, 0, 0, 0, 0, 0};
+    if (Block::thread() == 0) *t.sums = {infinite, 0, 0, 0, 0, 0, 0, 0};
     Block::barrier();
     for (int tile = group; tile < s.tiles; tile += s.groups) {
       const int first = tile * s.tile;
@@ -216,9 +201,9 @@ void combine(const Arguments<P>& a, float* memory) {
     reinterpret_cast<Four*>(sums)[j] = Block::read_written(reinterpret_cast<const float*>(b.sums) + 4 * j);
   });
   Block::barrier();
-  const float least = Block::least(n, [&](int t) { return sums[t].least_total; });
+  const float least = Block::least(n, [&](int t) { return sums[t].least; });
   Block::each(n, [&](int t) {
-    const float of_group = sums[t].least_total;
+    const float of_group = sums[t].least;
     sums[t].factor = of_group < infinite ? std::exp((least - of_group) / s.temperature) : 0.0f;
   });
   Block::barrier();
@@ -250,11 +235,10 @@ void combine(const Arguments<P>& a, float* memory) {
   if (Block::thread() < Block::lanes) {
     const float squared = Block::sum(n, [&](int t) { return f(t) * f(t) * sums[t].squared; });
     const float cost = Block::sum(n, [&](int t) { return f(t) * sums[t].cost; });
-    const float least_cost = Block::least(n, [&](int t) { return sums[t].least_cost; });
     const float finite = Block::sum(n, [&](int t) { return sums[t].finite; });
     const float collided = Block::sum(n, [&](int t) { return sums[t].collided; });
     if (Block::thread() == 0) {
-      b.report->least_cost = least_cost, b.report->mean_cost = cost * inverse;
+      b.report->least_cost = least, b.report->mean_cost = cost * inverse;
       b.report->effective_samples = squared > 0 ? weight * weight / squared : 0.0f;
       b.report->finite = finite, b.report->collided = collided;
     }
