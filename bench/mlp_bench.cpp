@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bench/gpu/random_network.hpp"
+#include "bench/random_network.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 
 namespace slalom {

@@ -13,7 +13,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "bench/gpu/problems.hpp"
+#include "bench/problems.hpp"
 #include "bench/workload/statistics.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/mppi_options.hpp"

@@ -1,232 +1,150 @@
-// slalom_gpu_bench [check] [time] [cpu] [sanitize]: compares solves on a GPU with the processor's, and
-// measures both; a row of CSV each, times in ms.
+// slalom_gpu_bench [brief]: compares first plans on a GPU with the processor's and times both, a row of CSV
+// for each problem. With `brief`, for compute-sanitizer, few solves on the GPU alone.
 
 #include <chrono>
 #include <cstdio>
-#include <set>
+#include <string_view>
 
-#include "bench/gpu/random_network.hpp"
+#include "bench/random_network.hpp"
 #include "slalom/gpu/gpu.hpp"
-#include "slalom/slalom.hpp"
+#include "slalom/solvers/registry.hpp"
 
 namespace slalom::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using problems::Pendulum;
-using problems::Quadrotor;
+using problems::Pendulum, problems::Quadrotor;
 
-int failed = 0;  ///< how many checks have failed
 constexpr int most = 131072;
+bool brief = false;
+int failed = 0;  ///< how many first plans differ from the processor's
 
+/// Times solves in a closed loop, from the state to the plan. Returns the sorted times, ms.
 template <class P>
-using StateOf = typename P::template State<double>;
-
-/// A problem with the options of a solver.
-template <class P, class Options>
-struct Case {
-  const char* name;
-  P problem;
-  StateOf<P> start;
-  double dt;     ///< s
-  double flops;  ///< of a step, counted by hand
-  Options options;
-};
-
-/// A GPU draws one batch of white noise, and its temperatures are fixed.
-void for_gpu(SvgMppiOptions& o) {
-  o.batches = 1;
-  o.noise.exponent = 0;
-  o.guides.gradient_temperature = 1;
-  o.guides.count = 4, o.guides.iterations = 10, o.guides.gradient_samples = 25;
-}
-template <class Options = MppiOptions>
-Case<Navigation, Options> navigation(int samples) {
-  static const CostMap map;
-  Options o{.horizon = 100,
-            .samples = samples,
-            .temperature = 1,
-            .input_min = {-0.35, -0.5},
-            .input_max = {0.5, 0.5}};
-  if constexpr (std::is_same_v<Options, SvgMppiOptions>) {
-    for_gpu(o);
-    o.variance_min = 0.01, o.variance_max = 0.04;
-    o.guides.gradient_variance = o.guides.variance = o.guides.restart_variance = 0.04, o.guides.step = 0.02;
-  } else {
-    o.variance = 0.04;
-  }
-  Navigation problem;
-  problem.map = map.view();
-  return {"navigation", problem, {7.4, 7.4, 0.785398}, 0.02, 45, o};
-}
-Case<Learned, MppiOptions> network(int samples) {
-  MppiOptions o{
-      .horizon = 50, .samples = samples, .temperature = 1, .variance = 0.25, .input_min = -1, .input_max = 1};
-  return {"network", {random_network()}, {1, 0, 0}, 0, 2 * 1280 + 64 * 8, o};
-}
-Case<Pendulum, MppiOptions> pendulum(int samples) {
-  MppiOptions o{.horizon = 60, .samples = samples, .variance = 4, .input_min = -5, .input_max = 5};
-  o.temperature = 0.2;
-  return {"pendulum", {}, {3.14159, 0}, 0.02, 30, o};
-}
-Case<Pendulum, SvgMppiOptions> guided_pendulum(int samples) {
-  SvgMppiOptions o{.horizon = 60, .samples = samples, .temperature = 0.2, .input_min = -5, .input_max = 5};
-  for_gpu(o);
-  o.guides.gradient_variance = o.variance_min = 1, o.variance_max = 4;
-  return {"pendulum", {}, {3.14159, 0}, 0.02, 30, o};
-}
-Case<Quadrotor, MppiOptions> quadrotor(int samples) {
-  MppiOptions o{
-      .horizon = 40, .samples = samples, .temperature = 1, .input_min = {-6, -20}, .input_max = {6, 20}};
-  o.variance = {2, 8};
-  return {"quadrotor", {}, {}, 0.05, 60, o};
-}
-
-template <class P>
-StateOf<P> advanced(const P& p, const StateOf<P>& x, const SolveResult& plan) {
-  Input<double, P::inputs> u;
-  for (int i = 0; i < P::inputs; ++i) u[i] = static_cast<double>(plan.inputs[static_cast<std::size_t>(i)]);
-  return slalom::detail::step<P, double>(p, x, slalom::detail::look_up<P, double>(p, x), u, 0);
-}
-
-/// Compares plans of a closed loop with the processor's of the same seed, and bits with those of another
-/// number of blocks. The constructor has compared costs.
-template <class P, class Options>
-void check(const Case<P, Options>& c, int solves) {
-  gpu::GpuController<P, Options> one(c.problem, c.options), other(c.problem, c.options);
-  other.gpu_solver().set_blocks(37);
-  ProblemEvaluator<P> evaluator(c.problem);
-  const auto processor = make_solver(c.options, P::inputs);
-  double first = 0, largest = 0;
-  int bits = 0;
-  auto x = c.start;
-  for (int n = 0; n < solves; ++n) {
-    evaluator.set_state(x);
-    const SolveResult &expected = processor->solve(evaluator, {.elapsed = c.dt}),
-                      &plan = one.gpu_solver().solve(evaluator, {.elapsed = c.dt}),
-                      &same = other.gpu_solver().solve(evaluator, {.elapsed = c.dt});
-    for (std::size_t r = 0; r < plan.inputs.size(); ++r) {
-      largest = std::max<double>(largest, std::abs(plan.inputs[r] - expected.inputs[r]));
-      bits += plan.inputs[r] != same.inputs[r];
-    }
-    if (n == 0) first = largest;
-    x = advanced(c.problem, x, expected);
-  }
-  const bool good = bits == 0 && first < 1e-3 && one.fault().empty();
-  failed += !good;
-  std::printf(
-      "check,%s,%s,%d,first plan %.1e, of %d solves %.1e from the processor's; %d bits by blocks%s%s\n",
-      c.name, Options::method, c.options.samples, first, solves, largest, bits, good ? "" : ": FAILED ",
-      one.fault().c_str());
-}
-
-/// Times `solve` in a closed loop, from the state to the plan, and prints median and 99th percentile.
-template <class P, class Options>
-void time_loop(const char* where, const Case<P, Options>& c, double limit, ProblemEvaluator<P>& evaluator,
-               Solver& solver, const char* more) {
+std::vector<double> time_loop(ProblemEvaluator<P>& evaluator, Solver& solver,
+                              const typename P::template State<double>& start, double limit) {
+  using Clock = std::chrono::steady_clock;
   std::vector<double> times;
-  auto x = c.start;
   const auto end = Clock::now() + std::chrono::duration<double>(limit);
-  for (int n = 0; n < 1000 && (n < 8 || Clock::now() < end); ++n) {
-    if (n % 400 == 0) x = c.start;
-    evaluator.set_state(x);
+  typename P::template State<double> states[2];
+  for (int n = 0; n < (brief ? 1 : 1000) && (n < 8 || Clock::now() < end); ++n) {
     const auto begin = Clock::now();
-    evaluator.set_state(x);
-    const SolveResult& result = solver.solve(evaluator, {.elapsed = c.dt});
-    if (n > 2) times.push_back(1e3 * std::chrono::duration<double>(Clock::now() - begin).count());
-    x = advanced(c.problem, x, result);
+    evaluator.set_state(n % 400 == 0 ? start : states[1]);
+    const SolveResult& result = solver.solve(evaluator, {.elapsed = evaluator.time_step()});
+    times.push_back(1e3 * std::chrono::duration<double>(Clock::now() - begin).count());
+    Input<double, P::inputs> u;
+    for (int i = 0; i < P::inputs; ++i) u[i] = result.inputs[static_cast<std::size_t>(i)];
+    predict(evaluator.problem(), n % 400 == 0 ? start : states[1], &u, 1, states);
   }
   std::sort(times.begin(), times.end());
-  std::printf("%s,%s,%s,%d,%.4f,%.4f,%s\n", where, c.name, Options::method, c.options.samples,
-              times[times.size() / 2], times[times.size() * 99 / 100], more);
+  return times;
+}
+
+/// Prints a row. `flops` of a step are counted by hand; `asked` are the wanted times, ms.
+template <class P, class Options>
+void compare(const char* name, const P& problem, const typename P::template State<double>& start,
+             double flops, Options options, const char* asked = "") {
+  ProblemEvaluator<P> evaluator(problem);
+  evaluator.set_state(start);
+  gpu::GpuSolver<P, Options> gpu(problem, options);
+  gpu.connect(evaluator);
+  const auto first = gpu.solve(evaluator, {}).inputs;
+  const auto processor = make_solver(options, P::inputs);
+  const auto expected = processor->solve(evaluator, {}).inputs;
+  float difference = 0;
+  for (std::size_t r = 0; r < first.size(); ++r)
+    difference = std::max(difference, std::abs(first[r] - expected[r]));
+  const std::vector<double> times = time_loop(evaluator, gpu, start, 5);
+  const double median = times[times.size() / 2];
+  const bool good = difference < 1e-3f && gpu.fault().empty();
+  failed += !good;
+  std::printf("%s,%s,%d,%.1e,%.4f,%.4f,%.2f", name, Options::method, options.samples, difference, median,
+              times[times.size() * 99 / 100], flops * options.samples * options.horizon / median * 1e-9);
+  for (const int threads : {16, 1}) {
+    if (brief) break;
+    options.threads = threads;
+    const std::vector<double> there = time_loop(evaluator, *make_solver(options, P::inputs), start, 0.4);
+    std::printf(",%.4f", there[there.size() / 2]);
+  }
+  std::printf(",%s%s%s\n", asked, good ? "" : " FAILED ", gpu.fault().c_str());
   std::fflush(stdout);
 }
 
-/// Times of the GPU, with those of launches alone; `asked` is printed beside them.
-template <class P, class Options>
-void time_gpu(const Case<P, Options>& c, const char* asked = "") {
-  gpu::GpuController<P, Options> controller(c.problem, c.options);
-  auto& solver = controller.gpu_solver();
-  constexpr int queued = 100;
-  for (int n = 0; n < queued; ++n) solver.solve(controller.evaluator(), {.elapsed = c.dt});
-  const auto begin = Clock::now();
-  for (int n = 0; n < queued; ++n) solver.enqueue(controller.evaluator(), 0);
-  solver.synchronize();
-  const double device = 1e3 * std::chrono::duration<double>(Clock::now() - begin).count() / queued;
-  char more[200];
-  std::snprintf(more, sizeof more, "device %.4f,%.2f TFLOP/s,%s%s", device,
-                c.flops * c.options.samples * c.options.horizon / device * 1e-9, asked,
-                controller.fault().c_str());
-  time_loop("gpu", c, 10, controller.evaluator(), solver, more);
+/// Guides as in the paper; a GPU draws one batch of white noise, and its temperatures are fixed.
+SvgMppiOptions guided(int horizon, int samples, double temperature, const PerInput& low,
+                      const PerInput& high) {
+  SvgMppiOptions o{.horizon = horizon, .samples = samples, .batches = 1, .temperature = temperature};
+  o.input_min = low, o.input_max = high;
+  o.noise.exponent = 0;
+  o.guides.gradient_temperature = 1;
+  o.guides.count = 4, o.guides.iterations = 10, o.guides.gradient_samples = 25;
+  return o;
 }
 
-template <class P, class Options>
-void time_processor(Case<P, Options> c) {
-  for (const int threads : {1, 16}) {
-    c.options.threads = threads;
-    ProblemEvaluator<P> evaluator(c.problem);
-    time_loop(threads == 1 ? "cpu1" : "cpu16", c, 0.4, evaluator, *make_solver(c.options, P::inputs), "");
-  }
-}
-
-void checks() {
-  check(pendulum(2048), 20);
-  check(guided_pendulum(2048), 20);
-  check(quadrotor(2048), 5);
-  check(navigation(2048), 5);
-  check(navigation(most), 2);
-  check(navigation<SvgMppiOptions>(2048), 3);
-  check(network(1024), 3);
-  check(network(16384), 3);
-  check(network(most), 1);
-}
-
-void times() {
-  for (int samples = 32; samples < most; samples *= 2)
-    time_gpu(navigation(samples), samples == 2048 ? "asked 0.03; p99 0.04" : "");
-  time_gpu(navigation(most), "asked 0.12");
-  time_gpu(navigation<SvgMppiOptions>(2048), "asked 0.15");
-  time_gpu(navigation<SvgMppiOptions>(most), "asked 0.25");
-  time_gpu(network(1024));
-  time_gpu(network(16384), "asked 0.3");
-  time_gpu(network(most), "asked 1; 16.75 TFLOP/s");
-  for (const int samples : {2048, most}) time_gpu(pendulum(samples)), time_gpu(quadrotor(samples));
-  time_gpu(guided_pendulum(2048));
-}
-
-void processor() {
-  for (const int samples : {32, 64, 128, 256, 512, 1024, 2048, 16384, most})
-    time_processor(navigation(samples));
-  time_processor(navigation<SvgMppiOptions>(2048));
-  time_processor(pendulum(2048));
-  time_processor(quadrotor(2048));
-  time_processor(network(16384));
-}
-
-/// Short solves for compute-sanitizer.
-void sanitized() {
-  check(guided_pendulum(512), 2);
-  check(navigation(2048), 1);
-  auto fused = navigation(32768);
-  fused.options.horizon = 10;
-  check(fused, 1);
-  check(network(1024), 1);
+void run() {
+  std::puts("problem,method,samples,difference of first plan,GPU ms,99 %,TFLOP/s,16 threads,1 thread,asked");
+  const CostMap map;
+  Navigation navigation;
+  navigation.map = map.view();
+  const PerInput low{-0.35, -0.5}, high{0.5, 0.5};
+  const auto navigate = [&](int samples, const char* asked = "") {
+    compare("navigation", navigation, {7.4, 7.4, 0.785398}, 45,
+            MppiOptions{.horizon = brief ? 10 : 100,
+                        .samples = samples,
+                        .temperature = 1,
+                        .variance = 0.04,
+                        .input_min = low,
+                        .input_max = high},
+            asked);
+  };
+  const auto navigate_guided = [&](int samples, const char* asked) {
+    SvgMppiOptions o = guided(brief ? 10 : 100, samples, 1, low, high);
+    o.variance_min = 0.01, o.variance_max = 0.04;
+    o.guides.gradient_variance = o.guides.variance = o.guides.restart_variance = 0.04, o.guides.step = 0.02;
+    compare("navigation", navigation, {7.4, 7.4, 0.785398}, 45, o, asked);
+  };
+  const auto learn = [](int samples, const char* asked) {
+    compare("network", Learned{random_network()}, {1, 0, 0}, 2 * 1280 + 64 * 8,
+            MppiOptions{.horizon = 50,
+                        .samples = samples,
+                        .temperature = 1,
+                        .variance = 0.25,
+                        .input_min = -1,
+                        .input_max = 1},
+            asked);
+  };
+  navigate(2048, "0.03; p99 0.04");
+  navigate(most, "0.12; 25 % of the peak");
+  navigate_guided(2048, "0.15");
+  learn(brief ? 1024 : 16384, "0.3");
+  const MppiOptions swing{
+      .horizon = 60, .samples = 2048, .temperature = 0.2, .variance = 4, .input_min = -5, .input_max = 5};
+  compare("pendulum", Pendulum{}, {3.14159, 0}, 30, swing);
+  if (brief) return;
+  navigate_guided(most, "0.25");
+  learn(most, "1; 25 % of the peak");
+  SvgMppiOptions guided_swing = guided(60, 2048, 0.2, -5, 5);
+  guided_swing.guides.gradient_variance = guided_swing.variance_min = 1, guided_swing.variance_max = 4;
+  compare("pendulum", Pendulum{}, {3.14159, 0}, 30, guided_swing);
+  compare("quadrotor", Quadrotor{}, {}, 60,
+          MppiOptions{.horizon = 40,
+                      .samples = 2048,
+                      .temperature = 1,
+                      .variance = {2, 8},
+                      .input_min = {-6, -20},
+                      .input_max = {6, 20}});
+  for (int samples = 32; samples < most; samples *= 2) navigate(samples);  // the crossover
 }
 
 }  // namespace
 }  // namespace slalom::bench
 
 int main(int argc, char** argv) {
-  using namespace slalom::bench;
-  const std::set<std::string> parts(argv + 1, argv + argc);
+  slalom::bench::brief = argc > 1 && std::string_view(argv[1]) == "brief";
   try {
-    if (parts.contains("check")) checks();
-    if (parts.contains("sanitize")) sanitized();
-    if (parts.contains("cpu")) processor();
-    if (parts.contains("time")) times();
+    slalom::bench::run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "slalom_gpu_bench: %s\n", error.what());
     return 1;
   }
-  return failed > 0;
+  return slalom::bench::failed > 0;
 }

@@ -28,19 +28,7 @@
 
 namespace std {
 using namespace cuda::std;
-
-inline double remainder(double a, double b) {
-  return ::remainder(a, b);
-}
-inline float remainder(float a, float b) {
-  return ::remainderf(a, b);
-}
-inline double nearbyint(double a) {
-  return ::nearbyint(a);
-}
-inline float nearbyint(float a) {
-  return ::nearbyintf(a);
-}
+using ::remainder;
 
 template <class T>
 struct default_delete {};
@@ -68,16 +56,12 @@ class vector {
  public:
   vector() = default;
   vector(initializer_list<T>) {}
-  explicit vector(size_t) {}
-  vector(size_t, const T&) {}
-  T* begin() { return begin_; }
-  T* data() { return begin_; }
-  T& operator[](size_t i) { return begin_[i]; }
-  const T* begin() const { return begin_; }
-  const T* end() const { return end_; }
-  const T* data() const { return begin_; }
-  const T& operator[](size_t i) const { return begin_[i]; }
-  const T& at(size_t i) const { return begin_[i]; }
+  explicit vector(size_t, const T& = T()) {}
+  T* begin() const { return begin_; }
+  T* end() const { return end_; }
+  T* data() const { return begin_; }
+  T& operator[](size_t i) const { return begin_[i]; }
+  T& at(size_t i) const { return begin_[i]; }
   size_t size() const { return static_cast<size_t>(end_ - begin_); }
   bool empty() const { return begin_ == end_; }
   bool operator==(const vector&) const = default;
@@ -98,13 +82,11 @@ template <class T>
 string to_string(T) {
   return {};
 }
-class string_view {
-  size_t size_ = 0;
-  const char* data_ = nullptr;
-
- public:
+struct string_view {
+  size_t size = 0;
+  const char* data = nullptr;
   constexpr string_view() = default;
-  constexpr string_view(const char* text) : data_(text) {}
+  constexpr string_view(const char* text) : data(text) {}
 };
 namespace filesystem {
 class path;

@@ -40,7 +40,6 @@ class GripLearning {
   int without_gain() const noexcept { return without_gain_; }
   /// The belief of the fastest completed lap; empty before one.
   const GripBelief& best() const noexcept { return best_; }
-  double best_time() const noexcept { return best_time_; }  ///< s, of that lap; infinite before one
 
  private:
   int part_at(double distance) const noexcept;

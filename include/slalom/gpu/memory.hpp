@@ -24,8 +24,8 @@ namespace slalom::gpu {
 /// A part of a problem that points to memory.
 struct SharedMemory {
   std::size_t member, member_bytes;  ///< where in the problem
-  const void* data;                  ///< memory of the host
-  std::size_t bytes;                 ///< size of that memory
+  std::span<const std::byte> data;   ///< memory of the host
+  void* copy = nullptr;              ///< memory of the device
 };
 
 /// The cells of a map with their border.
@@ -47,33 +47,29 @@ std::span<const std::byte> memory_of_member(const Values& values) {
   return std::as_bytes(std::span(values));
 }
 
-/// Whether an address lies in memory of this process.
-inline bool is_mapped(std::uintptr_t address) {
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  unsigned char resident;
-  return mincore(reinterpret_cast<void*>(address / page * page), 1, &resident) == 0;
-}
-
 /// The memory that a problem declares. Throws std::invalid_argument if the problem has a pointer to memory of
-/// the host elsewhere.
+/// this process elsewhere.
 template <class P>
 std::vector<SharedMemory> memory_of(const P& problem) {
   const auto* const begin = reinterpret_cast<const unsigned char*>(&problem);
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   std::vector<SharedMemory> all;
   if constexpr (requires { problem.visit_memory([](const auto&) {}); }) {
     problem.visit_memory([&](const auto& member) {
-      const std::span<const std::byte> memory = memory_of_member(member);
       const auto at = static_cast<std::size_t>(reinterpret_cast<const unsigned char*>(&member) - begin);
-      all.push_back({at, sizeof member, memory.data(), memory.size()});
+      all.push_back({at, sizeof member, memory_of_member(member)});
     });
   }
-  for (std::size_t at = 0; at + sizeof(std::uintptr_t) <= sizeof(P); at += alignof(std::uintptr_t)) {
+  for (std::size_t at = 0; at + sizeof page <= sizeof(P); at += alignof(std::uintptr_t)) {
     bool declared = false;
     for (const SharedMemory& m : all)
       declared = declared || (at >= m.member && at < m.member + m.member_bytes);
     std::uintptr_t word;
+    unsigned char resident;
     std::memcpy(&word, begin + at, sizeof word);
-    if (declared || word < 65536 || word >> 47 != 0 || !is_mapped(word)) continue;
+    if (declared || word < 65536 || word >> 47 != 0 ||
+        mincore(reinterpret_cast<void*>(word / page * page), 1, &resident) != 0)
+      continue;
     throw std::invalid_argument(
         "problem: points to memory of the host at byte " + std::to_string(at) +
         ", which a GPU does not read; declare the member in visit_memory (docs/gpu.md)");
@@ -81,16 +77,15 @@ std::vector<SharedMemory> memory_of(const P& problem) {
   return all;
 }
 
-/// Lets a copy of the problem point to `device` instead of `memory.data`; returns how many words it changed.
-inline int redirect(unsigned char* problem, const SharedMemory& memory, std::uint64_t device) noexcept {
-  const auto from = reinterpret_cast<std::uintptr_t>(memory.data);
+/// Lets a copy of the problem point to the memory of the device; returns how many words it changed.
+inline int redirect(unsigned char* problem, const SharedMemory& memory) noexcept {
+  const auto from = reinterpret_cast<std::uintptr_t>(memory.data.data()), bytes = memory.data.size();
   int changed = 0;
-  for (std::size_t at = memory.member; memory.bytes > 0 && at + 8 <= memory.member + memory.member_bytes;
-       at += 8) {
-    std::uint64_t word;
+  for (std::size_t at = memory.member; bytes > 0 && at + 8 <= memory.member + memory.member_bytes; at += 8) {
+    std::uintptr_t word;
     std::memcpy(&word, problem + at, sizeof word);
-    if (word < from || word > from + memory.bytes) continue;
-    word = device + (word - from);
+    if (word < from || word > from + bytes) continue;
+    word = reinterpret_cast<std::uintptr_t>(memory.copy) + (word - from);
     std::memcpy(problem + at, &word, sizeof word);
     ++changed;
   }

@@ -21,188 +21,150 @@ class GpuSolver final : public Solver {
   using Clock = std::chrono::steady_clock;
 
  public:
-  /// Throws std::invalid_argument on options that a GPU lacks, and DeviceError.
-  explicit GpuSolver(const Options& options)
-      : options_(options),
-        session_(images<P>(), {int(sizeof(P)), int(alignof(P)), int(sizeof(Arguments<P>)), P::inputs}) {
+  /// The problem gives its bounds. Throws std::invalid_argument on options that a GPU lacks, and DeviceError.
+  GpuSolver(const P& problem, const Options& options)
+      : seed_(options.seed), shifts_(options.shift_warm_start), session_(images<P>()) {
     std::memset(static_cast<void*>(&a_), 0, sizeof a_);
-    const Settings& s = a_.settings = settings_of(options, P::inputs);
+    const Settings& s = a_.settings = settings_of(problem, options);
     const int rows = s.horizon * P::inputs;
-    const std::size_t row_bytes = sizeof(float) * static_cast<std::size_t>(padded_rows(rows));
-    const auto floats = [&](std::size_t bytes) { return reinterpret_cast<float*>(session_.allocate(bytes)); };
     Buffers& b = a_.buffers;
-    state_bytes_ = 3 * row_bytes;
-    if (guided) state_bytes_ += sizeof(double) * static_cast<std::size_t>(guide_doubles(s, rows));
-    b.mean = floats(state_bytes_), b.nominal = b.mean + row_bytes / sizeof(float);
-    b.variance = b.nominal + row_bytes / sizeof(float);
-    b.theta = reinterpret_cast<double*>(b.variance + row_bytes / sizeof(float));
-    b.partial = floats(row_bytes * static_cast<std::size_t>(s.groups));
-    b.sums = reinterpret_cast<GroupSums*>(
-        session_.allocate(sizeof(GroupSums) * static_cast<std::size_t>(s.groups)));
-    b.ticket = reinterpret_cast<unsigned*>(session_.allocate(256));
-    costs_ = floats(sizeof(float) * static_cast<std::size_t>(s.samples));
-    Session::Address host = 0;
-    auto* const memory = static_cast<char*>(session_.allocate_on_host(row_bytes + 256, host));
-    report_ = reinterpret_cast<Report*>(memory), plan_ = reinterpret_cast<float*>(memory + 256);
-    b.report = reinterpret_cast<Report*>(host), b.plan = reinterpret_cast<float*>(host + 256);
-
-    sample_bytes_ = 4 * sample_floats(s, rows), guide_bytes_ = 4 * guide_floats_of(s, rows);
-    samples_ = session_.kernel(guided ? "slalom_svg_mppi" : "slalom_mppi", block_threads, sample_bytes_);
-    guides_ = session_.kernel("slalom_guides", block_threads, guide_bytes_);
-    reset_ = session_.kernel("slalom_reset", block_threads, guide_bytes_);
-    blocks_ = std::min(s.groups, session_.resident_blocks(samples_, block_threads, sample_bytes_));
-    inputs_.resize(static_cast<std::size_t>(rows));
-    reset(options.seed);
+    allocate(b.mean, rows), allocate(b.nominal, rows), allocate(b.variance, rows);
+    allocate(b.theta, guide_doubles(s, rows));
+    allocate(b.partial, static_cast<long long>(s.groups) * padded_rows(rows));
+    allocate(b.sums, s.groups), allocate(b.ticket, 2), allocate(costs_, s.samples);
+    b.report = static_cast<Report*>(session_.allocate_on_host(sizeof(Report)));
+    b.plan = static_cast<float*>(session_.allocate_on_host(sizeof(float) * size(rows)));
+    samples_ = session_.kernel("slalom_samples", sample_bytes(s, rows));
+    if (guided) guides_ = session_.kernel("slalom_guides", guide_bytes(s, rows));
+    blocks_ = std::min(s.groups, samples_.resident_blocks);
+    session_.require();
+    inputs_.resize(size(rows)), variance_.resize(size(rows)), theta_.resize(size(rows * s.guides));
+    noise_ = SequenceBatch(s.horizon, P::inputs, std::max(s.guides, 1));
+    reset(seed_);
   }
 
   const char* name() const noexcept override { return Options::method; }
   int horizon() const noexcept override { return a_.settings.horizon; }
   int inputs() const noexcept override { return P::inputs; }
   const SolveResult& result() const noexcept override { return result_; }
-
+  /// Throws: memory and kernels on a device are not copied.
   std::unique_ptr<Solver> clone() const override {
-    auto copy = std::make_unique<GpuSolver>(options_);
-    std::vector<char> state(state_bytes_);
-    session_.copy_out(state.data(), address(a_.buffers.mean), state_bytes_);
-    copy->session_.copy_in(address(copy->a_.buffers.mean), state.data(), state_bytes_);
-    copy->a_.seed = a_.seed;
-    copy->solves_ = solves_;
-    copy->share(memory_);
-    copy->redirected_ = redirected_;
-    copy->inputs_ = inputs_;
-    copy->result_ = result_;
-    copy->bind();
-    return copy;
+    throw DeviceError("GPU: a controller is not copied; make another");
+  }
+
+  /// Copies the memory that the problem reads, and compares costs with those of the processor. Throws
+  /// std::invalid_argument if the problem reads memory that it does not declare, or if its costs differ.
+  void connect(const BatchEvaluator& evaluator) override {
+    constexpr std::size_t beyond = 256;  // read, but not used, behind the weights of a network
+    const auto& own = static_cast<const ProblemEvaluator<P>&>(evaluator);
+    memory_ = memory_of(own.problem());
+    for (SharedMemory& m : memory_) m.copy = session_.allocate(m.data.size() + beyond);
+    refresh();
+    redirected_ = take_in(own);
+    trial(own);
+    reset(seed_);
   }
 
   void reset(std::uint64_t seed) noexcept override {
-    a_.seed = seed;
+    const Settings& s = a_.settings;
+    a_.seed = seed, a_.stream = 0, a_.shift = {};
     solves_ = 0;
+    fill_normal(noise_, 0, padded(s.guides), {seed, 0});
     for (std::size_t r = 0; r < inputs_.size(); ++r) {
       const std::size_t i = r % P::inputs;
-      inputs_[r] = std::clamp(0.0f, a_.settings.low[i], a_.settings.high[i]);
+      inputs_[r] = std::clamp(0.0f, s.low[i], s.high[i]);
+      variance_[r] = s.variance[i];
+      for (std::size_t g = 0; g < size(s.guides); ++g) {
+        const float z = std::sqrt(float(s.guide_variance[i])) * noise_[int(r)][g];
+        theta_[g * inputs_.size() + r] = std::clamp(z, s.low[i], s.high[i]);
+      }
     }
-    result_ = {};
-    bind();
-    a_.solve = 0;
-    session_.launch(reset_, 1, block_threads, guide_bytes_, &a_);
+    const std::size_t bytes = sizeof(float) * inputs_.size();
+    session_.copy_in(a_.buffers.mean, inputs_.data(), bytes);
+    session_.copy_in(a_.buffers.nominal, inputs_.data(), bytes);
+    session_.copy_in(a_.buffers.variance, variance_.data(), bytes);
+    session_.copy_in(a_.buffers.theta, theta_.data(), sizeof(double) * theta_.size());
     session_.synchronize();
-    report_->done = 0;
-  }
-
-  /// Finds the memory that the problem reads, and compares costs with those of the processor. Throws
-  /// std::invalid_argument if the problem reads memory that it does not declare, or if the costs differ.
-  void connect(const BatchEvaluator& evaluator) override {
-    const P& problem = problem_of_evaluator(evaluator);
-    share(memory_of(problem));
-    std::memcpy(a_.problem, static_cast<const void*>(&problem), sizeof problem);
-    redirected_ = redirect_all();
-    trial(evaluator);
-    reset(options_.seed);
+    result_ = {};
+    result_.inputs = result_.mean = inputs_;
+    a_.buffers.report->done = a_.solve = 0;
   }
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto start = Clock::now();
     result_.status = wait(start, request.deadline);  // for a solve that missed its deadline
     if (result_.status != Status::ok) return result_;
-    enqueue(evaluator, options_.shift_warm_start ? warm_start_shift(evaluator, request) : 0);
-    result_.status = moved_ ? Status::degenerate : wait(start, request.deadline);
+    const auto& own = static_cast<const ProblemEvaluator<P>&>(evaluator);
+    const bool moved = take_in(own) != redirected_;
+    if (moved || !session_.fault().empty()) {
+      result_.status = Status::degenerate;
+      return result_;
+    }
+    const double steps = shifts_ ? std::min<double>(warm_start_shift(own, request), a_.settings.horizon) : 0;
+    a_.shift = {int(steps), steps - int(steps)};
+    a_.stream = (solves_ << 16) | (guided ? 1u : 0u);
+    a_.solve = static_cast<unsigned>(++solves_);
+    if (guided) session_.launch(guides_, a_.settings.guides, &a_);
+    session_.launch(samples_, blocks_, &a_);
+    result_.status = wait(start, request.deadline);
     if (result_.status == Status::ok) read(start);
     return result_;
   }
 
   /// Copies the contents of the memory that the problem reads again: after a map has changed, before a solve.
   void refresh() noexcept {
-    for (std::size_t i = 0; i < memory_.size(); ++i)
-      if (memory_[i].bytes > 0) session_.refresh(copies_[i], memory_[i].data, memory_[i].bytes);
+    for (const SharedMemory& m : memory_) session_.copy_in(m.copy, m.data.data(), m.data.size());
   }
 
-  /// The session on the device.
-  const Session& session() const noexcept { return session_; }
-
-  /// For benchmarks: queues a solve without waiting for it.
-  void enqueue(const BatchEvaluator& evaluator, double shift) noexcept {
-    const P& problem = problem_of_evaluator(evaluator);
-    std::memcpy(a_.problem, static_cast<const void*>(&problem), sizeof problem);
-    moved_ = redirect_all() != redirected_;
-    const auto from = static_cast<const ProblemEvaluator<P>&>(evaluator).start();
-    std::copy(from.begin(), from.end(), a_.start);
-    if (moved_ || !session_.fault().empty()) return;
-    a_.stream = (solves_ << 16) | (guided ? 1u : 0u);
-    a_.shift = Shift::of(shift, a_.settings.horizon);
-    a_.solve = static_cast<unsigned>(++solves_);
-    if (guided) session_.launch(guides_, a_.settings.guides, block_threads, guide_bytes_, &a_);
-    session_.launch(samples_, blocks_, block_threads, sample_bytes_, &a_);
-  }
-  /// Waits for queued solves.
-  bool synchronize() noexcept { return session_.synchronize(); }
-  /// Blocks of a launch.
-  int blocks() const noexcept { return blocks_; }
-  /// For tests: another number of blocks, as on a smaller device; the results must not change.
-  void set_blocks(int blocks) noexcept { blocks_ = std::min(blocks, blocks_); }
+  /// Why the device fails; empty if it does not.
+  const std::string& fault() const noexcept { return session_.fault(); }
 
  private:
-  static const P& problem_of_evaluator(const BatchEvaluator& evaluator) noexcept {
-    return static_cast<const ProblemEvaluator<P>&>(evaluator).problem();
+  static constexpr std::size_t size(int count) noexcept { return static_cast<std::size_t>(count); }
+  template <class T>
+  void allocate(T*& array, long long count) noexcept {
+    if (count > 0) array = static_cast<T*>(session_.allocate(sizeof(T) * static_cast<std::size_t>(count)));
   }
 
-  void share(std::vector<SharedMemory> memory) {
-    constexpr std::size_t beyond = 256;  // read, but not used, behind the weights of a network
-    memory_ = std::move(memory);
-    copies_.clear();
-    for (const SharedMemory& m : memory_) {
-      copies_.push_back(session_.allocate(m.bytes + beyond));
-      if (m.bytes > 0) session_.copy_in(copies_.back(), m.data, m.bytes);
-    }
-  }
-  /// Lets the problem in the arguments point to the copies; returns how many words it changed.
-  int redirect_all() noexcept {
+  /// Takes the problem and the start of its rollouts into the arguments, and lets the problem point to the
+  /// copies; returns how many words that changed.
+  int take_in(const ProblemEvaluator<P>& evaluator) noexcept {
+    std::memcpy(a_.problem, static_cast<const void*>(&evaluator.problem()), sizeof(P));
+    std::copy(evaluator.start().begin(), evaluator.start().end(), a_.start);
     int words = 0;
-    for (std::size_t i = 0; i < memory_.size(); ++i) words += redirect(a_.problem, memory_[i], copies_[i]);
+    for (const SharedMemory& m : memory_) words += redirect(a_.problem, m);
     return words;
   }
 
-  /// Compares the costs of the first samples of a solve with those of the processor.
-  void trial(const BatchEvaluator& evaluator) {
+  /// Compares the costs of up to 1,000 samples around the first solution with those of the processor.
+  void trial(const ProblemEvaluator<P>& evaluator) {
     const Settings& s = a_.settings;
-    const int rows = s.horizon * P::inputs, count = std::min(s.samples, 1000);
-    std::vector<float> mean = inputs_, variance(inputs_.size());
-    for (std::size_t r = 0; r < variance.size(); ++r) variance[r] = s.variance[r % P::inputs];
+    const std::vector<double> variance(s.variance, s.variance + P::inputs);
+    const MppiOptions cpu{.horizon = s.horizon,
+                          .samples = std::min(s.samples, 1000),
+                          .temperature = 1,
+                          .variance = variance,
+                          .input_min = PerInput(std::vector<double>(s.low, s.low + P::inputs)),
+                          .input_max = PerInput(std::vector<double>(s.high, s.high + P::inputs)),
+                          .seed = a_.seed};
+    const auto solver = make_solver(cpu, P::inputs);
+    const std::span<const float> expected = solver->solve(evaluator, {}).costs;
     a_.buffers.costs = costs_;
-    enqueue(evaluator, 0);
-    std::vector<float> costs(static_cast<std::size_t>(s.samples));
-    session_.copy_out(costs.data(), address(costs_), sizeof(float) * costs.size());  // waits
+    std::vector<float> costs(size(s.samples));
+    session_.launch(samples_, blocks_, &a_);
+    session_.copy_out(costs.data(), costs_, sizeof(float) * costs.size());
+    session_.require();
     a_.buffers.costs = nullptr;
-    if (guided) {
-      session_.copy_out(mean.data(), address(a_.buffers.nominal), sizeof(float) * mean.size());
-      session_.copy_out(variance.data(), address(a_.buffers.variance), sizeof(float) * mean.size());
-    }
-    SequenceBatch batch(s.horizon, P::inputs, count);
-    fill_normal(batch, 0, count, {a_.seed, a_.stream});
-    for (int r = 0; r < rows; ++r) {
-      const auto at = static_cast<std::size_t>(r);
-      for (int k = 0; k < count; ++k) {
-        float& value = batch.data(r)[k];
-        value =
-            clamped(mean[at] + std::sqrt(variance[at]) * value, s.low[r % P::inputs], s.high[r % P::inputs]);
-      }
-    }
-    std::vector<float> expected(static_cast<std::size_t>(batch.stride()));
-    std::vector<std::uint8_t> collided(expected.size());
-    evaluator.evaluate(batch, 0, count, expected.data(), collided.data());
     int different = 0, example = 0;
-    for (int k = 0; k < count; ++k) {
-      const float gpu = costs[static_cast<std::size_t>(k)], cpu = expected[static_cast<std::size_t>(k)];
-      const bool alike =
-          std::abs(gpu - cpu) <= 1e-4f * (1 + std::abs(cpu)) || (!std::isfinite(cpu) && gpu == infinite);
-      if (!alike) ++different, example = k;
+    for (int k = 0; k < cpu.samples; ++k) {
+      const float gpu = costs[size(k)], known = expected[size(k)];
+      if (gpu != known && !(std::abs(gpu - known) <= 1e-4f * (1 + std::abs(known)))) ++different, example = k;
     }
-    if (different <= count / 100) return;  // rounding may decide whether a state collides
-    const auto at = static_cast<std::size_t>(example);
-    throw std::invalid_argument("problem: on the GPU " + std::to_string(different) + " of " +
-                                std::to_string(count) +
-                                " samples have other costs than on the processor, for instance " +
-                                std::to_string(costs[at]) + " instead of " + std::to_string(expected[at]));
+    if (different <= cpu.samples / 100) return;  // rounding may decide whether a state collides
+    throw std::invalid_argument(
+        "problem: on the GPU " + std::to_string(different) + " of " + std::to_string(cpu.samples) +
+        " samples have other costs than on the processor, for instance " +
+        std::to_string(costs[size(example)]) + " instead of " + std::to_string(expected[size(example)]));
   }
 
   /// Waits until the device has written the plan, the deadline has passed or the device has failed.
@@ -210,7 +172,7 @@ class GpuSolver final : public Solver {
     constexpr double give_up = 1, ask = 2e-3;  // s
     double next_question = ask;
     if (!session_.fault().empty()) return Status::degenerate;
-    const volatile unsigned& done = report_->done;
+    const volatile unsigned& done = a_.buffers.report->done;
     for (int turn = 0; done != a_.solve; ++turn) {
       if (turn % 64 != 0) continue;
       const double waited = std::chrono::duration<double>(Clock::now() - start).count();
@@ -224,8 +186,8 @@ class GpuSolver final : public Solver {
   }
 
   void read(Clock::time_point start) noexcept {
-    std::copy_n(plan_, inputs_.size(), inputs_.data());
-    const Report r = *report_;
+    std::copy_n(a_.buffers.plan, inputs_.size(), inputs_.data());
+    const Report r = *a_.buffers.report;
     const auto samples = static_cast<float>(a_.settings.samples);
     result_.minimum_cost = r.least_cost, result_.expected_cost = r.mean_cost;
     result_.effective_sample_size = r.effective_samples;
@@ -240,27 +202,19 @@ class GpuSolver final : public Solver {
     result_.times.total = std::chrono::duration<double>(Clock::now() - start).count();
   }
 
-  void bind() noexcept { result_.inputs = result_.mean = inputs_; }
-  template <class T>
-  static Session::Address address(const T* pointer) noexcept {
-    return reinterpret_cast<Session::Address>(pointer);
-  }
-
-  Options options_;
-  mutable Session session_;
-  Arguments<P> a_;
-  float* costs_ = nullptr;
-  Report* report_ = nullptr;
-  const float* plan_ = nullptr;
-  void *samples_ = nullptr, *guides_ = nullptr, *reset_ = nullptr;
-  int sample_bytes_ = 0, guide_bytes_ = 0, blocks_ = 0;
-  std::size_t state_bytes_ = 0;  ///< mean, nominal, variance and theta
-  std::uint64_t solves_ = 0;
+  std::uint64_t seed_;  ///< seed of the options
+  bool shifts_;
+  Session session_;
   std::vector<SharedMemory> memory_;
-  std::vector<Session::Address> copies_;
-  int redirected_ = 0;  ///< words of the problem that point to copies
-  bool moved_ = false;  ///< whether the problem points elsewhere now
-  std::vector<float> inputs_;
+  Arguments<P> a_;
+  float* costs_ = nullptr;  ///< [sample], on the device
+  Session::Kernel samples_, guides_;
+  int blocks_ = 0;  ///< blocks that roll out the samples
+  std::uint64_t solves_ = 0;
+  int redirected_ = 0;                    ///< words of the problem that point to copies
+  std::vector<float> inputs_, variance_;  ///< [row]
+  std::vector<double> theta_;             ///< [guide][row], before the first solve
+  SequenceBatch noise_;                   ///< that `theta_` is made of
   SolveResult result_;
 };
 

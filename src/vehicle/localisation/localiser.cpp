@@ -311,11 +311,6 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
 const LocaliserOutput& Localiser::output() const noexcept {
   return implementation_->output;
 }
-maps::Pose Localiser::carried_to(const maps::Pose& odometry) const noexcept {
-  const Implementation& self = *implementation_;
-  if (!self.has_odometry || !maps::is_plausible(odometry)) return self.output.pose;
-  return compose(self.output.pose, relative(self.odometry, odometry));
-}
 maps::Pose Localiser::odometry_frame() const noexcept {
   const Implementation& self = *implementation_;
   if (!self.has_odometry) return self.output.pose;

@@ -24,11 +24,9 @@ class Recovery {
   /// Whether the car drives on after reversing and is not yet well past that place.
   bool tries_again() const noexcept { return trying_again_ && !reversing_; }
 
-  /// Whether the car was too near to obstacles even to reverse, and is not yet well past that place. A car
-  /// whose margin just touches an obstacle finds no plan without a collision in either direction, though
-  /// there is room.
-  bool confined() const noexcept { return confined_; }
-  /// The share of the margin around the body that plans keep.
+  /// The share of the margin around the body that plans keep: less where the car was too near to obstacles
+  /// even to reverse, until it is well past that place. A car whose margin just touches an obstacle finds no
+  /// plan without a collision in either direction, though there is room.
   double margin_share() const noexcept { return confined_ ? confined_margin : 1; }
 
   /// Begins to watch anew from this place along the course (m), after a manoeuvre: nothing counts as

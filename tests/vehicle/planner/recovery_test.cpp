@@ -38,7 +38,7 @@ TEST(Recovery, ReversesACarThatStandsAndDrivesOnAfterTheWayItChose) {
   EXPECT_NEAR(waiting_time(recovery, 7), 0.7, 0.05);
   EXPECT_NEAR(reversed_way(recovery, 7), 0.8, 0.05);
   EXPECT_FALSE(recovery.reversing());
-  EXPECT_FALSE(recovery.confined());
+  EXPECT_EQ(recovery.margin_share(), 1);
 }
 
 TEST(Recovery, ACarThatWaitsForOneThatDrivesIsNotStuck) {
@@ -64,13 +64,13 @@ TEST(Recovery, ReversesFurtherEachTimeUntilTheCarGetsOn) {
 TEST(Recovery, ACarThatCannotReverseIsConfinedUntilItIsPastThePlace) {
   Recovery recovery;
   waiting_time(recovery, 7);
-  EXPECT_FALSE(recovery.confined()) << "it reverses first";
+  EXPECT_EQ(recovery.margin_share(), 1) << "it reverses first";
   int blocked = 0;
   while (recovery.update(7, length, 0, 2, period)) ++blocked;
   EXPECT_NEAR(blocked * period, 0.7, 0.05) << "something stands behind it";
-  EXPECT_TRUE(recovery.confined());
+  EXPECT_LT(recovery.margin_share(), 1);
   double arc = 7;
-  for (; recovery.confined(); arc += 0.05) EXPECT_FALSE(recovery.update(arc, length, 2, 2, period));
+  for (; recovery.margin_share() < 1; arc += 0.05) EXPECT_FALSE(recovery.update(arc, length, 2, 2, period));
   EXPECT_NEAR(arc, 11, 0.1);
 }
 

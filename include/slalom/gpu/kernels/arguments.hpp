@@ -2,41 +2,31 @@
 
 #include "slalom/core/problem.hpp"
 #include "slalom/core/problem_parts.hpp"
+#include "slalom/gpu/kernels/block.hpp"
 
 /// The arguments of the kernels of a solve.
 namespace slalom::gpu {
 
 constexpr int most_inputs = 16;
-constexpr int block_threads = 256;  ///< threads of a block of any kernel
-
-/// Number of values that a rollout starts from: the state, and the previous input where rates are limited.
-template <class P>
-constexpr int start_size = detail::state_size<P> + (detail::limits_rates<P> ? P::inputs : 0);
-
-/// Whether a thread can draw the sample that it rolls out: eight normal values are whole steps.
-template <int inputs>
-constexpr bool can_fuse = 8 % inputs == 0;
 
 /// The options of a solve, and how its samples are spread over blocks.
 struct Settings {
   /// `tile` samples, a power of two, are rolled out at a time; a block takes a group of tiles.
   int horizon, samples, tile, tiles, groups;
-  int fused;                          ///< whether a thread draws the sample that it rolls out
-  float temperature, control_factor;  ///< control_factor = temperature (1 - discount)
-  float low[most_inputs], high[most_inputs];
-  float variance[most_inputs];
-  // svg_mppi alone
+  int fused;  ///< whether a thread draws the sample that it rolls out
+  float temperature;
+  float low[most_inputs], high[most_inputs], variance[most_inputs];
+  // svg_mppi alone; `guides` is 0 in mppi
   int guides, iterations, gradient_samples, restart;
-  float gradient_temperature;
-  float gradient_variance[most_inputs];
-  double guide_step[most_inputs], restart_variance[most_inputs], variance_min[most_inputs],
-      variance_max[most_inputs], guide_variance[most_inputs];
+  float gradient_temperature, gradient_variance[most_inputs];
+  double guide_step[most_inputs], guide_variance[most_inputs], restart_variance[most_inputs],
+      variance_min[most_inputs], variance_max[most_inputs];
 };
 
-/// Sums over the samples of a group; weights are relative to `least_total`.
+/// Sums over the samples of a group; weights are relative to the `least` cost.
 struct alignas(16) GroupSums {
-  float least_total, least_cost, weight, squared;
-  float cost, finite, collided, unused;
+  float least, weight, squared, cost;
+  float finite, collided, factor, unused;
 };
 
 /// Results of a solve besides the plan.
@@ -45,7 +35,7 @@ struct Report {
   unsigned done;  ///< number of the solve, written last
 };
 
-/// Memory on the device.
+/// Memory on the device; plan and report are in memory of the host.
 struct Buffers {
   float* mean;       ///< [row], the last solution
   float* nominal;    ///< [row], svg_mppi alone
@@ -55,25 +45,21 @@ struct Buffers {
   GroupSums* sums;   ///< [group]
   unsigned* ticket;  ///< how many blocks have ended, of the samples and of the guides; 0 between solves
   float* costs;      ///< [sample], or null
-  float* plan;       ///< [row], in memory of the host
-  Report* report;    ///< in memory of the host
+  float* plan;       ///< [row]
+  Report* report;
 };
 
 /// Steps by which a sequence moves forward.
 struct Shift {
   int whole;
   double part;  ///< [0, 1)
-  static Shift of(double steps, int horizon) {
-    const double within = steps > 0 ? (steps < horizon ? steps : horizon) : 0;
-    return {int(within), within - int(within)};
-  }
 };
 
 /// The argument of every kernel.
 template <class P>
 struct Arguments {
   alignas(P) unsigned char problem[sizeof(P)];
-  float start[start_size<P>];
+  float start[detail::state_size<P> + (detail::limits_rates<P> ? P::inputs : 0)];  ///< state, previous input
   Settings settings;
   Buffers buffers;
   unsigned long long seed, stream;  ///< random numbers of the samples
@@ -81,9 +67,19 @@ struct Arguments {
   unsigned solve;                   ///< its number, from 1
 };
 
+/// The input of row `r` of a sequence [step][input].
 template <class P>
-const P& problem_of(const Arguments<P>& a) {
-  return *reinterpret_cast<const P*>(a.problem);
+int input_of(int r) {
+  return int(unsigned(r) % unsigned(P::inputs));
+}
+
+/// Entry `r` of a sequence [step][input] moved forward, as by `shift_sequence`.
+template <class P, class Real>
+Real shifted(const Arguments<P>& a, const Real* sequence, int r) {
+  const int last = a.settings.horizon - 1, i = r % P::inputs, before = r / P::inputs + a.shift.whole;
+  if (before >= last) return sequence[last * P::inputs + i];
+  const Real x = sequence[before * P::inputs + i], y = sequence[(before + 1) * P::inputs + i];
+  return x + Real(a.shift.part) * (y - x);
 }
 
 }  // namespace slalom::gpu

@@ -9,25 +9,20 @@
 /// processor.
 namespace slalom::gpu {
 
-/// Samples that the processor draws for a guide; their indices must agree.
-constexpr int guide_block(const Settings& s) {
-  return (s.gradient_samples + 1 + 15) / 16 * 16;
-}
 /// Columns of a guide's samples in shared memory, a power of two: the samples and the guide itself, and at
 /// the beginning all guides and the last solution.
 constexpr int guide_columns(const Settings& s) {
-  const int least = s.gradient_samples > s.guides ? s.gradient_samples + 1 : s.guides + 1;
-  return 1 << log2_of(least);
+  return 1 << log2_of(1 + (s.gradient_samples > s.guides ? s.gradient_samples : s.guides));
+}
+/// Floats of shared memory of `MovingGuide`, with one or two arrays of normal values, and of `finish_guides`.
+constexpr int guide_floats(const Settings& s, int rows, int arrays) {
+  const int columns = guide_columns(s);
+  const int least = 4 * s.iterations > 2 * columns ? 4 * s.iterations : 2 * columns;
+  return 5 * padded_rows(rows) + arrays * rows * (columns + 1) + least;
 }
 /// Whether the noise of the next iteration is drawn during the rollouts, which takes a second array.
 constexpr bool draws_ahead(const Settings& s, int rows) {
-  return 2 * rows * (guide_columns(s) + 1) + 5 * padded_rows(rows) + 2 * guide_columns(s) <= 16384;
-}
-/// Floats of shared memory of `move_guide`; theta, in double, comes first.
-constexpr int guide_floats(const Settings& s, int rows) {
-  const int columns = guide_columns(s), arrays = draws_ahead(s, rows) ? 2 : 1;
-  const int least = 4 * s.iterations + 4 > 2 * columns ? 4 * s.iterations + 4 : 2 * columns;
-  return 5 * padded_rows(rows) + arrays * rows * (columns + 1) + least;
+  return guide_floats(s, rows, 2) * 4 <= most_shared_bytes;
 }
 /// Doubles of device memory: guides before and after a solve, their paths, costs along the paths and at the
 /// end.
@@ -35,275 +30,201 @@ constexpr long long guide_doubles(const Settings& s, int rows) {
   return static_cast<long long>(2 + s.iterations) * s.guides * rows + (s.iterations + 1ll) * s.guides;
 }
 
-/// Its parts.
+/// The parts of that memory.
 template <class P>
 struct GuideMemory {
-  double *before, *after;  ///< [guide][row]
-  double* path;            ///< [guide][row][iteration]
-  double* path_cost;       ///< [guide][iteration]
-  double* end_cost;        ///< [guide]
-  explicit GuideMemory(const Arguments<P>& a) {
-    const Settings& s = a.settings;
-    const long long each = static_cast<long long>(s.guides) * s.horizon * P::inputs;
-    before = a.buffers.theta + (a.solve & 1 ? 0 : each);
-    after = a.buffers.theta + (a.solve & 1 ? each : 0);
-    path = a.buffers.theta + 2 * each;
-    path_cost = path + s.iterations * each;
-    end_cost = path_cost + static_cast<long long>(s.iterations) * s.guides;
-  }
+  const Arguments<P>& a;
+  const long long each_size = static_cast<long long>(a.settings.guides) * a.settings.horizon * P::inputs;
+  double* const before = a.buffers.theta + (a.solve & 1 ? 0 : each_size);  ///< [guide][row]
+  double* const after = a.buffers.theta + (a.solve & 1 ? each_size : 0);   ///< [guide][row]
+  double* const path = a.buffers.theta + 2 * each_size;                    ///< [guide][row][iteration]
+  double* const path_cost = path + a.settings.iterations * each_size;      ///< [guide][iteration]
+  double* const end_cost = path_cost + a.settings.iterations * a.settings.guides;  ///< [guide]
 };
-
-/// The state before the first solve.
-template <class P>
-void reset(const Arguments<P>& a, float* memory) {
-  const Settings& s = a.settings;
-  const int rows = s.horizon * P::inputs;
-  if (s.guides > 0) {
-    const int log2 = log2_of(s.guides), stride = 1 << log2;
-    draw(key_of(a.seed, 0), rows, 0, log2, stride, memory, 0, [](int, int, float z) { return z; });
-    SLALOM_BARRIER();
-    SLALOM_EACH(j, s.guides * rows) {
-      const int g = j / rows, r = j - g * rows, i = r % P::inputs;
-      a.buffers.theta[j] =
-          clamped(sqrtf(float(s.guide_variance[i])) * memory[r * stride + g], s.low[i], s.high[i]);
-    }
-  }
-  SLALOM_EACH(r, rows) {
-    a.buffers.mean[r] = clamped(0.0f, s.low[r % P::inputs], s.high[r % P::inputs]);
-    a.buffers.nominal[r] = 0.0f;
-    a.buffers.variance[r] = s.variance[r % P::inputs];
-  }
-}
 
 /// The work of a block on its guide.
 template <class P>
-class MovingGuide {
- public:
-  MovingGuide(const Arguments<P>& a, int guide, float* memory)
-      : a_(a),
-        s_(a.settings),
-        m_(a),
-        guide_(guide),
-        rows_(s_.horizon * P::inputs),
-        columns_(guide_columns(s_)),
-        columns_log2_(log2_of(columns_)),
-        stride_(columns_ + 1),
-        samples_(s_.gradient_samples),
-        ahead_(draws_ahead(s_, rows_)) {
-    const int padded = padded_rows(rows_);
-    theta_ = reinterpret_cast<double*>(memory);
-    centre_ = memory + 2 * padded;
-    deviation_ = centre_ + padded;
-    cost_ = deviation_ + 2 * padded;
-    weight_ = cost_ + columns_;
-    v_ = weight_ + columns_;
-    noise_ = ahead_ ? v_ + rows_ * stride_ : v_;
-  }
+struct MovingGuide {
+  const Arguments<P>& a;
+  const int guide;
+  float* const memory;
+  const Settings& s = a.settings;
+  const GuideMemory<P> m{a};
+  const int rows = s.horizon * P::inputs, samples = s.gradient_samples;
+  const int columns = guide_columns(s), columns_log2 = log2_of(columns), stride = columns + 1;
+  const bool ahead = draws_ahead(s, rows);
+  double* const theta = reinterpret_cast<double*>(memory);  ///< [row]
+  float* const centre = memory + 2 * padded_rows(rows);     ///< [row]
+  float* const deviation = centre + padded_rows(rows);      ///< [row]
+  float* const cost = deviation + 2 * padded_rows(rows);    ///< [column]
+  float* const weight = cost + columns;                     ///< [column]
+  float* const v = weight + columns;                        ///< [row][column]
+  float* const noise = ahead ? v + rows * stride : v;       ///< [row][column]
 
-  void run() {
+  void run() const {
     begin();
-    if (!ahead_) draw_noise(0, 0);
-    for (int l = 0; l < s_.iterations; ++l) {
-      SLALOM_BARRIER();
+    for (int l = 0; l < s.iterations; ++l) {
+      if (!ahead) draw_noise(l, 0), Block::barrier();
       place_samples();
-      SLALOM_BARRIER();
-      roll_out_samples(l);
-      SLALOM_BARRIER();
-      weigh();
-      SLALOM_BARRIER();
+      Block::barrier();
+      if (ahead && l + 1 < s.iterations) draw_beside(l + 1, columns);
+      // All columns, so that whole warps stay together.
+      Block::each(columns, [&](int k) { cost[k] = cost_of(v + k, stride); });
+      Block::barrier();
+      const float least = Block::least(samples, [&](int k) { return cost[k]; });
+      Block::each(samples, [&](int k) {
+        weight[k] = least < infinite ? std::exp((least - cost[k]) / s.gradient_temperature) : 0.0f;
+      });
+      Block::barrier();
       step(l);
-      if (!ahead_ && l + 1 < s_.iterations) {
-        SLALOM_BARRIER();
-        draw_noise(l + 1, 0);
-      }
+      Block::barrier();
     }
-    SLALOM_BARRIER();
-    SLALOM_EACH(k, 1) {
-      const float cost = cost_of(a_, centre_, 1);
-      m_.end_cost[guide_] = cost;
-      m_.path_cost[guide_ * s_.iterations + s_.iterations - 1] = cost;
-    }
+    if (Block::thread() == 0)
+      m.end_cost[guide] = m.path_cost[(guide + 1) * s.iterations - 1] = cost_of(centre, 1);
   }
 
  private:
-  double old_theta(int guide, int r) const {
-    return shifted(m_.before + guide * rows_, r, s_.horizon, P::inputs, a_.shift);
+  /// The cost of the sequence values[row * distance].
+  float cost_of(const float* values, int distance) const {
+    Rollout<P> rollout(a);
+    roll_out<unrolled_steps<P>() == 1 ? 1 : 2 * unrolled_steps<P>()>(
+        a, rollout, [&](int r) { return values[r * distance]; });
+    return rollout.finish();
   }
 
   /// Starts at the last position, or near the best guide. The last solution replaces the worst guide if it is
   /// better. Every block finds the best and the worst for itself.
-  void begin() {
-    const int solution = s_.guides;
-    SLALOM_EACH(r, rows_) {
-      deviation_[r] = sqrtf(s_.gradient_variance[r % P::inputs]);
-      v_[r * stride_ + solution] = shifted(a_.buffers.mean, r, s_.horizon, P::inputs, a_.shift);
-      for (int g = 0; g < s_.guides; ++g) v_[r * stride_ + g] = float(old_theta(g, r));
-    }
-    SLALOM_BARRIER();
-    if (ahead_) draw_beside(0, s_.guides + 1);
-    SLALOM_EACH(k, s_.guides + 1) cost_[k] = cost_of(a_, v_ + k, stride_);
-    SLALOM_BARRIER();
+  void begin() const {
+    const auto old_theta = [&](int g, int r) { return shifted(a, m.before + g * rows, r); };
+    const int solution = s.guides;
+    Block::each(rows, [&](int r) {
+      deviation[r] = sqrtf(s.gradient_variance[input_of<P>(r)]);
+      v[r * stride + solution] = shifted(a, a.buffers.mean, r);
+      for (int g = 0; g < s.guides; ++g) v[r * stride + g] = float(old_theta(g, r));
+    });
+    Block::barrier();
+    if (ahead) draw_beside(0, s.guides + 1);
+    Block::each(s.guides + 1, [&](int k) { cost[k] = cost_of(v + k, stride); });
+    Block::barrier();
     int worst = 0, best = 0;
-    for (int g = 1; g < s_.guides; ++g)
-      if (cost_[g] > cost_[worst]) worst = g;
-    const bool replaces = cost_[solution] < cost_[worst];
-    const auto cost = [&](int g) { return replaces && g == worst ? cost_[solution] : cost_[g]; };
-    for (int g = 1; g < s_.guides; ++g)
-      if (cost(g) < cost(best)) best = g;
-    const bool restarts = s_.restart && s_.guides > 1;
-    const int from = restarts ? best : guide_;
-    SLALOM_EACH(r, rows_)
-    theta_[r] = replaces && from == worst ? double(v_[r * stride_ + solution]) : old_theta(from, r);
-    SLALOM_BARRIER();
-    if (restarts && guide_ > 0) deviate();
-    SLALOM_EACH(r, rows_) centre_[r] = float(theta_[r]);
-    SLALOM_BARRIER();
+    for (int g = 1; g < s.guides; ++g)
+      if (cost[g] > cost[worst]) worst = g;
+    const bool replaces = cost[solution] < cost[worst];
+    const auto cost_now = [&](int g) { return replaces && g == worst ? cost[solution] : cost[g]; };
+    for (int g = 1; g < s.guides; ++g)
+      if (cost_now(g) < cost_now(best)) best = g;
+    const bool restarts = s.restart && s.guides > 1;
+    const int from = restarts ? best : guide;
+    Block::each(rows, [&](int r) {
+      theta[r] = replaces && from == worst ? double(v[r * stride + solution]) : old_theta(from, r);
+    });
+    Block::barrier();
+    if (restarts && guide > 0) deviate();
+    Block::each(rows, [&](int r) { centre[r] = float(theta[r]); });
+    Block::barrier();
   }
 
   /// A smooth deviation, piecewise linear between normal values at four knots.
-  void deviate() {
-    const int knots = s_.horizon < 4 ? s_.horizon : 4, log2 = log2_of(s_.guides), stride = 1 << log2;
-    draw(key_of(a_.seed, a_.stream - 1 + 65535), knots * P::inputs, 0, log2, stride, v_, 0,
-         [](int, int, float z) { return z; });
-    SLALOM_BARRIER();
-    SLALOM_EACH(r, rows_) {
-      const int step = r / P::inputs, i = r - step * P::inputs;
-      const double position = double(3 * step) / s_.horizon;
-      const int k = int(position), next = k + 1 < s_.horizon - 1 ? k + 1 : s_.horizon - 1;
-      const double part = position - k;
-      const double z = (1 - part) * v_[(k * P::inputs + i) * stride + guide_] +
-                       part * v_[(next * P::inputs + i) * stride + guide_];
-      theta_[r] =
-          clamped(theta_[r] + sqrt(s_.restart_variance[i]) * z, double(s_.low[i]), double(s_.high[i]));
-    }
-    SLALOM_BARRIER();
+  void deviate() const {
+    const int knots = s.horizon < 4 ? s.horizon : 4, log2 = log2_of(s.guides), width = 1 << log2;
+    draw(key_of(a.seed, a.stream - 1 + 65535), knots * P::inputs, 0, log2, width, v, 0,
+         [](int, float z) { return z; });
+    Block::barrier();
+    Block::each(rows, [&](int r) {
+      const int i = input_of<P>(r);
+      const double position = double(3 * (r / P::inputs)) / s.horizon;
+      const int k = int(position), next = k + 1 < s.horizon - 1 ? k + 1 : s.horizon - 1;
+      const double part = position - k, z = (1 - part) * v[(k * P::inputs + i) * width + guide] +
+                                            part * v[(next * P::inputs + i) * width + guide];
+      theta[r] = clamped<double>(theta[r] + sqrt(s.restart_variance[i]) * z, s.low[i], s.high[i]);
+    });
+    Block::barrier();
   }
 
-  void draw_noise(int l, int busy) {
-    draw(key_of(a_.seed, a_.stream + 1 + l), rows_, guide_ * guide_block(s_), columns_log2_, stride_, noise_,
-         busy, [](int, int, float z) { return z; });
+  /// Draws the normal values of an iteration; their indices are those of the processor.
+  void draw_noise(int l, int busy) const {
+    const int block = (s.gradient_samples + 1 + 15) / 16 * 16;
+    draw(key_of(a.seed, a.stream + 1 + l), rows, guide * block, columns_log2, stride, noise, busy,
+         [](int, float z) { return z; });
   }
-
   /// Draws by the warps that do not roll out `sequences`, if there are any.
-  void draw_beside(int l, int sequences) {
-#if SLALOM_ON_GPU
-    const int busy = (sequences + 31) / 32 * 32;
-    draw_noise(l, busy < int(blockDim.x) ? busy : 0);
-#else
-    static_cast<void>(sequences);
-    draw_noise(l, 0);
-#endif
+  void draw_beside(int l, int sequences) const {
+    const int busy = (sequences + Block::lanes - 1) / Block::lanes * Block::lanes;
+    draw_noise(l, busy < Block::threads() ? busy : 0);
   }
 
-  void place_samples() {
-    SLALOM_EACH(j, rows_ * columns_) {
-      const int r = j >> columns_log2_, k = j & (columns_ - 1), i = r % P::inputs;
-      const float z = noise_[r * stride_ + k];
-      v_[r * stride_ + k] =
-          k == samples_ ? centre_[r] : clamped(centre_[r] + deviation_[r] * z, s_.low[i], s_.high[i]);
-    }
-  }
-
-  /// Rolls out all columns, so that whole warps stay together; the others draw the next noise.
-  void roll_out_samples(int l) {
-    if (ahead_ && l + 1 < s_.iterations) draw_beside(l + 1, columns_);
-    SLALOM_EACH(k, columns_) cost_[k] = cost_of(a_, v_ + k, stride_);
-  }
-
-  void weigh() {
-    const float least = reduce<Least>(samples_, [&](int k) { return cost_[k]; });
-    SLALOM_EACH(k, samples_)
-    weight_[k] = least < infinite ? std::exp((least - cost_[k]) / s_.gradient_temperature) : 0.0f;
+  void place_samples() const {
+    Block::each(rows * columns, [&](int j) {
+      const int r = j >> columns_log2, k = j & (columns - 1), i = input_of<P>(r);
+      const float x = clamped(centre[r] + deviation[r] * noise[r * stride + k], s.low[i], s.high[i]);
+      v[r * stride + k] = k == samples ? centre[r] : x;
+    });
   }
 
   /// A step along the surrogate gradient.
-  void step(int l) {
-    const float sum = reduce<Sum>(samples_, [&](int k) { return weight_[k]; });
-    SLALOM_EACH(r, rows_) {
-      const int i = r % P::inputs;
-      const float centre = centre_[r];
+  void step(int l) const {
+    const float sum = Block::sum(samples, [&](int k) { return weight[k]; });
+    Block::each(rows, [&](int r) {
+      const int i = input_of<P>(r);
       float moment = 0;
-#if SLALOM_ON_GPU
-#pragma unroll 8
-#endif
-      for (int k = 0; k < samples_; ++k) moment += weight_[k] * (v_[r * stride_ + k] - centre);
+      SLALOM_UNROLLED(8)
+      for (int k = 0; k < samples; ++k) moment += weight[k] * (v[r * stride + k] - centre[r]);
       const float gradient =
-          sum > 0 ? float(double(1.0f / s_.gradient_variance[i]) * double(moment) / double(sum)) : 0.0f;
-      const double x =
-          clamped(theta_[r] + s_.guide_step[i] * gradient, double(s_.low[i]), double(s_.high[i]));
-      theta_[r] = x;
-      centre_[r] = float(x);
-      m_.path[(static_cast<long long>(guide_) * rows_ + r) * s_.iterations + l] = x;
-      if (l + 1 == s_.iterations) m_.after[guide_ * rows_ + r] = x;
-    }
-    SLALOM_ONE_THREAD() if (l > 0) m_.path_cost[guide_ * s_.iterations + l - 1] = cost_[samples_];
+          sum > 0 ? float(double(1.0f / s.gradient_variance[i]) * double(moment) / double(sum)) : 0.0f;
+      const double x = clamped<double>(theta[r] + s.guide_step[i] * gradient, s.low[i], s.high[i]);
+      theta[r] = x;
+      centre[r] = float(x);
+      m.path[(static_cast<long long>(guide) * rows + r) * s.iterations + l] = x;
+      if (l + 1 == s.iterations) m.after[guide * rows + r] = x;
+    });
+    if (Block::thread() == 0 && l > 0) m.path_cost[guide * s.iterations + l - 1] = cost[samples];
   }
-
-  const Arguments<P>& a_;
-  const Settings& s_;
-  const GuideMemory<P> m_;
-  const int guide_, rows_, columns_, columns_log2_, stride_, samples_;
-  const bool ahead_;
-  double* theta_;               ///< [row]
-  float *centre_, *deviation_;  ///< [row]
-  float *cost_, *weight_;       ///< [column]
-  float *v_, *noise_;           ///< [row][column]
 };
 
-/// Makes the best guide the nominal sequence and fits the variances to its path.
+/// Makes the best guide the nominal sequence and fits the variances to its path. The last block does so.
 template <class P>
 void finish_guides(const Arguments<P>& a, float* memory) {
   const Settings& s = a.settings;
-  const Buffers& b = a.buffers;
-  const GuideMemory<P> m(a);
+  const GuideMemory<P> m{a};
   const int rows = s.horizon * P::inputs, points = s.iterations;
   double* const square = reinterpret_cast<double*>(memory);  // first the logarithm of the density
   double* const logarithm = square + points;
   int best = 0;
   for (int g = 1; g < s.guides; ++g)
     if (m.end_cost[g] < m.end_cost[best]) best = g;
-  const double end_cost = m.end_cost[best];
   const double* const path = m.path + static_cast<long long>(best) * rows * points;
   const double* const theta = m.after + best * rows;
-  SLALOM_EACH_WARP(l, points) {
-    const double distance = reduce<Sum>(rows, [&](int r) {
+  const auto scaled_cost = [&](int l) { return m.path_cost[best * points + l] / double(s.temperature); };
+  for (int l = Block::warp(); l < points; l += Block::warps()) {
+    const double distance = Block::sum(rows, [&](int r) {
       const double d = path[r * points + l] - theta[r];
-      return d * d * double(float(s.gradient_temperature / s.guide_variance[r % P::inputs]));
+      return d * d * double(float(s.gradient_temperature / s.guide_variance[input_of<P>(r)]));
     });
-    square[l] =
-        -m.path_cost[best * points + l] / double(s.temperature) - 0.5 * distance / s.gradient_temperature;
+    square[l] = -scaled_cost(l) - 0.5 * distance / s.gradient_temperature;
   }
-  SLALOM_BARRIER();
-  double largest = square[0], error = 0;
-  for (int l = 0; l < points; ++l) {
-    largest = square[l] > largest ? square[l] : largest;
-    const double cost = fabs(m.path_cost[best * points + l]) / double(s.temperature);
-    error = cost > error ? cost : error;
-  }
-  error *= double(std::numeric_limits<float>::epsilon());
-  SLALOM_BARRIER();
-  SLALOM_EACH(l, points) square[l] = exp(square[l] - largest);
-  SLALOM_BARRIER();
-  double all = 0;
-  for (int l = 0; l < points; ++l) all += square[l];
-  SLALOM_BARRIER();
-  SLALOM_EACH(l, points) {
-    const double y = square[l] / all > 1e-10 ? square[l] / all : 1e-10;
+  Block::barrier();
+  const double largest = -Block::least(points, [&](int l) { return -square[l]; });
+  const double all = Block::sum(points, [&](int l) { return exp(square[l] - largest); });
+  const double error = -Block::least(points, [&](int l) { return -fabs(scaled_cost(l)); }) *
+                       double(std::numeric_limits<float>::epsilon());
+  Block::barrier();
+  Block::each(points, [&](int l) {
+    const double density = exp(square[l] - largest) / all, y = density > 1e-10 ? density : 1e-10;
     square[l] = y * y;
     logarithm[l] = log(y);
-  }
-  SLALOM_BARRIER();
-  const bool known = end_cost < infinite;
-  SLALOM_EACH(r, rows) {
-    const int i = r % P::inputs;
+  });
+  Block::barrier();
+  const bool known = m.end_cost[best] < infinite;
+  Block::each(rows, [&](int r) {
+    const int i = input_of<P>(r);
     double fitted = infinite;
     if (known)
       fitted = detail::fitted_variance(
           detail::fit_gaussian(path + r * points, square, logarithm, points, error), false);
     const double most = s.variance_max[i] > s.variance_min[i] ? s.variance_max[i] : s.variance_min[i];
-    b.variance[r] = float(clamped(fitted, s.variance_min[i], most));
-    b.nominal[r] = known ? float(theta[r]) : shifted(b.mean, r, s.horizon, P::inputs, a.shift);
-  }
+    a.buffers.variance[r] = float(clamped(fitted, s.variance_min[i], most));
+    a.buffers.nominal[r] = known ? float(theta[r]) : shifted(a, a.buffers.mean, r);
+  });
 }
 
 }  // namespace slalom::gpu

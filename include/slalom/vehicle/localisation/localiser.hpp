@@ -109,9 +109,6 @@ class Localiser {
   const LocaliserOutput& update(const LocaliserInput& input) noexcept;
   const LocaliserOutput& output() const noexcept;  ///< output of the last update
 
-  /// The estimate moved by the odometry since the last update (in the same frame), for a control loop that is
-  /// faster than the scans.
-  maps::Pose carried_to(const maps::Pose& odometry) const noexcept;
   /// The pose of the odometry's frame in the map frame, as in a tf tree.
   maps::Pose odometry_frame() const noexcept;
 

@@ -93,6 +93,7 @@ struct Learned {
     T speed, lateral_speed, yaw_rate;
   };
   static constexpr int inputs = 2;
+  static constexpr int unrolled_steps = 1;  // on a GPU, see docs/gpu.md
   Mlp<5, 3> network;
 
   template <class V>

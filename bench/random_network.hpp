@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "bench/gpu/problems.hpp"
+#include "bench/problems.hpp"
 
 namespace slalom::bench {
 
