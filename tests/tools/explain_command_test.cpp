@@ -49,6 +49,17 @@ TEST_F(ExplainCommand, SetsOptionsOfMethodsAndProblem) {
   EXPECT_FALSE(inputs("--set problem.disc_radius=0")["collided"].get<bool>());
 }
 
+TEST_F(ExplainCommand, SaysWhatIsWrong) {
+  const auto run = program("explain --method mppi --set temperature=1e-6 --json cold.json");
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_NE(run.output.find("few_samples: the effective sample size is below 3"), std::string::npos)
+      << run.output;
+  EXPECT_EQ(json::parse(testing::content(folder_ / "cold.json"))["methods"][0]["symptom"], "few_samples");
+  const auto good = program("explain --method mppi,svg_mppi --json good.json");
+  for (const json& method : json::parse(testing::content(folder_ / "good.json"))["methods"])
+    EXPECT_EQ(method["symptom"], "none") << method["method"];
+}
+
 TEST_F(ExplainCommand, DrawsFiguresOfThePaper) {
   std::set<std::string> pictures;
   for (const std::string figure : {"1", "3", "4"}) {

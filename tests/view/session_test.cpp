@@ -27,6 +27,15 @@ TEST_F(ViewSession, FirstMessagesHoldWhatThePageNeeds) {
   EXPECT_TRUE(samples);
 }
 
+TEST_F(ViewSession, TellsTheSymptomOfTheSolver) {
+  const json symptoms = next("hello")["symptoms"];
+  EXPECT_EQ(scalar(step_to(30), "symptom"), 0);
+  tell({{"do", "set"}, {"key", "svg_mppi.temperature"}, {"value", "1e-6"}});
+  const auto symptom = static_cast<std::size_t>(scalar(step_to(60), "symptom"));
+  EXPECT_EQ(symptoms[symptom]["name"], "few_samples");
+  EXPECT_NE(symptoms[symptom]["explanation"].get<std::string>().find("raise it"), std::string::npos);
+}
+
 TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   // The session first: its client does not stay for as long as a lap may take.
   const std::string fifth = step_to(5);

@@ -82,6 +82,7 @@ Json to_json(const Explanation& e) {
   }
   return {{"method", e.method},
           {"status", e.status},
+          {"symptom", name(e.symptom)},
           {"inputs", e.inputs},
           {"plan", e.plan},
           {"cost", e.plan_cost},
@@ -115,6 +116,8 @@ void explain(const ExplainArguments& arguments) {
           e.method.c_str(), e.plan_collides ? "hits the disc" : "passes",
           std::abs(e.plan[beside] - point.disc_y), e.plan[beside] > point.disc_y ? "left" : "right",
           e.plan_cost, e.mean[beside], e.deviation[beside]);
+      if (e.symptom != Symptom::none)
+        std::printf("%-20s %s: %s\n", "", name(e.symptom), explanation(e.symptom));
     }
     if (!arguments.json.empty()) json["methods"].push_back(to_json(e));
   }

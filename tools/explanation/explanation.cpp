@@ -127,6 +127,7 @@ void tell_guides(const SolveResult& result, int steps, Explanation& e) {
 
 void tell_outcome(const SolveResult& result, int steps, Explanation& e) {
   e.status = name(result.status);
+  if (result.suspicion != Symptom::no_progress) e.symptom = result.suspicion;
   e.plan = way_of(e.point, steps, [&](int k) { return result.inputs[static_cast<std::size_t>(k)]; });
   e.mean = way_of(e.point, steps, [&](int k) { return result.mean[static_cast<std::size_t>(k)]; });
   double variance = 0;

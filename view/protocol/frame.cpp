@@ -22,7 +22,7 @@ constexpr std::string_view scalar_labels =
     "collided_share temperature iterations tick_ms draw_ms evaluate_ms guide_ms update_ms solve_ms "
     "deadline_ms lap lap_time progress path_distance clearance contact contacts sequence_cost "
     "prediction_step method slip_estimate grip_used friction_estimate friction_relied_on "
-    "steering_gain_estimate delay_estimate odometry_x odometry_y odometry_yaw odometry_speed";
+    "steering_gain_estimate delay_estimate odometry_x odometry_y odometry_yaw odometry_speed symptom";
 
 constexpr int sent_candidates = 160;  // samples that are sent
 
@@ -82,7 +82,8 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
     put({none, none, none, none, none, none});  // the tyres do not slip
   }
   const maps::Pose& rear = tick.odometry.pose;
-  put({rear.x, rear.y, rear.yaw, tick.odometry.speed});
+  put({rear.x, rear.y, rear.yaw, tick.odometry.speed,
+       static_cast<double>(solve ? solve->symptom() : Symptom::none)});
   to.end();
   put_scan(to, tick);
   put_cost_map(to, tick);

@@ -84,11 +84,17 @@ std::string hello_message(const evaluation::Environment& environment, const Choi
   Json statuses = Json::array();
   for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)
     statuses.push_back(vehicle::name(static_cast<vehicle::PlannerStatus>(i)));
+  Json symptoms = Json::array();
+  for (int i = 0; i <= static_cast<int>(Symptom::no_progress); ++i) {
+    const auto symptom = static_cast<Symptom>(i);
+    symptoms.push_back({{"name", name(symptom)}, {"explanation", explanation(symptom)}});
+  }
   const sim::CarParameters& car = world.car;
   return json_text({{"type", "hello"},
                     {"protocol", 1},
                     {"scalars", scalar_names()},
                     {"statuses", statuses},
+                    {"symptoms", symptoms},
                     {"courses", choices.courses},
                     {"methods", choices.methods},
                     {"configurations", choices.configurations},

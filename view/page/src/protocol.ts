@@ -183,6 +183,7 @@ export interface Hello extends Numbers<"protocol" | "history_seconds" | "control
   type: "hello";
   scalars: string[];
   statuses: string[];
+  symptoms: Texts<"name" | "explanation">[];
   courses: string[];
   methods: string[];
   configurations: string[];

@@ -2,9 +2,6 @@ import type { BestLap } from "./best_lap";
 import { get } from "./dom";
 import { page, scalar } from "./page";
 
-const fewSamples = 3; // below it, Symptom::few_samples
-const fewFrames = 20; // in a row with few samples, before it is said
-
 function signed(value: number, digits: number) {
   const amount = Math.abs(value).toFixed(digits);
   return (value >= 0 || Number(amount) === 0 ? "+" : "−") + amount;
@@ -12,13 +9,13 @@ function signed(value: number, digits: number) {
 
 const fixed = (value: number, digits: number) => (Number.isFinite(value) ? value.toFixed(digits) : "–");
 
+const words = (name: string) => name.replace(/_/g, " ");
+
 /** Sets the value of a figure, which stands before its unit. */
 const figure = (id: string, text: string) => (get(id).firstChild!.textContent = text);
 
 /** The figures over the scene, and the labels of car and ghost. */
 export class Readout {
-  private frames = 0; // with few samples, in a row
-
   show(best: BestLap) {
     figure("speed", fixed(scalar("speed"), 1));
     figure("lap-time", fixed(scalar("lap_time"), 1));
@@ -41,17 +38,17 @@ export class Readout {
   }
 
   private label() {
-    const { statuses, methods } = page.hello!;
+    const { statuses, symptoms, methods } = page.hello!;
     const label = get("label");
     const status = statuses[scalar("status")] ?? "";
-    this.frames = scalar("effective_samples") < fewSamples ? this.frames + 1 : 0;
-    const isFew = this.frames >= fewFrames;
+    const symptom = symptoms[scalar("symptom")];
+    // A car that drives steadily has the sign of "no_progress".
+    const isShown = !!symptom?.explanation && symptom.name !== "no_progress";
     const parts = [methods[scalar("method")] ?? ""];
-    if (status && status !== "ok") parts.push(status.replace(/_/g, " "));
-    if (isFew) parts.push("few samples");
-    const advice = "raise the temperature or reduce the variances";
+    if (status && status !== "ok") parts.push(words(status));
+    if (isShown) parts.push(words(symptom.name));
     label.textContent = parts.join(" · ");
-    label.title = isFew ? `The effective sample size stays below ${fewSamples}: ${advice}.` : "";
+    label.title = isShown ? symptom.explanation : "";
     label.classList.toggle("blocked", status === "blocked");
   }
 }

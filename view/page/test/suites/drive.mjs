@@ -154,6 +154,15 @@ export default async function (h) {
     await page.click("#tab-charts");
   });
 
+  await h.test("says why plans are poor", async () => {
+    const says = (words) => h.until((w) => document.getElementById("label").textContent.includes(w), words);
+    await h.send({ do: "set", key: "svg_mppi.temperature", value: "1e-6" });
+    await says("few samples");
+    assert.match(await page.getAttribute("#label", "title"), /effective sample size/);
+    await page.click("#undo");
+    await h.until(() => !document.getElementById("label").textContent.includes("few samples"));
+  });
+
   await h.test("opponents drive along the line", async () => {
     await h.send({ do: "scenario", opponents: 2 });
     await h.until(() => slalom.frame.bodies.filter((b) => b.kind === 4).length === 2);
