@@ -22,7 +22,7 @@ struct ExplainedSample {
 struct Explanation {
   std::string method, about;
   std::string status;
-  Symptom symptom = Symptom::none;  ///< of the last solve; never no_progress, as the point stays where it is
+  Symptom symptom = Symptom::none;  ///< suspicion of the last solve; never no_progress, as the point stays
   problems::PassingPoint point;
   int beside = 0;  ///< the state at which the point is beside the disc
   int solves = 0;
