@@ -27,8 +27,7 @@ Verdict cart_pole(const CartPole& p, const CartPole::State<double>& x, int k) {
 }
 
 Verdict robot(const DifferentialDrive& p, const DifferentialDrive::State<double>& x, int) {
-  if (p.place_cost(x).collided) return Verdict::failed;
-  return p.distance(x) < 0.3 ? Verdict::solved : Verdict::running;
+  return reached(p.place_cost(x).collided, p.distance(x) < 0.3);
 }
 
 Verdict quadrotor(const Quadrotor& p, const Quadrotor::State<double>& x, int k) {
@@ -42,8 +41,7 @@ Verdict car(const Car& p, const Car::State<double>& x, int k) {
 
 Verdict arm(const Arm& p, const Arm::State<double>& x, int) {
   const auto posture = p.posture(x);
-  if (p.collides(posture)) return Verdict::failed;
-  return p.distance(posture) < 0.05 ? Verdict::solved : Verdict::running;
+  return reached(p.collides(posture), p.distance(posture) < 0.05);
 }
 
 }  // namespace

@@ -125,19 +125,16 @@ struct ArmAmongBalls : problems::Arm {
 };
 
 Verdict parking(const Parking& p, const Parking::State<double>& s, int) {
-  if (p.collides(s)) return Verdict::failed;
-  return p.offset(s) < 0.25 ? Verdict::solved : Verdict::running;
+  return reached(p.collides(s), p.offset(s) < 0.25);
 }
 
 Verdict corridor(const Corridor& p, const Corridor::State<double>& s, int) {
-  if (p.collides(s)) return Verdict::failed;
-  return p.way_left(s) < 0.3 ? Verdict::solved : Verdict::running;
+  return reached(p.collides(s), p.way_left(s) < 0.3);
 }
 
 Verdict arm(const ArmAmongBalls& p, const ArmAmongBalls::State<double>& x, int) {
   const auto posture = p.posture(x);
-  if (p.collides_with_any(posture)) return Verdict::failed;
-  return p.distance(posture) < 0.05 ? Verdict::solved : Verdict::running;
+  return reached(p.collides_with_any(posture), p.distance(posture) < 0.05);
 }
 
 }  // namespace

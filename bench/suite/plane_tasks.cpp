@@ -174,9 +174,7 @@ Verdict hovercraft(const Hovercraft& p, const Hovercraft::State<double>& x, int 
 }
 
 Verdict swap(const Swap& p, const Swap::State<double>& s, int) {
-  if (p.collides(s)) return Verdict::failed;
-  const double farthest = std::max({p.distance(s, 0), p.distance(s, 1), p.distance(s, 2)});
-  return farthest < 0.4 ? Verdict::solved : Verdict::running;
+  return reached(p.collides(s), std::max({p.distance(s, 0), p.distance(s, 1), p.distance(s, 2)}) < 0.4);
 }
 
 Verdict chase(const Chase& p, const Chase::State<double>& s, int k) {

@@ -19,26 +19,6 @@ constexpr const char* usage =
 
 namespace {
 
-/// The default options of a method, with samples for so many rollouts in a solve, those of guides included.
-SolverOptions method_options(const std::string& method, const Task& task, int rollouts) {
-  SolverOptions options = default_options(method.c_str(), task);
-  if (SvgMppiOptions* const svg = options.get_if<SvgMppiOptions>()) {
-    GuideOptions& guides = svg->guides;
-    if (rollouts < 256) guides.count = guides.iterations = 1, guides.gradient_samples = 3;
-    // A guide itself is evaluated in every iteration; all are before and after, with the last solution. The
-    // last mean is evaluated, too.
-    svg->samples =
-        rollouts - guides.iterations * guides.count * (guides.gradient_samples + 1) - (2 * guides.count + 2);
-    return options;
-  }
-  const int* const iterations = options.find<int>("iterations");
-  const double* const decay = options.find<double>("sample_decay");
-  double batches = 1;
-  for (int i = 1; iterations && i < *iterations; ++i) batches += std::pow(decay ? *decay : 1, -i);
-  *options.find<int>("samples") = static_cast<int>(rollouts / batches);
-  return options;
-}
-
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> words(1);
   for (const char c : text) {
@@ -51,13 +31,29 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return words;
 }
 
-/// Sets the options of "method:option=value:option=value".
-void set_options(SolverOptions& options, const std::vector<std::string>& parts) {
+/// The default options of a method, with those of "method:option=value:option=value", and with samples for so
+/// many rollouts in a solve, those of guides included.
+SolverOptions method_options(const std::vector<std::string>& parts, const Task& task, int rollouts) {
+  SolverOptions options = default_options(parts[0].c_str(), task);
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::vector<std::string> pair = split(parts[i], '=');
     if (pair.size() != 2 || !set_option(options, pair[0], pair[1]))
       throw std::invalid_argument("'" + parts[i] + "' must be OPTION=VALUE with an option of " + parts[0]);
   }
+  if (SvgMppiOptions* const svg = options.get_if<SvgMppiOptions>()) {
+    const GuideOptions& guides = svg->guides;
+    // A guide itself is evaluated in every iteration; all are before and after, with the last solution. The
+    // last mean is evaluated, too.
+    svg->samples =
+        rollouts - guides.iterations * guides.count * (guides.gradient_samples + 1) - (2 * guides.count + 2);
+    return options;
+  }
+  const int* const iterations = options.find<int>("iterations");
+  const double* const decay = options.find<double>("sample_decay");
+  double batches = 1;
+  for (int i = 1; iterations && i < *iterations; ++i) batches += std::pow(decay ? *decay : 1, -i);
+  *options.find<int>("samples") = static_cast<int>(rollouts / batches);
+  return options;
 }
 
 double median(std::vector<double> values) {
@@ -119,8 +115,7 @@ void run(const Arguments& a) {
     for (const std::string& method : a.methods) {
       for (const std::string& rollouts : a.rollouts) {
         const std::vector<std::string> parts = split(method, ':');
-        SolverOptions options = method_options(parts[0], task, std::stoi(rollouts));
-        set_options(options, parts);
+        const SolverOptions options = method_options(parts, task, std::stoi(rollouts));
         const Outcome outcome =
             task.run({.options = options, .first = a.first_seed, .count = a.seeds, .disturbed = a.disturbed});
         std::printf("%s,%d,%s,%s,%d,%d,%.6g\n", task.name.c_str(), task.ways == Ways::several, method.c_str(),

@@ -122,6 +122,25 @@ inline Verdict at_end(int k, int steps, bool reached) {
   return reached ? Verdict::solved : Verdict::failed;
 }
 
+/// The distance between two points in the plane.
+template <class T>
+T apart(const T& x, const T& y, double to_x, double to_y) {
+  return sqrt(square(x - T(to_x)) + square(y - T(to_y)) + T(1e-6));
+}
+
+/// The cost of a step: distance from the goal, effort, and collision.
+template <class T, int n>
+Cost<T> step_cost(double dt, const T& distance, double weight, const Input<T, n>& u, const mask_t<T>& hit) {
+  T effort(0);
+  for (int i = 0; i < n; ++i) effort += square(u[i]);
+  return {T(dt) * (distance + T(weight) * effort) + select(hit, T(50), T(0)), hit};
+}
+
+/// Ends a run at a collision or at the goal.
+inline Verdict reached(bool collides, bool at_goal) {
+  return collides ? Verdict::failed : at_goal ? Verdict::solved : Verdict::running;
+}
+
 /// A mass point in the plane, driven by its accelerations.
 struct PointMass {
   template <class T>
@@ -156,12 +175,15 @@ void add_example_tasks(std::vector<Task>& tasks);
 void add_plane_tasks(std::vector<Task>& tasks);
 /// Adds vehicles and arms in narrow places.
 void add_narrow_tasks(std::vector<Task>& tasks);
+/// Adds loads, vehicles and schedules with models of a few lines.
+void add_further_tasks(std::vector<Task>& tasks);
 
 inline std::vector<Task> all_tasks() {
   std::vector<Task> tasks;
   add_example_tasks(tasks);
   add_plane_tasks(tasks);
   add_narrow_tasks(tasks);
+  add_further_tasks(tasks);
   return tasks;
 }
 

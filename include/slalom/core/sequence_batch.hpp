@@ -58,7 +58,9 @@ class SequenceBatch {
   int inputs() const noexcept { return inputs_; }         ///< inputs per step
   int rows() const noexcept { return steps_ * inputs_; }  ///< values of a control sequence
   int samples() const noexcept { return samples_; }       ///< control sequences, without padding
-  /// Samples with their padding: the distance from one row to the next.
+  /// Makes the first `samples` <= `stride()` sequences all that the batch holds. No value moves.
+  void set_samples(int samples) noexcept { samples_ = samples; }
+  /// The samples at construction with their padding: the distance from one row to the next.
   int stride() const noexcept { return stride_; }
 
   /// The values of a row, one per sample, without padding.

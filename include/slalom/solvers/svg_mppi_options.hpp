@@ -37,10 +37,10 @@ inline const char* const* enum_names(SampleCentre) {
 /// `visit_guide_options` below describes the fields.
 struct GuideOptions {
   int count = 2;
-  int iterations = 2;
+  int iterations = 1;
   PerInput step = 0;
   PerInput variance = 0;
-  int gradient_samples = 7;
+  int gradient_samples = 3;
   PerInput gradient_variance = 0;
   double gradient_temperature = 0;
   GuideWeight weight = GuideWeight::state_cost;
@@ -70,7 +70,7 @@ struct SvgMppiOptions {
   PerInput variance_min = 0;
   PerInput variance_max = 0;
 
-  NoiseOptions noise{.exponent = 2};  ///< shape of the noise; coloured and normal
+  NoiseOptions noise{.exponent = 1.25};  ///< shape of the noise; coloured and normal
   WeightingOptions weighting{};       ///< how costs become weights
   double control_cost_discount = 0;
   double zero_mean_share = 0;

@@ -20,13 +20,14 @@ namespace {
 /// the last mean, whichever costs less, is the solution.
 class SvgMppiSolver final : public SolverBase {
  public:
-  /// `options` has the size of a batch in place of that of all samples, and their number.
-  SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+  /// `options` has the size of the largest batch in place of the number of all samples, `total`.
+  SvgMppiSolver(const SvgMppiOptions& options, int total, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
         shift_(options.shift_warm_start),
         use_nominal_(options.use_nominal),
         around_nominal_(options.use_nominal && options.guides.sample_around == SampleCentre::nominal),
         adapt_covariance_(options.adapt_covariance),
+        total_(total),
         batches_(options.batches),
         guides_(options, inputs, low(), high()),
         update_(options, inputs),
@@ -169,6 +170,7 @@ class SvgMppiSolver final : public SolverBase {
         result_.status = Status::deadline;
         break;
       }
+      set.set_samples(total_ / batches_ + (batch < total_ % batches_));
       if (batch > 0) elites_ = std::min(elites_, 1);  // more of them would narrow the samples too soon
       std::copy(mean_.begin(), mean_.end(), kept(elites_));
       const int count = std::min(elites_ + 1, set.samples() / 4);
@@ -187,15 +189,16 @@ class SvgMppiSolver final : public SolverBase {
   /// Keeps the samples of least cost, unless that is above `least`. Returns the least cost.
   float keep_elites(const detail::SampleSet& set, float least) noexcept {
     const std::span<const float> costs = set.costs();
-    std::iota(order_.begin(), order_.end(), 0);
+    const auto order = std::span(order_).first(costs.size());
+    std::iota(order.begin(), order.end(), 0);
     const auto better = [&](int a, int b) { return costs[a] < costs[b] || (costs[a] == costs[b] && a < b); };
     const int most = std::min(most_elites, set.samples());
-    std::partial_sort(order_.begin(), order_.begin() + most, order_.end(), better);
-    const float best = costs[order_[0]];
+    std::partial_sort(order.begin(), order.begin() + most, order.end(), better);
+    const float best = costs[order[0]];
     if (best > least) return best;
-    for (elites_ = 0; elites_ < most && costs[order_[elites_]] < std::numeric_limits<float>::infinity();
+    for (elites_ = 0; elites_ < most && costs[order[elites_]] < std::numeric_limits<float>::infinity();
          ++elites_)
-      set.values().get_sample(order_[elites_], std::span(kept_).subspan(elites_ * size(), size()));
+      set.values().get_sample(order[elites_], std::span(kept_).subspan(elites_ * size(), size()));
     return best;
   }
 
@@ -226,7 +229,7 @@ class SvgMppiSolver final : public SolverBase {
   }
 
   bool shift_, use_nominal_, around_nominal_, adapt_covariance_;
-  int batches_;
+  int total_, batches_;
   int elites_ = 0;  ///< number of elites
   detail::Guides guides_;
   detail::MppiUpdate update_;
@@ -247,10 +250,15 @@ std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
     throw std::invalid_argument(
         "svg_mppi.gradient_temperature: 0 must be above 0 unless guide_weight is state_cost");
   const bool one = !o.use_nominal || o.guides.sample_around == SampleCentre::solution;
-  const int wanted = o.batches > 0 ? o.batches : std::clamp(o.samples / 40, 4, 8);
-  o.batches = one ? 1 : std::min(wanted, o.samples);
-  o.samples /= o.batches;
-  return std::make_unique<SvgMppiSolver>(o, inputs, std::move(pool));
+  const int total = o.samples;
+  const int wanted = o.batches > 0 ? o.batches : std::clamp(total / 40, 4, 8);
+  o.batches = one ? 1 : std::min(wanted, total);
+  o.samples = (total + o.batches - 1) / o.batches;
+  // Plans that follow more samples than those of one batch keep farther from obstacles
+  // (docs/problem-suite.md).
+  if (o.batches > 1 && o.temperature == 0 && o.weighting.target_ess_fraction == 0)
+    o.weighting.target_ess_fraction = 1 / std::sqrt(static_cast<double>(o.samples));
+  return std::make_unique<SvgMppiSolver>(o, total, inputs, std::move(pool));
 }
 
 }  // namespace slalom

@@ -79,8 +79,8 @@ bool SampleSet::lacks_noise(const BatchEvaluator& evaluator, RandomKey key) cons
 /// infinity. Computes the totals and statistics of the range.
 void SampleSet::finish(Range r, const BatchEvaluator* evaluator, const float* linear,
                        BatchStatistics& statistics) noexcept {
-  const int count = std::min(r.count, samples() - r.first);
-  if (evaluator) evaluator->evaluate(values_, r.first, count, costs_.data(), collided_.data());
+  const int count = std::clamp(samples() - r.first, 0, r.count);
+  if (evaluator && count > 0) evaluator->evaluate(values_, r.first, count, costs_.data(), collided_.data());
   for (int i = r.first + count; i < r.first + r.count; ++i) {
     costs_[i] = infinite;
     collided_[i] = 0;

@@ -42,6 +42,8 @@ class SampleSet {
 
   const NoiseShape& shape() const noexcept { return shape_; }
   int samples() const noexcept { return values_.samples(); }
+  /// Draws so many samples from now on, at most as many as at construction.
+  void set_samples(int samples) noexcept { values_.set_samples(samples); }
   int rows() const noexcept { return values_.rows(); }
   const SequenceBatch& values() const noexcept { return values_; }
   SequenceBatch& values() noexcept { return values_; }

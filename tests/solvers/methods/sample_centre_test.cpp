@@ -80,5 +80,21 @@ TEST(SampleCentre, TheLastSolutionJoinsTheGuides) {
   for (const float n : solver->solve(evaluator, {}).nominal) EXPECT_NEAR(n, wanted, 0.25);
 }
 
+TEST(Batches, EvaluateAllSamples) {
+  int evaluated = 0;
+  const auto evaluator = testing::sum_over_steps([&](double u, int) { return ++evaluated, u * u; });
+  const auto rollouts = [&](int samples, int batches) {
+    const SvgMppiOptions o{.horizon = sample_steps, .samples = samples, .batches = batches};
+    const auto solver = make_solver(o, 1);
+    solver->solve(evaluator, {});
+    evaluated = 0;
+    solver->solve(evaluator, {});
+    return evaluated / sample_steps;
+  };
+  for (const int batches : {0, 2, 3, 8})
+    for (int samples = 100; samples < 110; ++samples)
+      EXPECT_EQ(rollouts(samples, batches) - rollouts(96, batches), samples - 96) << batches;
+}
+
 }  // namespace
 }  // namespace slalom
