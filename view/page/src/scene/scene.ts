@@ -35,6 +35,7 @@ export class SceneView {
   term = "total"; // colours the candidates
   theme: Theme;
   selected = -1; // body
+  isHeld = false; // whether a pointer is pressed on the scene, which must not move under it
   chosen = -1; // candidate
   costRange: [number, number] = [0, 1]; // costs of the candidates' first and last colour
   /** Whether the ghost is to be shown beside the car, in a lane of its own. */
@@ -85,7 +86,7 @@ export class SceneView {
     const room = 0.12 * Math.max(x1 - x0, y1 - y0, 0.1);
     const { isFitted } = this;
     this.bounds = [x0 - room, y0 - room, x1 + room, y1 + room];
-    if (isFitted) this.fit();
+    if (isFitted && !this.isHeld) this.fit();
   }
 
   /** Shows the whole course. */
