@@ -32,8 +32,10 @@ export class InspectPane {
     this.horizon = new Chart(root, "Cost over the horizon: plan solid, candidate dotted", []);
     this.costs = new Chart(root, "Candidates by cost, without collisions", []);
     this.weights = new Chart(root, "Candidates by weight, %", []);
-    this.rank.onchange = () =>
-      this.choose(ranked(page.frame!.candidates!)[Number(this.rank.value) - 1] ?? -1);
+    this.rank.onchange = () => {
+      const candidates = page.frame?.candidates;
+      if (candidates) this.choose(ranked(candidates)[Number(this.rank.value) - 1] ?? -1);
+    };
     new ResizeObserver(() => this.show()).observe(root);
   }
 
