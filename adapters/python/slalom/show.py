@@ -52,9 +52,9 @@ def show(controller: Any, start: Any, *, block: bool = True, browser: bool = Tru
       title, host, port, token   name of the problem; where the page is served: 127.0.0.1, 8400
 
     Blocks until Ctrl-C; with `block=False` returns at once, while a thread serves the page. `browser`: opens it."""
-    if not hasattr(_slalom, "View"):
+    if not hasattr(_slalom, "_View"):
         raise RuntimeError("slalom.show is not in this build: install libboost-dev and nlohmann-json3-dev and build again")
-    view = _slalom.View(controller, start, **drawing)
+    view = getattr(_slalom, "_View")(controller, start, **drawing)
     if browser:
         webbrowser.open(view.address)
     if not block:
