@@ -119,7 +119,7 @@ int replay_recording(const ReplayArguments& arguments) {
   view::ServerOptions options = server_options(arguments.host, arguments.port, "");
   view::Server server(options, {{"/", {"text/html; charset=utf-8", page}}});
   const InterruptFlag interrupt;
-  print_address(server, options);
+  print_address(view::address_of(server, options));
   while (!interrupt.raised()) {
     server.wait(std::chrono::milliseconds(100));
     server.take();

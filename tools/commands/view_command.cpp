@@ -3,7 +3,9 @@
 #include <memory>
 
 #include "slalom/core/version.hpp"
+#include "slalom/view/serve.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/live_view/problems.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
@@ -20,7 +22,7 @@ struct ViewArguments {
   std::uint64_t seed = 0;
   std::string host = "127.0.0.1";
   std::uint16_t port = 8400;
-  std::string token, against, evaluation;
+  std::string token, against, evaluation, problem;
   bool record_times = false;
   bool introduction = false;
 };
@@ -70,8 +72,19 @@ int view(const ViewArguments& arguments) {
   if (!arguments.evaluation.empty()) open_evaluation(arguments.evaluation, session_of);
   view::Session session(std::move(session_of), server);
   const InterruptFlag interrupt;
-  print_address(server, options);
+  print_address(view::address_of(server, options));
   session.run(interrupt.raised());
+  return 0;
+}
+
+/// Serves the page of a problem that is not a car.
+int view_problem(const ViewArguments& arguments) {
+  const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
+  view::View view(problem_subject(arguments.problem, arguments.method, arguments.seed),
+                  {.host = options.host, .port = options.port, .token = options.token});
+  const InterruptFlag interrupt;
+  print_address(view.address());
+  while (!interrupt.raised()) view.turn(std::chrono::milliseconds(50));
   return 0;
 }
 
@@ -85,6 +98,9 @@ void declare_view(Subcommand& command) {
   add_method_option(command, arguments->method);
   command.option("--seed", arguments->seed, "Seed of the drive");
   command.option("--against", arguments->against, "Second method, driven as a ghost with the same seed");
+  command.option(
+      "--problem", arguments->problem,
+      "Show a problem that is not a car: pendulum, cart_pole, differential_drive, quadrotor or arm");
   command.option("--eval", arguments->evaluation,
                  "Open an evaluation (output folder of slalom eval): its laps and the collisions in them");
   command.flag("--record-times", arguments->record_times,
@@ -95,10 +111,11 @@ void declare_view(Subcommand& command) {
   command.option("--token", arguments->token,
                  "Token that the page must present; random if --host is not a loopback address");
   command.examples(
-      {"view", "view --course fox --against mppi --obstacles 5"},
+      {"view", "view --course fox --against mppi --obstacles 5", "view --problem quadrotor"},
       "Without options of the scenario, the page opens with an introduction: svg_mppi and mppi side by "
       "side on the same seed, in slow motion before a parked car.");
   command.action([arguments, &command] {
+    if (!arguments->problem.empty()) return view_problem(*arguments);
     if (command.given_only({"--host", "--port", "--token", "--record-times", "--threads"}))
       set_introduction(*arguments);
     ScenarioArguments& scenario = arguments->scenario;

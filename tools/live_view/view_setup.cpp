@@ -105,11 +105,8 @@ view::ServerOptions server_options(const std::string& host, std::uint16_t port, 
   return options;
 }
 
-void print_address(const view::Server& server, const view::ServerOptions& options) {
-  const bool is_v6 = options.host.find(':') != std::string::npos;
-  std::printf("http://%s:%u/%s\n", (is_v6 ? "[" + options.host + "]" : options.host).c_str(),
-              static_cast<unsigned>(server.port()),
-              options.token.empty() ? "" : ("?token=" + options.token).c_str());
+void print_address(const std::string& address) {
+  std::printf("%s\n", address.c_str());
   std::printf("open this address in a browser; Ctrl-C ends\n");
   std::fflush(stdout);
 }

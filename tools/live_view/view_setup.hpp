@@ -20,7 +20,7 @@ std::string further_arguments(const ScenarioArguments& arguments);
 /// a token, which is random if none is given. Throws IoError where an address cannot hold the token.
 view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token);
 /// Prints the address of the page.
-void print_address(const view::Server& server, const view::ServerOptions& options);
+void print_address(const std::string& address);
 
 /// Makes the live view show an evaluation: its laps and collisions, each of which can be repeated. Throws
 /// IoError.

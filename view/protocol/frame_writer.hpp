@@ -25,6 +25,9 @@ enum class Block : std::uint16_t {
   ghost = 10,
   ghost_frame = 11,
   others = 12,
+  figure = 13,
+  polygons = 14,
+  step_costs = 15,
   grid = 20,
   path = 21,
   past = 22,
@@ -64,10 +67,11 @@ class FrameWriter {
     put(pose.yaw);
   }
 
-  /// Begins a list of points with their origin and unit (m). Each point is stored as its difference to the
-  /// one before, which compresses better.
-  void begin_points(const maps::Point& origin) {
+  /// Begins a list of points with their origin and unit (m), of which 16 bits reach 32767 either way. Each
+  /// point is stored as its difference to the one before, which compresses better.
+  void begin_points(const maps::Point& origin, double unit = 0.001) {
     origin_ = origin;
+    unit_ = unit;
     last_x_ = last_y_ = 0;
     put(origin.x);
     put(origin.y);
@@ -84,9 +88,8 @@ class FrameWriter {
   std::string take_blocks() { return take().substr(4); }
 
  private:
-  static constexpr double unit = 0.001;  ///< m; 16 bits reach 32 m either way
-  static std::int16_t counts(double metres) {
-    const double value = std::round(metres / unit);
+  std::int16_t counts(double metres) const {
+    const double value = std::round(metres / unit_);
     return static_cast<std::int16_t>(value > 32767 ? 32767 : value > -32767 ? value : -32767);
   }
 
@@ -99,6 +102,7 @@ class FrameWriter {
   std::string bytes_;
   std::size_t length_at_ = 0;
   maps::Point origin_;
+  double unit_ = 0.001;
   std::int16_t last_x_ = 0, last_y_ = 0;
 };
 

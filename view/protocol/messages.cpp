@@ -7,6 +7,7 @@
 #include "slalom/vehicle/planner/planner.hpp"
 #include "src/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
+#include "view/protocol/option_json.hpp"
 
 namespace slalom::view {
 namespace {
@@ -15,21 +16,6 @@ namespace {
 bool is_shown(const std::string& section, const std::string& option, const std::string& method) {
   if (section == "vehicle" || section == "planner") return true;
   return section == method && option != "seed" && option != "threads";
-}
-
-Json option_json(const OptionEntry& entry, const OptionEntry& loaded) {
-  const Declaration& d = entry.declaration;
-  Json json = {{"name", d.name},
-               {"symbol", d.symbol},
-               {"unit", d.unit},
-               {"help", d.help},
-               {"type", type_name(entry)},
-               {"value", to_text(entry.value)},
-               {"default", to_text(loaded.value)}};
-  if (std::isfinite(d.min)) json["min"] = d.min;
-  if (std::isfinite(d.max)) json["max"] = d.max;
-  if (!entry.choices.empty()) json["choices"] = entry.choices;
-  return json;
 }
 
 /// "section.option=value" of all that differs from the configuration that was loaded.
@@ -162,7 +148,7 @@ std::string options_message(const OptionsFacts& facts) {
     for (std::size_t k = 0; k < now[i].options.size(); ++k) {
       const OptionEntry& entry = now[i].options[k];
       if (is_shown(now[i].name, entry.declaration.name, facts.names.method))
-        options.push_back(option_json(entry, loaded[i].options[k]));
+        options.push_back(option_json(entry, to_text(loaded[i].options[k].value)));
     }
     if (options.empty()) continue;
     // The method's own options come first: they are changed most often.

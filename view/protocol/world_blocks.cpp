@@ -5,6 +5,7 @@
 #include "slalom/sim/shapes.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/frame_writer.hpp"
+#include "view/protocol/grid_block.hpp"
 
 namespace slalom::view {
 
@@ -67,23 +68,8 @@ std::string encode_ghost_frame(std::string_view frame) {
 }
 
 std::string encode_scene(const evaluation::Environment& environment) {
-  const maps::OccupancyGrid& grid = environment.course.map;
-  std::vector<std::uint32_t> runs;  // value in the upper 8 bits, length in the lower 24
-  for (const maps::Occupancy cell : grid.cells) {
-    const auto value = static_cast<std::uint32_t>(cell);
-    if (runs.empty() || runs.back() >> 24 != value || (runs.back() & 0xffffffu) == 0xffffffu)
-      runs.push_back(value << 24);
-    ++runs.back();
-  }
   FrameWriter to;
-  to.begin(Block::grid);
-  to.put(static_cast<std::uint32_t>(grid.width));
-  to.put(static_cast<std::uint32_t>(grid.height));
-  to.put(grid.resolution);
-  to.put_pose(grid.origin);
-  to.put(static_cast<std::uint32_t>(runs.size()));
-  for (const std::uint32_t run : runs) to.put(run);
-  to.end();
+  put_grid(to, environment.course.map);
   to.begin(Block::path);
   to.put(static_cast<std::uint32_t>(environment.path.size()));
   to.put(static_cast<std::uint32_t>(environment.course.closed));

@@ -146,4 +146,10 @@ ServerCounters Server::counters() const {
   return {all.messages, all.frames_dropped, all.refused};
 }
 
+std::string address_of(const Server& server, const ServerOptions& options) {
+  const bool is_v6 = options.host.find(':') != std::string::npos;
+  return "http://" + (is_v6 ? "[" + options.host + "]" : options.host) + ":" + std::to_string(server.port()) +
+         "/" + (options.token.empty() ? "" : "?token=" + options.token);
+}
+
 }  // namespace slalom::view

@@ -87,6 +87,9 @@ class Server {
   std::unique_ptr<Implementation> implementation_;
 };
 
+/// The address of the page.
+std::string address_of(const Server& server, const ServerOptions& options);
+
 /// Whether an address can be reached from this machine only. Throws std::invalid_argument if it is not an IP
 /// address.
 bool is_loopback(const std::string& host);

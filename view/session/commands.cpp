@@ -6,43 +6,6 @@
 #include "src/evaluation/json.hpp"
 
 namespace slalom::view {
-namespace field {
-namespace {
-
-void require(bool holds, const char* key, const char* rule) {
-  if (!holds) throw MalformedCommand(std::string(key) + ": must be " + rule);
-}
-
-}  // namespace
-
-double number(const Json& command, const char* key, std::optional<double> otherwise) {
-  if (otherwise && !command.contains(key)) return *otherwise;
-  const auto found = command.find(key);
-  const bool is_number = found != command.end() && found->is_number();
-  require(is_number && std::isfinite(found->get<double>()), key, "a finite number");
-  return found->get<double>();
-}
-
-int integer(const Json& command, const char* key, std::optional<int> otherwise) {
-  const double value = number(command, key, otherwise);
-  require(std::floor(value) == value && std::abs(value) <= 1e9, key, "an integer");
-  return static_cast<int>(value);
-}
-
-std::string text(const Json& command, const char* key) {
-  const auto found = command.find(key);
-  require(found != command.end() && found->is_string(), key, "text");
-  return found->get<std::string>();
-}
-
-bool flag(const Json& command, const char* key) {
-  const auto found = command.find(key);
-  require(found != command.end() && found->is_boolean(), key, "true or false");
-  return found->get<bool>();
-}
-
-}  // namespace field
-
 namespace {
 
 maps::Pose pose_of(const Json& command) {

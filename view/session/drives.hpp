@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "slalom/evaluation/lap.hpp"
+#include "view/session/timeline.hpp"
 
 namespace slalom::view {
-
-/// Delays by which commands take effect later than the settings say, s.
-struct Delays {
-  double car = 0, ghost = 0;
-};
 
 /// The car, and the ghost if there is one, each in a world of its own. A copy continues bit for bit like the
 /// original.

@@ -64,7 +64,8 @@ bool has_obstacle_near(const sim::World& world) {
 
 }  // namespace
 
-Session::Session(SessionOptions options, Server& server) : options_(std::move(options)), server_(server) {
+Session::Session(SessionOptions options, Server& server)
+    : options_(std::move(options)), server_(server), audience_(server) {
   install(options_.load(options_.scenario), options_.scenario);
   if (!options_.against.empty()) set_ghost(options_.against);
   state_.introduction = options_.introduction;
@@ -87,9 +88,9 @@ void Session::turn() {
     if (each.kind == Received::Kind::joined)
       join(each.client);
     else if (each.kind == Received::Kind::left)
-      leave(each.client);
+      audience_.leave(each.client);
     else
-      execute(each.client, parse_json_or_null(each.text));
+      execute(each);
   }
   if (until_due() <= Clock::duration::zero()) {
     if (steps_left_ > 0) --steps_left_;
@@ -98,13 +99,19 @@ void Session::turn() {
   // The first change after a pause need not wait for these.
   if (state_.paused && is_held() && (!held_ || std::abs(held_->ticks() - shown_tick()) > scan_lead))
     present(scan_lead);
-  if (std::exchange(are_options_changed_, false)) tell_text(0, options_message(options_facts()));
+  if (std::exchange(are_options_changed_, false)) audience_.tell_text(0, options_message(options_facts()));
   const auto now = Clock::now();
   if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
   last_state_ = now;
   is_state_changed_ = false;
   measure_pace();
-  tell_text(0, state());
+  audience_.tell_text(0, state());
+}
+
+void Session::execute(const Received& message) {
+  const Json command = parse_json_or_null(message.text);
+  audience_.execute(message.client, command,
+                    [&](const std::string& what) { obey(message.client, what, command); });
 }
 
 Session::Clock::duration Session::until_due() const {

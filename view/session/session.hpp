@@ -13,11 +13,12 @@
 
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
-#include "view/server/server.hpp"
+#include "view/server/audience.hpp"
 #include "view/session/drives.hpp"
-#include "view/session/timeline.hpp"
 
 namespace slalom::view {
+
+using Timeline = TimelineOf<Drives>;
 
 /// A scenario, loaded.
 struct LoadedScenario {
@@ -58,8 +59,10 @@ class Session {
   /// Executes the commands that have come, and drives one tick if it is due; for tests.
   void turn();
 
-  std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were not valid commands
-  bool is_busy() const noexcept { return steps_left_ > 0; }    ///< whether ticks of a command "step" are left
+  std::uint64_t refused() const noexcept {
+    return audience_.refused();
+  }                                                          ///< messages that were not valid commands
+  bool is_busy() const noexcept { return steps_left_ > 0; }  ///< whether ticks of a command "step" are left
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -98,7 +101,7 @@ class Session {
   void show_lap(const Json& command);
 
   // Commands.
-  void execute(std::uint64_t client, const Json& command);
+  void execute(const Received& message);
   void obey(std::uint64_t client, const std::string& what, const Json& command);
   bool obey_transport(const std::string& what, const Json& command);
   bool obey_options(const std::string& what, const Json& command);
@@ -106,10 +109,6 @@ class Session {
 
   // Messages.
   void join(std::uint64_t client);
-  void leave(std::uint64_t client);
-  void tell(std::uint64_t client, const Json& message);
-  void tell_text(std::uint64_t client, std::string text);
-  void tell_roles();
   void tell_past(std::uint64_t client, int from, int to);
   std::string hello() const;
   std::string state() const;
@@ -122,8 +121,7 @@ class Session {
 
   SessionOptions options_;
   Server& server_;
-  std::vector<std::uint64_t> clients_;  ///< by age
-  std::uint64_t driving_client_ = 0;    ///< 0 if there is no client
+  Audience audience_;
 
   vehicle::Configuration loaded_;             ///< the configuration of the scenario, without changes
   std::shared_ptr<const std::string> scene_;  ///< message with the course
@@ -150,7 +148,6 @@ class Session {
   Clock::time_point paced_ = due_;  ///< from when the pace of the drive is measured
   bool is_newest_sent_ = true;      ///< false if the newest tick came too early for a frame
   bool is_state_changed_ = true, are_options_changed_ = false;
-  std::uint64_t refused_ = 0;
   std::future<void> saving_;  ///< the last member: its thread ends before what it uses
 };
 

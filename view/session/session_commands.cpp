@@ -21,37 +21,12 @@ bool is_among(std::initializer_list<std::string_view> names, const std::string& 
 
 }  // namespace
 
-/// Executes a command and answers it: an error with the reason, and `done` if the command has an `id`.
-void Session::execute(std::uint64_t client, const Json& command) {
-  const auto id = command.find("id");
-  const bool has_id = id != command.end() && id->is_number_integer();
-  const auto fail = [&](const char* why) {
-    Json error = {{"type", "error"}, {"message", why}};
-    if (has_id) error["id"] = *id;
-    tell(client, error);
-  };
-  try {
-    if (!command.is_object()) throw MalformedCommand("a command must be a JSON object");
-    obey(client, field::text(command, "do"), command);
-    if (has_id) tell(client, {{"type", "done"}, {"id", *id}});
-  } catch (const MalformedCommand& error) {
-    ++refused_;
-    fail(error.what());
-  } catch (const std::exception& error) {
-    fail(error.what());
-  }
-}
-
 void Session::obey(std::uint64_t client, const std::string& what, const Json& command) {
   if (what == "past")
     return tell_past(client, field::integer(command, "from"), field::integer(command, "to"));
   if (what == "save") return save(client, field::text(command, "what"));
-  if (what == "take_over") {
-    driving_client_ = client;
-    return tell_roles();
-  }
-  if (client != driving_client_)
-    throw std::invalid_argument("another page drives this car; take over to change it");
+  if (what == "take_over") return audience_.take_over(client);
+  audience_.require_driver(client);
   is_state_changed_ = true;
   const bool is_of_car = what == "nudge" || what == "place_car";
   const sim::CarState car = is_of_car ? present().world().state(0) : sim::CarState{};
@@ -204,7 +179,8 @@ void Session::show_lap(const Json& command) {
   if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
   const int experiment = field::integer(command, "experiment"), lap = field::integer(command, "lap"),
             contact = field::integer(command, "contact", -1);
-  tell(0, {{"type", "note"}, {"message", "Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6"}});
+  audience_.tell(
+      0, {{"type", "note"}, {"message", "Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6"}});
   LoadedLap loaded = options_.load_lap(experiment, lap);
   const evaluation::Driver driver{loaded.scenario.configuration, loaded.names.method};
   Drives drives{

@@ -28,40 +28,16 @@ std::string file_message(const std::string& name, const std::string& content) {
 
 }  // namespace
 
-/// Sends a message to one client, or to all with 0.
-void Session::tell(std::uint64_t client, const Json& message) {
-  tell_text(client, json_text(message));
-}
-
-void Session::tell_text(std::uint64_t client, std::string text) {
-  server_.send(client, {std::make_shared<const std::string>(std::move(text)), false});
-}
-
 void Session::join(std::uint64_t client) {
-  clients_.push_back(client);
-  tell_text(client, hello());
+  audience_.join(client);
+  audience_.tell_text(client, hello());
   server_.send(client, {scene_, true});
-  tell_text(client, options_message(options_facts()));
-  tell_text(client, state());
-  if (!options_.evaluation.empty()) tell_text(client, options_.evaluation);
-  if (driving_client_ == 0) driving_client_ = client;
-  tell_roles();
+  audience_.tell_text(client, options_message(options_facts()));
+  audience_.tell_text(client, state());
+  if (!options_.evaluation.empty()) audience_.tell_text(client, options_.evaluation);
+  audience_.tell_roles();
   if (std::exchange(waiting_, false)) due_ = Clock::now();
   if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
-}
-
-/// If the client that drives has left, the one that has watched longest drives.
-void Session::leave(std::uint64_t client) {
-  std::erase(clients_, client);
-  if (client != driving_client_) return;
-  driving_client_ = clients_.empty() ? 0 : clients_.front();
-  tell_roles();
-}
-
-/// Tells each client whether it drives or watches.
-void Session::tell_roles() {
-  for (const std::uint64_t client : clients_)
-    tell(client, {{"type", "role"}, {"drives", client == driving_client_}});
 }
 
 /// Sends the scalars of past ticks, of as many as a message holds and as are still known.
@@ -146,7 +122,7 @@ void Session::save(std::uint64_t client, const std::string& what) {
       }
       server_.send(client, {std::make_shared<const std::string>(file_message(name, file)), true});
     } catch (const std::exception& error) {
-      tell(client, {{"type", "error"}, {"message", error.what()}});
+      audience_.tell(client, {{"type", "error"}, {"message", error.what()}});
     }
   });
 }

@@ -14,6 +14,7 @@ from . import _slalom, display, plot
 from ._slalom import *  # noqa: F401,F403
 from ._slalom import __version__
 from .compiler import CompileError, compile
+from .show import show
 
 if importlib.util.find_spec("slalom._driving"):
     from . import _driving
@@ -39,4 +40,4 @@ display.install(_slalom)
 for _module in filter(None, (_slalom, _driving)):
     display.set_pickles(_module)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
-__all__ += ["CompileError", "SymptomWarning", "__version__"]
+__all__ += ["CompileError", "SymptomWarning", "__version__", "show"]

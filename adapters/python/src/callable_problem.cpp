@@ -6,7 +6,6 @@
 #include <string_view>
 
 namespace slalom::python {
-
 namespace {
 
 /// Batches of at most this number of samples take longer to call a function than to compute.
@@ -314,7 +313,6 @@ void CallableProblem::evaluate(const SequenceBatch& batch, int first, int count,
   std::fill_n(costs + first, count, std::numeric_limits<float>::infinity());
   std::fill_n(collided + first, count, std::uint8_t{0});
 }
-
 namespace {
 /// Values as the only row of an array.
 py::array_t<double> row(std::span<const double> values) {
@@ -345,5 +343,8 @@ Prediction CallableProblem::predict(std::span<const double> state, std::span<con
   result.collided = collided != 0;
   return result;
 }
+template void CallableProblem::add_values_of(const char*, const py::object&, py::ssize_t, double*) const;
+template void CallableProblem::add_cost(const char*, const py::object&, py::ssize_t, double*, std::uint8_t*,
+                                        Prediction*) const;
 
 }  // namespace slalom::python

@@ -87,6 +87,7 @@ void bind_controllers(py::module_& module);
 void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_risk(py::module_& module);
+void bind_view(py::module_& module);
 
 }  // namespace slalom::python
 

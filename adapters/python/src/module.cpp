@@ -10,5 +10,8 @@ PYBIND11_MODULE(_slalom, module) {
   slalom::python::bind_risk(module);
   slalom::python::bind_controllers(module);
   slalom::python::bind_maps(module);
+#ifdef SLALOM_HAS_VIEW
+  slalom::python::bind_view(module);
+#endif
   module.attr("__version__") = slalom::version();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "slalom/core/problem_evaluator.hpp"
+#include "slalom/solvers/trajectories.hpp"
 
 namespace slalom::python {
 
@@ -45,6 +46,9 @@ class AnyProblem {
   virtual std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) = 0;
   /// `inputs` [step][input].
   virtual Prediction predict(std::span<const double> state, std::span<const double> inputs) = 0;
+  /// Returns the trajectories of control sequences [sequence][`steps`][input], with the terms of `predict`. A
+  /// problem that tells only sums has them at the last state.
+  virtual Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps);
   /// Bounds of the problem for an input; infinite if it has none.
   virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
   virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
@@ -65,6 +69,21 @@ class AnyProblem {
   virtual void begin(void* /*owner*/) {}
   virtual void finish() {}
 };
+
+inline Trajectories AnyProblem::roll_out(std::span<const double> state, std::span<const float> sequences,
+                                         int steps) {
+  Trajectories all;
+  const auto size = static_cast<std::size_t>(steps * inputs());
+  for (std::size_t at = 0; at + size <= sequences.size(); at += size) {
+    const Prediction one = predict(
+        state, std::vector<double>(&sequences[at], &sequences[at] + static_cast<std::ptrdiff_t>(size)));
+    all.states.insert(all.states.end(), one.states.begin(), one.states.end());
+    all.costs.insert(all.costs.end(), static_cast<std::size_t>(steps) * one.terms.size(), 0.0);
+    for (const auto& [name, value] : one.terms) all.costs.push_back(value);
+    all.collisions.push_back(one.collided ? steps : -1);
+  }
+  return all;
+}
 
 /// A parameter of a problem that is compiled at run time: a `double` member, or an array of them.
 struct Parameter {
@@ -115,6 +134,19 @@ class BuiltIn : public Base {
     for (const CostTerm& term : terms) result.terms.emplace_back(term.name, term.value);
     std::memcpy(result.states.data(), states.data(), result.states.size() * sizeof(double));
     return result;
+  }
+
+  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps) override {
+    Trajectories all;
+    std::vector<Input<double, P::inputs>> inputs(static_cast<std::size_t>(steps));
+    const std::size_t size = inputs.size() * P::inputs;
+    for (std::size_t at = 0; at + size <= sequences.size(); at += size) {
+      for (std::size_t i = 0; i < size; ++i)
+        inputs[i / P::inputs][static_cast<int>(i % P::inputs)] = static_cast<double>(sequences[at + i]);
+      hold_input_rates(problem(), inputs.front(), inputs.data(), steps);
+      add_trajectory<P>(all, problem(), to_state(state), inputs);
+    }
+    return all;
   }
 
   double input_min(int input) const override { return slalom::detail::min_input(problem(), input); }

@@ -67,6 +67,7 @@ class Controller {
   Controller(P problem, const SolverOptions& options, std::shared_ptr<ThreadPool> pool = nullptr)
       : evaluator_(std::move(problem)),
         bounds_(bounds_of(evaluator_, &options)),
+        options_(std::make_shared<const SolverOptions>(options)),
         solver_(make_solver(within_bounds(options), input_count, std::move(pool))) {
     allocate();
   }
@@ -121,6 +122,8 @@ class Controller {
   const Evaluator& evaluator() const noexcept { return evaluator_; }
   /// The solver in use.
   const Solver& solver() const noexcept { return *solver_; }
+  /// The options given; null with a solver of your own.
+  const SolverOptions* options() const noexcept { return options_.get(); }
   /// The bounds of the inputs: those that the problem stated at construction, narrowed by the options.
   const InputBounds& bounds() const noexcept { return bounds_; }
 
@@ -288,6 +291,7 @@ class Controller {
 
   Evaluator evaluator_;
   InputBounds bounds_;
+  std::shared_ptr<const SolverOptions> options_;
   Polymorphic<Solver> solver_;
   std::vector<Inputs> inputs_;
   std::vector<State> states_;

@@ -1,6 +1,7 @@
 import { all, get, press } from "./dom";
-import { redraw } from "./page";
-import type { Layer, Term } from "./scene/layers";
+import { page, redraw } from "./page";
+import type { Frame } from "./protocol";
+import type { Layer } from "./scene/layers";
 import type { Tool } from "./scene/pointer";
 import type { SceneView } from "./scene/scene";
 
@@ -22,9 +23,25 @@ export class Controls {
       };
     const term = get<HTMLSelectElement>("term");
     term.onchange = () => {
-      scene.term = term.value as Term;
+      scene.term = term.value;
       redraw();
     };
+  }
+
+  /** Greys the layers for which a frame has no data. */
+  showData(frame: Frame) {
+    const bodies = frame.bodies.map((body) => body.kind);
+    const data: Partial<Record<Layer, unknown>> = {
+      ...frame,
+      path: this.scene.hasPath,
+      driven: true,
+      modes: !page.hello?.problem,
+      obstacles: frame.polygons?.length || bodies.some((kind) => kind > 0 && kind < 4),
+      opponents: bodies.includes(4) || frame.others,
+      spread: frame.plan?.some((p) => p.spread > 0),
+    };
+    for (const box of all<HTMLInputElement>("[data-layer]"))
+      box.parentElement!.classList.toggle("empty", !data[box.dataset.layer as Layer]);
   }
 
   setTool(tool: Tool) {
@@ -34,7 +51,7 @@ export class Controls {
 
   setFollow(what: "follow" | "heading" | "fit") {
     const { camera, isFitted } = this.scene;
-    if (isFitted) camera.zoom = camera.drivingZoom;
+    if (isFitted && !page.hello?.problem) camera.zoom = camera.drivingZoom;
     if (what === "fit") this.scene.fit();
     else camera.follow = what;
     redraw();

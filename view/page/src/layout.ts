@@ -1,5 +1,5 @@
 import { get, make } from "./dom";
-import { layers, terms } from "./scene/layers";
+import { costTerms, layers } from "./scene/layers";
 
 /** Icons of 16 x 16 for buttons whose text does not fit on narrow screens. */
 const icons = {
@@ -15,7 +15,7 @@ export function icon(name: keyof typeof icons): string {
   return `<svg class="icon" viewBox="0 0 16 16" aria-hidden="true">${path}</svg>`;
 }
 
-/** Fills in the parts of the page that follow from lists: icons, layers, and terms of the cost. */
+/** Fills in the parts of the page that follow from lists: icons and layers. */
 export function fillLists() {
   for (const button of document.querySelectorAll<HTMLElement>("[data-icon]"))
     button.insertAdjacentHTML("afterbegin", icon(button.dataset.icon as keyof typeof icons));
@@ -26,10 +26,26 @@ export function fillLists() {
     swatch.dataset.swatch = name;
     get("layer-list").append(make("label", { title: text }, box, title, swatch));
   }
-  for (const term of terms) {
+}
+
+/** Offers the terms of the cost. */
+export function fillTerms() {
+  const options = costTerms().map((term) => {
     const text = term[0].toUpperCase() + term.slice(1) + " cost";
-    get("term").append(new Option(text, term, term === "total", term === "total"));
-  }
+    return new Option(text, term, term === "total", term === "total");
+  });
+  get("term").replaceChildren(...options);
+}
+
+/** Gives the page the name of a problem of the user's own, and hides what only a car on a course has. */
+export function nameProblem({ title, can_place }: { title: string; can_place: boolean }) {
+  document.body.classList.add("own");
+  document.title = title;
+  document.querySelector('[data-follow="fit"]')!.textContent = "Fit";
+  get("caption").hidden = false;
+  get("caption").textContent = title;
+  get("scene").setAttribute("aria-label", `The scene of ${title}, and the plans of the controller`);
+  document.body.classList.toggle("fixed", !can_place);
 }
 
 /** Puts course, method and ghost into the header where there is room, else into the sheet of the scenario. */

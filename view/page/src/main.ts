@@ -8,17 +8,18 @@ import { attachDrive } from "./drive";
 import { ScenarioFields } from "./fields";
 import { Introduction } from "./introduction";
 import { attachKeys, attachPanes, returnFocus, type Shortcut } from "./keys";
-import { fillLists, foldHeader } from "./layout";
+import { fillLists, fillTerms, foldHeader, nameProblem } from "./layout";
 import type { Handlers } from "./link";
 import { Charts } from "./panes/charts";
 import { EvaluationPane } from "./panes/evaluation";
+import { InspectPane } from "./panes/inspect";
 import { ForkBox } from "./panes/fork";
 import { OptionsPane } from "./panes/options";
 import { isReplay, page, period, redraw, scalar, send } from "./page";
 import { Gaps, Past } from "./past";
 import { Player } from "./player";
 import { Popover } from "./popover";
-import type { State, Text } from "./protocol";
+import type { Hello, State, Text } from "./protocol";
 import { Readout } from "./readout";
 import { attachSaveMenu, saveFile } from "./save";
 import { Lanes } from "./scene/lanes";
@@ -81,6 +82,7 @@ const seek = (tick: number) => send({ do: "seek", tick });
 
 const charts = new Charts(get("charts"), { past, hovered: hover, chosen: (time) => seek(tickOf(time)) });
 const options = new OptionsPane();
+const inspect = new InspectPane();
 const fork = new ForkBox();
 const readout = new Readout();
 const gaps = new Gaps();
@@ -99,6 +101,9 @@ function got(message: Text) {
     page.hello = message;
     if (!isReplay) past.most = ghostPast.most = Math.ceil(message.history_seconds / message.control_period);
     fields.offer(message);
+    fillTerms();
+    charts.describe(message);
+    if (message.problem) showProblem(message.problem);
   } else if (message.type === "state") showState(message);
   else if (message.type === "options") {
     page.options = message;
@@ -118,8 +123,16 @@ function got(message: Text) {
   }
 }
 
+/** Leaves only what a problem of the user's own has, instead of a car on a course. */
+function showProblem(problem: NonNullable<Hello["problem"]>) {
+  nameProblem(problem);
+  wanted.forEach((_, key) => wanted.delete(key));
+  controls.setTool("pan");
+  scene.fit();
+}
+
 function showAddress() {
-  if (!page.state || isReplay || wanted.size) return;
+  if (!page.state || isReplay || wanted.size || page.hello?.problem) return;
   const address = addressOf(page.state);
   history.replaceState(null, "", `${location.pathname}${location.search}#${address}`);
 }
@@ -134,6 +147,7 @@ function showState(next: State) {
   if (!next.introduction) introduction.end();
   if (!isReplay && next.paused) past.forgetAfter(next.newest);
   page.state = next;
+  if (next.bounds) scene.setBounds(next.bounds);
   fields.show(next);
   showStatus(next);
   showTimeline();
@@ -188,6 +202,8 @@ function showFrame(at?: number) {
   get("split").hidden = !frame.ghostFrame;
   lanes.show(frame, position * period());
   introduction.show(frame);
+  controls.showData(frame);
+  inspect.update(frame);
   if (!isPaused) showTimeline();
   redraw();
 }
@@ -212,6 +228,7 @@ function draw() {
     if (!isReplay && page.state) gaps.fill(past);
     scene.driven = past.line(page.position);
     scene.ghostDriven = scene.isSideBySide ? ghostPast.line(page.position) : [];
+    scene.chosen = inspect.chosen;
     scene.draw();
     lanes.place();
     charts.draw();
@@ -236,13 +253,16 @@ function showTheme() {
   redraw();
 }
 
-/** Shows the lap of the mark under a point of the map frame, if there is one. */
-function chooseMark(x: number, y: number) {
+/** Shows the lap of the mark under a point of the map frame, or the candidate that passes there. */
+function choose(x: number, y: number) {
   const mark = scene.markAt(evaluation.marks(), x, y);
   if (mark) evaluation.go(mark.lap, mark.contact);
-  return mark !== undefined;
+  const candidate = mark || controls.tool !== "pan" ? -1 : scene.candidateAt(x, y);
+  if (candidate >= 0) showPane("inspect");
+  if (candidate >= 0 || inspect.chosen >= 0) inspect.choose(candidate);
+  return mark !== undefined || candidate >= 0;
 }
-attachPointer(get<HTMLCanvasElement>("scene"), scene, () => controls.tool, chooseMark);
+attachPointer(get<HTMLCanvasElement>("scene"), scene, () => controls.tool, choose);
 
 const click = (id: string, act: () => void) => (get(id).onclick = act);
 const help = () => get<HTMLDialogElement>("help-box").showModal();
@@ -257,9 +277,14 @@ click("split", () => {
   if (introduction.isOpen) introduction.end();
   else if (page.frame?.ghostFrame) setSplit(!scene.isSplit);
 });
+get("log").onchange = () => charts.setLog(get<HTMLInputElement>("log").checked);
+click("zoom-out", () => charts.zoom());
 click("csv", () => download(`slalom-${page.state?.course}-${page.position}.csv`, charts.csv(), "text/csv"));
 new Popover(get("scenario-open"), get("scenario"));
-const showPane = attachPanes(document.querySelector("nav")!, (name) => name === "charts" && charts.rebuild());
+const showPane = attachPanes(document.querySelector("nav")!, (name) => {
+  if (name === "charts") charts.rebuild();
+  if (name === "inspect") inspect.show();
+});
 const menu = attachSaveMenu(() => scene.draw());
 
 function deleteSelected() {

@@ -53,14 +53,14 @@ export function modesOf(frame: Frame): Modes | undefined {
   const planned = offset(plan, from, obstacle);
   if (planned === undefined) return undefined;
   const weights = { left: 0, right: 0, into: 0 };
-  const { count, points, xy, terms } = candidates;
+  const { count, points, xy, terms, width } = candidates;
   for (let k = 0; k < count; ++k) {
     const place = (_: unknown, i: number) => ({
       x: xy[2 * (k * points + i)],
       y: xy[2 * (k * points + i) + 1],
     });
     const at = offset(Array.from({ length: points }, place), from, obstacle);
-    if (at !== undefined) weights[side(at)] += terms[5 * k + 4];
+    if (at !== undefined) weights[side(at)] += terms[width * (k + 1) - 1];
   }
   const all = weights.left + weights.right + weights.into || 1;
   return { plan: side(planned), left: weights.left / all, right: weights.right / all };

@@ -27,6 +27,9 @@ class Reader {
   align = () => (this.at = (this.at + 3) & ~3);
   rest = () => new Uint8Array(this.view.buffer, this.at, this.end - this.at);
 
+  /** Lines, each as x, y, x, y ... */
+  lines = () => Array.from({ length: this.u32() }, () => this.f32s(2 * this.u32()));
+
   /** Points as an origin, a unit and differences of 16 bits: x, y, x, y ... */
   points(count: number): Float32Array {
     const [x, y, unit] = [this.f64(), this.f64(), this.f32()];
@@ -57,13 +60,26 @@ const blocks = {
     const cells = Uint8Array.from({ length: rows * columns }, cell);
     return { ...pose, rows, columns, resolution, centerX, centerY, cells };
   },
-  /** `terms`: of each trajectory the costs of distance, yaw, collision, the solver's cost and the weight. */
+  /**
+   * `terms`: of each trajectory its costs by term, the solver's cost and the weight, `width` values. `collided`:
+   * 0, or 1 + the index of the first state that collides.
+   */
   candidates: (r: Reader) => {
+    const size = r.end - r.at;
     const [count, points] = [r.u16(), r.u16()];
-    const [terms, collided] = [r.f32s(count * 5), r.u8s(count)];
+    const others = 4 + ((count + 3) & ~3) + 20 + 4 * count * points; // bytes
+    const width = (size - others) / (4 * count);
+    const [terms, collided] = [r.f32s(count * width), r.u8s(count)];
     r.align();
-    return { count, points, terms, collided, xy: r.points(count * points) };
+    return { count, points, width, terms, collided, xy: r.points(count * points) };
   },
+  /** The costs of the plan and of each candidate, [trajectory][point][term]. */
+  stepCosts: (r: Reader) => {
+    const [terms, points] = [r.u16(), r.u16()];
+    return { terms, points, costs: r.f32s((r.end - r.at) / 4) };
+  },
+  figure: (r: Reader) => r.lines(), // the body of a problem that is not a car
+  polygons: (r: Reader) => r.lines(),
   /** The trajectories are [iteration][guide]; the last iteration is where the guides ended. */
   guides: (r: Reader) => {
     const [guides, iterations, points] = [r.u16(), r.u16(), r.u16(), r.u16()];
@@ -129,7 +145,18 @@ const blocks = {
 };
 const kinds: Record<number, keyof typeof blocks> = {
   ...{ 1: "scalars", 2: "scan", 3: "costMap", 4: "candidates", 5: "guides", 6: "nominal", 7: "plan" },
-  ...{ 8: "bodies", 9: "covariance", 10: "ghost", 12: "others", 20: "grid", 21: "path", 22: "past" },
+  ...{
+    8: "bodies",
+    9: "covariance",
+    10: "ghost",
+    12: "others",
+    13: "figure",
+    14: "polygons",
+    15: "stepCosts",
+    20: "grid",
+    21: "path",
+    22: "past",
+  },
   30: "file",
 };
 type Blocks = { [Name in keyof typeof blocks]: ReturnType<(typeof blocks)[Name]> };
@@ -187,8 +214,17 @@ export interface Hello extends Numbers<"protocol" | "history_seconds" | "control
   courses: string[];
   methods: string[];
   configurations: string[];
-  car: Numbers<"length" | "width" | "front" | "rear">;
-  lidar: Numbers<"angle_min" | "angle_increment" | "range_max">;
+  terms?: string[]; // names of the cost terms
+  car?: Numbers<"length" | "width" | "front" | "rear">;
+  lidar?: Numbers<"angle_min" | "angle_increment" | "range_max">;
+  /** A problem of the user's own, in place of a car on a course. */
+  problem?: Numbers<"length" | "width"> & {
+    title: string;
+    states: string[];
+    inputs: string[];
+    can_place: boolean;
+    can_move: boolean;
+  };
 }
 export interface LapRow extends Numbers<"lap" | "time" | "contacts"> {
   method: string;
@@ -212,6 +248,7 @@ export interface State extends Texts<Names>, Numbers<Counts | "control_period"> 
   real_time: boolean;
   edited: boolean;
   introduction?: boolean;
+  bounds?: [number, number, number, number]; // m, around all that a problem has drawn
   laps: LapRow[];
   contact?: Numbers<"experiment" | "lap" | "contact" | "tick">;
 }

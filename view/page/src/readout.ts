@@ -21,6 +21,7 @@ export class Readout {
     figure("lap-time", fixed(scalar("lap_time"), 1));
     figure("clearance", fixed(scalar("clearance"), 2));
     figure("solve", fixed(scalar("tick_ms"), 2));
+    figure("cost", fixed(scalar("plan_cost"), Math.abs(scalar("plan_cost")) < 100 ? 2 : 0));
     figure("contacts", fixed(scalar("contacts"), 0));
     get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
     get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));

@@ -57,7 +57,7 @@ export function showStatus(state: State) {
   get("about").textContent = `${description} ${state.length.toFixed(1)} m, ${rules}${edited}.`;
   const parts = [state.course, state.method, `seed ${state.seed}`, counted(state.obstacles, "obstacle")];
   if (state.opponents) parts.push(counted(state.opponents, "opponent"));
-  get("caption").textContent = isReplay ? parts.join(" · ") : "";
+  if (isReplay) get("caption").textContent = parts.join(" · ");
 }
 
 /** The rows of a table of the laps, the newest first. */

@@ -10,9 +10,22 @@ import layout from "./suites/layout.mjs";
 import names from "./suites/names.mjs";
 import pages from "./suites/pages.mjs";
 import panes from "./suites/panes.mjs";
+import problem from "./suites/problem.mjs";
 import save from "./suites/save.mjs";
 
-const suites = { introduction, drive, compare, panes, save, evaluation, names, layout, accessible, pages };
+const suites = {
+  introduction,
+  drive,
+  compare,
+  panes,
+  problem,
+  save,
+  evaluation,
+  names,
+  layout,
+  accessible,
+  pages,
+};
 const chosen = process.env.SLALOM_SUITES?.split(",") ?? Object.keys(suites);
 const program = process.argv[2];
 if (!program) {

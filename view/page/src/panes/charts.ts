@@ -1,8 +1,10 @@
 import uPlot from "uplot";
 import type { Past } from "../past";
+import { get } from "../dom";
 import { page, period, scalar } from "../page";
 import { axis, Chart, css, padded, vertical } from "./plots";
-import { isEstimate, strips, unitOf, type Strip } from "./strips";
+import type { Hello } from "../protocol";
+import { isEstimate, stripsOf, unitOf, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
 const max_ticks = 500; // ticks in the histogram
@@ -28,10 +30,12 @@ interface Setting {
 export class Charts {
   private times: number[] = [];
   private positions: number[] = [];
-  private readonly plotted: Plotted[];
-  private readonly covariance: Chart;
-  private readonly histogram: Chart;
+  private plotted: Plotted[] = [];
+  private covariance!: Chart;
+  private histogram!: Chart;
   private cursor?: number; // s
+  private window?: [number, number]; // s
+  private isLog = false;
   private isBuilt = false;
   private drawn = 0; // ms, when the charts were drawn
   private took = 0; // ms, to draw them
@@ -40,19 +44,29 @@ export class Charts {
     private readonly root: HTMLElement,
     private readonly setting: Setting,
   ) {
-    this.plotted = strips.map((strip) => {
+    new ResizeObserver(() => this.rebuild()).observe(root);
+  }
+
+  /** Makes the charts of what a server tells. */
+  describe(hello: Hello) {
+    const { root } = this;
+    root.replaceChildren();
+    this.plotted = stripsOf(hello).map((strip) => {
       const chart = new Chart(root, strip.title, strip.lines);
       chart.box.hidden = strip.lines.some(isEstimate);
       return { strip, chart, columns: strip.lines.map(() => []) };
     });
-    this.covariance = new Chart(root, "Standard deviation of the steering along the plan, rad", []);
+    const input = hello.problem?.inputs[0] ?? "the steering, rad";
+    const [name, unit] = input.split(", ");
+    const deviation = `Standard deviation of ${name} along the plan${unit ? ", " + unit : ""}`;
+    this.covariance = new Chart(root, deviation, []);
     this.histogram = new Chart(root, `Planner time, last ${max_ticks} ticks, ms`, [{ colour: "" }]);
-    new ResizeObserver(() => this.rebuild()).observe(root);
+    this.rebuild();
   }
 
   /** Makes the plots anew: the size of the pane or the theme has changed. */
   rebuild() {
-    if (this.plotted[0].chart.width < 50) return;
+    if (!this.plotted.length || this.plotted[0].chart.width < 50) return;
     this.isBuilt = true;
     for (const p of this.plotted) this.rebuildStrip(p);
     const points = { show: false };
@@ -72,17 +86,29 @@ export class Charts {
   }
 
   private rebuildStrip(p: Plotted) {
-    const series = p.strip.lines.map(({ colour, dash, right }) => {
-      return { stroke: css(colour), width: 1.6, dash, scale: right ? "r" : "y", points: { show: false } };
+    const series = p.strip.lines.map(({ colour, dash, right }, i) => {
+      const show = p.chart.shown[i];
+      return {
+        stroke: css(colour),
+        width: 1.6,
+        dash,
+        scale: right ? "r" : "y",
+        points: { show: false },
+        show,
+      };
     });
     const isTwofold = p.strip.lines.some((line) => line.right);
     p.chart.draw("s", this.data(p), {
       height: 104,
-      cursor: { show: true, y: false, drag: { x: false, y: false }, points: { size: 7 } },
-      scales: { x: { time: false, range: () => this.range() }, y: { range: padded }, r: { range: padded } },
+      cursor: { show: true, y: false, drag: { x: true, y: false, setScale: false }, points: { size: 7 } },
+      scales: {
+        x: { time: false, range: () => this.range() },
+        y: this.isLog && p.strip.isCost ? { distr: 4, asinh: 0.1 } : { range: padded },
+        r: { range: padded },
+      },
       axes: isTwofold ? [axis({ side: 1, scale: "r", grid: { show: false } })] : [],
       series: [{}, ...series],
-      hooks: { draw: [(u) => this.drawShown(u)] },
+      hooks: { draw: [(u) => this.drawShown(u)], setSelect: [(u) => this.zoomTo(u)] },
     });
     this.watch(p.chart.plot!);
   }
@@ -94,7 +120,11 @@ export class Charts {
     plot.over.addEventListener("pointermove", (e) => this.setting.hovered(time(e)));
     plot.over.addEventListener("pointerleave", () => this.setting.hovered(undefined));
     // The place of a click is rounded to whole pixels, that of the cursor is not; the cursor counts.
-    plot.over.addEventListener("click", (e) => this.setting.chosen(this.cursor ?? time(e)));
+    plot.over.addEventListener("click", (e) => {
+      if (Math.abs(e.clientX - pressed) < 4) this.setting.chosen(this.cursor ?? time(e));
+    });
+    let pressed = 0;
+    plot.over.addEventListener("pointerdown", (e) => (pressed = e.clientX));
   }
 
   /** Puts the cursor of all charts to a time (s), or takes it away. */
@@ -108,7 +138,27 @@ export class Charts {
     this.showValues();
   }
 
+  /** Shows the span that was dragged over, in all charts. */
+  private zoomTo(u: uPlot) {
+    const { left, width } = u.select;
+    if (width < 4) return;
+    this.zoom([u.posToVal(left, "x"), u.posToVal(left + width, "x")]);
+    u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+  }
+  /** Shows a span (s), or the newest seconds. */
+  zoom(window?: [number, number]) {
+    this.window = window;
+    get("zoom-out").hidden = !window;
+    this.draw(true);
+  }
+  /** Shows costs on a logarithmic axis, or a linear one. */
+  setLog(on: boolean) {
+    this.isLog = on;
+    this.rebuild();
+  }
+
   private range(): [number, number] {
+    if (this.window) return this.window;
     const last = this.times.at(-1) ?? 0;
     return [Math.max(0, last - span), Math.max(1, last)];
   }
@@ -133,10 +183,12 @@ export class Charts {
   private collect() {
     const { past } = this.setting;
     const length = Math.round(span / period());
-    const last = page.position >= past.newest - length ? past.newest : page.position + Math.round(length / 2);
+    const [from, to] = (this.window ?? []).map((time) => Math.round(time / period()));
+    const last =
+      to ?? (page.position >= past.newest - length ? past.newest : page.position + Math.round(length / 2));
     this.clear();
     const index = this.plotted.map((p) => p.strip.lines.map((l) => page.hello!.scalars.indexOf(l.name)));
-    for (let position = Math.max(past.oldest, last - length); position <= last; ++position) {
+    for (let position = Math.max(past.oldest, from ?? last - length); position <= last; ++position) {
       const row = past.at(position);
       this.times.push(+(position * period()).toFixed(6));
       this.positions.push(position);

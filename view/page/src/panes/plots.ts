@@ -13,16 +13,31 @@ export class Chart {
   readonly box = make("div", { className: "chart" });
   readonly holder = make("div");
   readonly values: HTMLElement[];
+  readonly shown: boolean[]; // lines
   plot?: uPlot;
 
   constructor(root: HTMLElement, title: string, lines: Pick<Line, "colour" | "dash">[]) {
     this.values = lines.map(() => make("span", { className: "numbers" }));
+    this.shown = lines.map(() => true);
     const legend = lines.map(({ colour, dash }, i) => {
-      const mark = make("i", { hidden: !colour });
+      const mark = make("i");
       const [on, off] = dash ?? [1, 0];
       const ends = `var(${colour}) 0 ${on}px, transparent ${on}px ${on + off}px`;
-      if (colour) mark.style.background = `repeating-linear-gradient(90deg, ${ends})`;
-      return make("em", { className: "value" }, mark, this.values[i]);
+      mark.style.background = `repeating-linear-gradient(90deg, ${ends})`;
+      if (!colour) return make("em", { className: "value" }, this.values[i]);
+      const button = make(
+        "button",
+        { className: "value", title: "Show or hide this line" },
+        mark,
+        this.values[i],
+      );
+      button.setAttribute("aria-pressed", "true");
+      button.onclick = () => {
+        this.shown[i] = !this.shown[i];
+        button.setAttribute("aria-pressed", String(this.shown[i]));
+        this.plot?.setSeries(i + 1, { show: this.shown[i] });
+      };
+      return button;
     });
     this.box.append(make("h2", {}, title, ...legend), this.holder);
     root.append(this.box);

@@ -1,3 +1,5 @@
+import type { Hello } from "../protocol";
+
 /** A line of a chart: the scalar that it shows, its label, the colour's CSS variable, and how it is drawn. */
 export interface Line {
   name: string;
@@ -12,18 +14,28 @@ export interface Line {
 export interface Strip {
   title: string;
   lines: Line[];
+  isCost: boolean;
 }
 
 const dash = [5, 3];
 
+type Named = [name: string, label: string, colour: string, look?: Partial<Line>];
+
 /** Names its lines as "label: scalar in colour". */
-const strip = (
-  title: string,
-  ...lines: [name: string, label: string, colour: string, look?: Partial<Line>][]
-): Strip => ({
+const strip = (title: string, ...lines: Named[]): Strip => ({
   title,
+  isCost: title.startsWith("Cost"),
   lines: lines.map(([name, label, colour, look]) => ({ name, label, colour: `--${colour}`, ...look })),
 });
+
+const samples = [
+  strip(
+    "Samples",
+    ["effective_samples", "ESS", "blue", { digits: 0 }],
+    ["temperature", "temperature", "warn", { dash, right: true }],
+  ),
+  strip("Collided candidates, %", ["collided_share", "share", "bad", { digits: 0, scale: 100 }]),
+];
 
 // Lines can be told apart with any colour vision: they differ in lightness, too, and some are dashed.
 export const strips: Strip[] = [
@@ -60,14 +72,51 @@ export const strips: Strip[] = [
     ["steering_gain_estimate", "gain", "accent", { digits: 3 }],
     ["delay_estimate", "delay, ms", "violet", { dash, right: true, digits: 0, scale: 1000 }],
   ),
-  strip(
-    "Samples",
-    ["effective_samples", "ESS", "blue", { digits: 0 }],
-    ["temperature", "temperature", "warn", { dash, right: true }],
-  ),
-  strip("Collided candidates, %", ["collided_share", "share", "bad", { digits: 0, scale: 100 }]),
+  ...samples,
   strip("Clearance, m", ["clearance", "to wall or obstacle", "accent"]),
 ];
+
+/** The colours of the lines of a chart, with their dashes. */
+export const looks: [colour: string, dash?: number[]][] = [
+  ["accent"],
+  ["text", dash],
+  ["blue"],
+  ["violet", dash],
+  ["warn"],
+  ["bad", [2, 2]],
+];
+
+function lineOf(kind: string, name: string, label: string, i: number): Named {
+  const [colour, dashes] = looks[i % looks.length];
+  return [kind + name, label, colour, { dash: dashes }];
+}
+
+/** Charts of values whose names end with their units, "speed, m/s": those of one unit share a chart. */
+function grouped(kind: string, names: string[]): Strip[] {
+  const units = new Map<string, string[]>();
+  for (const name of names) {
+    const unit = /, (\S+)$/.exec(name)?.[1] ?? name;
+    units.set(unit, [...(units.get(unit) ?? []), name]);
+  }
+  return [...units].map(([unit, all]) => {
+    const short = (name: string) => name.replace(`, ${unit}`, "");
+    const suffix = all[0] === unit ? "" : `, ${unit.replace("^2", "²")}`;
+    const title = all.map(short).join(" · ") + suffix;
+    const lines = all.map((name, i) => lineOf(kind, name, short(name), i));
+    return strip(title[0].toUpperCase() + title.slice(1), ...lines);
+  });
+}
+
+/** The charts of a problem of the user's own: its costs, inputs and states. */
+export const stripsOf = ({ problem, terms }: Hello): Strip[] =>
+  problem
+    ? [
+        strip("Cost of the plan", ...(terms ?? []).map((term, i) => lineOf("cost.", term, term, i))),
+        ...grouped("input.", problem.inputs),
+        ...grouped("state.", problem.states),
+        ...samples,
+      ]
+    : strips;
 
 /** The unit of a line, at the end of its label or of the title: "rad", "%"; empty if it has none. */
 export const unitOf = ({ title }: Strip, { label }: Line) =>

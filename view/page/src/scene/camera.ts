@@ -52,7 +52,7 @@ export class Camera {
   }
   zoomAt(px: number, py: number, factor: number) {
     const [x, y] = this.toMap(px, py);
-    this.zoom = Math.min(600, Math.max(4, this.zoom * factor));
+    this.zoom = Math.min(2000, Math.max(0.4, this.zoom * factor));
     if (this.follow !== "free") return;
     const [nx, ny] = this.toMap(px, py);
     this.x += x - nx;
@@ -79,6 +79,6 @@ export class Camera {
     this.turn = 0;
     this.x = (x0 + x1) / 2;
     this.y = (y0 + y1) / 2;
-    this.zoom = Math.max(2, Math.min(this.freeWidth / (x1 - x0), this.freeHeight / (y1 - y0)));
+    this.zoom = Math.max(0.4, Math.min(this.freeWidth / (x1 - x0), this.freeHeight / (y1 - y0)));
   }
 }

@@ -1,10 +1,56 @@
-import { terms, type Term } from "./layers";
+import { costTerms } from "./layers";
 import type { Painter } from "./painter";
 import { rampColour, type Theme } from "./palette";
-import type { Candidates } from "../protocol";
+import { page } from "../page";
+import type { Candidates, Frame } from "../protocol";
 import { faded } from "./shapes";
 
 type Range = [number, number];
+
+/** The index of the point at which a candidate collides; undefined if it does not, or if it is not known. */
+export function collisionPoint(frame: Frame, i: number): number | undefined {
+  const { candidates, costMap } = frame;
+  if (!candidates?.collided[i]) return undefined;
+  if (page.hello?.problem) return candidates.collided[i] - 1;
+  if (!costMap) return undefined;
+  const { rows, columns, resolution, centerX, centerY, cells, x, y, yaw } = costMap;
+  const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
+  for (let p = 0; p < candidates.points; ++p) {
+    const at = 2 * (i * candidates.points + p);
+    const [dx, dy] = [candidates.xy[at] - x, candidates.xy[at + 1] - y];
+    const row = rows - 1 - Math.floor((c * dx + s * dy - centerX) / resolution + rows / 2);
+    const column = columns - 1 - Math.floor((c * dy - s * dx - centerY) / resolution + columns / 2);
+    if (row >= 0 && row < rows && column >= 0 && column < columns && cells[row * columns + column]) return p;
+  }
+  return undefined;
+}
+
+/** The candidate that passes nearest to a point of the map frame, within `reach` (m); -1 if there is none. */
+export function candidateAt({ candidates: c }: Frame, x: number, y: number, reach: number): number {
+  let found = -1;
+  for (let k = 0; c && k < c.count * c.points; ++k) {
+    if (k % c.points === 0) continue;
+    const [ax, ay, bx, by] = c.xy.subarray(2 * k - 2, 2 * k + 2);
+    const length = (bx - ax) ** 2 + (by - ay) ** 2;
+    const share = length
+      ? Math.min(1, Math.max(0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / length))
+      : 0;
+    const distance = Math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y);
+    if (distance < reach) [reach, found] = [distance, Math.floor(k / c.points)];
+  }
+  return found;
+}
+
+/** Draws the candidate that is chosen, and a cross where it collides. */
+export function drawChosen(painter: Painter, theme: Theme, frame: Frame, i: number, cross: number) {
+  const c = frame.candidates!;
+  painter.polyline(c.xy, i * c.points, c.points, theme.ground, 6);
+  painter.polyline(c.xy, i * c.points, c.points, theme.selected, 3);
+  const at = collisionPoint(frame, i);
+  if (at === undefined) return;
+  const [x, y] = c.xy.subarray(2 * (i * c.points + at));
+  for (const up of [-cross, cross]) painter.segment(x - cross, y - up, x + cross, y + up, theme.mark, 3.5);
+}
 
 /**
  * Draws candidates, those with the least cost last: coloured by a term of the cost, wide and opaque by their
@@ -14,13 +60,13 @@ export function drawCandidates(
   painter: Painter,
   theme: Theme,
   c: Candidates,
-  term: Term,
+  term: string,
   range?: Range,
 ): Range {
-  const k = terms.indexOf(term);
+  const k = Math.max(0, costTerms().indexOf(term));
   const all = Array.from({ length: c.count }, (_, i) => i);
-  const value = (i: number) => c.terms[5 * i + k];
-  const weight = (i: number) => c.terms[5 * i + 4];
+  const value = (i: number) => c.terms[c.width * i + k];
+  const weight = (i: number) => c.terms[c.width * (i + 1) - 1];
   const shown = all.filter((i) => !c.collided[i] || term === "collision").map(value);
   const sorted = shown.filter(Number.isFinite).sort((a, b) => a - b);
   // The worst tenth shares the end of the scale, so that the many good ones can be told apart.

@@ -90,7 +90,7 @@ export function drawPlan(painter: Painter, theme: Theme, plan: PlanState[]) {
   for (const p of plan) painter.dot(p.x, p.y, 5, theme.plan);
 }
 
-export function drawScan(painter: Painter, theme: Theme, scan: Scan, lidar: Hello["lidar"]) {
+export function drawScan(painter: Painter, theme: Theme, scan: Scan, lidar: NonNullable<Hello["lidar"]>) {
   const most = lidar.range_max * 1000 - 5;
   for (const [i, range] of scan.ranges.entries()) {
     if (range >= most) continue;

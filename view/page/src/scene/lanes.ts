@@ -16,7 +16,7 @@ export class Lanes {
 
   /** Shows what a frame says at a time (s). */
   show(frame: Frame, time: number) {
-    const isShown = this.scene.visible.has("modes");
+    const isShown = this.scene.visible.has("modes") && !page.hello!.problem;
     const both = this.scene.isSideBySide ? [frame, frame.ghostFrame!] : [frame, undefined];
     both.forEach((each, i) => {
       const method = each && page.hello!.methods[scalar("method", each.scalars)];

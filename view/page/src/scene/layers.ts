@@ -1,3 +1,5 @@
+import { page } from "../page";
+
 /** A layer that can be shown: its name, title, description and, if it has one, its colour in the theme. */
 export const layers = [
   ["costMap", "Cost map", "where the rear axle would mean a collision, from the scan", "cost"],
@@ -21,6 +23,5 @@ export const layers = [
 ] as const;
 export type Layer = (typeof layers)[number][0];
 
-/** The terms of the cost, one of which colours the candidates. */
-export const terms = ["distance", "yaw", "collision", "total"] as const;
-export type Term = (typeof terms)[number];
+/** The terms of the cost, one of which colours the candidates; the last is the solver's cost. */
+export const costTerms = () => [...(page.hello?.terms ?? ["distance", "yaw", "collision"]), "total"];

@@ -45,7 +45,8 @@ export function place(label: HTMLElement, at: Pose | undefined, camera: Camera, 
 
 /** Shows the ruler and its length. */
 export function showRuler(camera: Camera) {
-  const metres = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((m) => m * camera.zoom >= 48) ?? 20;
+  const metres =
+    [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find((m) => m * camera.zoom >= 48) ?? 200;
   get("ruler-text").textContent = metres + " m";
   get("ruler-bar").style.width = metres * camera.zoom + "px";
 }

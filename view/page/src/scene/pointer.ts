@@ -55,6 +55,7 @@ export function attachPointer(
     canvas.setPointerCapture(e.pointerId);
     const p = place(e);
     pointers.set(e.pointerId, p);
+    scene.isHeld = true;
     clearTimeout(pressed);
     if (pointers.size > 1) {
       dragged = undefined;
@@ -119,6 +120,7 @@ export function attachPointer(
   const up = (e: PointerEvent) => {
     const p = place(e);
     pointers.delete(e.pointerId);
+    scene.isHeld = pointers.size > 0;
     clearTimeout(pressed);
     canvas.classList.remove("panning");
     if (!start || pointers.size) return;

@@ -1,12 +1,22 @@
 import { page, scalar } from "../page";
 import type { Body, Frame, Grid, Pose, Scene } from "../protocol";
 import type { Camera } from "./camera";
-import { drawCandidates } from "./candidates";
+import { candidateAt, drawCandidates, drawChosen } from "./candidates";
 import * as draw from "./drawings";
-import { layers, type Layer, type Term } from "./layers";
+import { layers, type Layer } from "./layers";
 import { Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
-import { carSize, circle, corners, drawCar, drawObstacle, drawTracked, faded } from "./shapes";
+import {
+  carSize,
+  circle,
+  corners,
+  drawCar,
+  drawFigure,
+  drawObstacle,
+  drawPolygon,
+  drawTracked,
+  faded,
+} from "./shapes";
 import { Stage } from "./stage";
 
 /** The place of a collision of an evaluation. */
@@ -22,9 +32,11 @@ export class SceneView {
   readonly visible = new Set<Layer>(layers.map(([name]) => name));
   readonly stage = new Stage();
   readonly camera = this.stage.camera;
-  term: Term = "total"; // colours the candidates
+  term = "total"; // colours the candidates
   theme: Theme;
   selected = -1; // body
+  isHeld = false; // whether a pointer is pressed on the scene, which must not move under it
+  chosen = -1; // candidate
   costRange: [number, number] = [0, 1]; // costs of the candidates' first and last colour
   /** Whether the ghost is to be shown beside the car, in a lane of its own. */
   isSplit = false;
@@ -52,6 +64,10 @@ export class SceneView {
     return this.isSplit && page.frame?.ghostFrame !== undefined;
   }
 
+  get hasPath() {
+    return this.scene.path !== undefined;
+  }
+
   setScene(scene: Scene) {
     this.scene = scene;
     if (!scene.path) return;
@@ -63,6 +79,14 @@ export class SceneView {
       Math.max(...x) + room,
       Math.max(...y) + room,
     ];
+  }
+
+  /** Sets what `fit` shows, with some room around it. */
+  setBounds([x0, y0, x1, y1]: [number, number, number, number]) {
+    const room = 0.12 * Math.max(x1 - x0, y1 - y0, 0.1);
+    const { isFitted } = this;
+    this.bounds = [x0 - room, y0 - room, x1 + room, y1 + room];
+    if (isFitted && !this.isHeld) this.fit();
   }
 
   /** Shows the whole course. */
@@ -101,12 +125,18 @@ export class SceneView {
 
   /** The body under a point of the map frame; the driven car is 0. */
   bodyAt(x: number, y: number): Body | undefined {
-    const slack = 6 / this.camera.zoom;
+    const slack = 8 / this.camera.zoom;
     return page.frame?.bodies.findLast((b) => {
       const [c, s, dx, dy] = [Math.cos(b.yaw), Math.sin(b.yaw), x - b.x, y - b.y];
       const isWithin = (d: number, size: number) => Math.abs(d) <= size / 2 + slack;
       return isWithin(c * dx + s * dy, b.length) && isWithin(c * dy - s * dx, b.width);
     });
+  }
+
+  /** The candidate under a point of the map frame; -1 if there is none. */
+  candidateAt(x: number, y: number) {
+    const isShown = page.frame && this.visible.has("candidates");
+    return isShown ? candidateAt(page.frame!, x, y, 8 / this.camera.zoom) : -1;
   }
 
   /** The mark under a point of the map frame. */
@@ -117,7 +147,7 @@ export class SceneView {
   }
 
   draw() {
-    this.painter.begin(this.theme.ground);
+    this.painter.begin(page.hello?.problem && !this.scene.grid ? this.theme.free : this.theme.ground);
     if (this.isSideBySide) this.stage.splitLanes();
     else this.stage.joinLanes();
     this.drawLane(this.camera, page.frame, this.driven);
@@ -141,18 +171,21 @@ export class SceneView {
     }
     if (visible.has("spread") && frame.plan) draw.drawSpread(painter, theme, frame.plan);
     if (visible.has("guides") && frame.guides) draw.drawGuides(painter, theme, frame.guides);
-    if (visible.has("scan") && frame.scan && page.hello)
+    if (visible.has("scan") && frame.scan && page.hello?.lidar)
       draw.drawScan(painter, theme, frame.scan, page.hello.lidar);
     this.drawBodies(frame);
     this.drawMarks();
     if (this.preview) this.drawPreview(this.preview);
+    if (this.chosen >= 0 && frame === page.frame && frame.candidates)
+      drawChosen(painter, theme, frame, this.chosen, 7 / camera.zoom);
     if (visible.has("nominal") && frame.nominal)
       painter.dashed(frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);
     if (visible.has("plan") && frame.plan) draw.drawPlan(painter, theme, frame.plan);
     if (visible.has("ghost") && !this.isSideBySide) this.drawGhost(frame);
     if (this.best && visible.has("ghost") && frame === page.frame) this.drawOutline(this.best, theme.driven);
     if (this.probe) this.drawOutline(this.probe, theme.selected);
-    if (car) {
+    if (frame.figure && car) drawFigure(painter, theme, car, frame.figure);
+    else if (car) {
       const steer = scalar("steer", frame.scalars) || 0;
       drawCar(painter, theme, car, steer, theme.car, car.touched ? theme.collided : theme.carEdge);
     }
@@ -174,6 +207,8 @@ export class SceneView {
       else if (body.kind !== 0 && body.kind !== opponent && visible.has("obstacles"))
         drawObstacle(painter, theme, body, this.selected === body.id);
     }
+    for (const polygon of frame.polygons ?? [])
+      if (visible.has("obstacles")) drawPolygon(painter, theme, polygon);
     if (visible.has("opponents")) drawTracked(painter, theme, frame.others ?? []);
   }
 

@@ -8,7 +8,7 @@ import type { Body, Other, Pose } from "../protocol";
 export type Point = [number, number];
 const usualCar = { length: 0.58, width: 0.31, front: 0.159, rear: 0.171 };
 /** The dimensions of a car, usual ones where no server has told others. */
-export const carSize = () => page.hello?.car ?? usualCar;
+export const carSize = () => page.hello?.car ?? { ...usualCar, ...page.hello?.problem };
 
 export const faded = (c: Rgba, by: number): Rgba => [c[0], c[1], c[2], c[3] * by];
 
@@ -43,6 +43,33 @@ export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected
     const [l, w] = [0.12 * b.length, 0.4 * b.width];
     painter.outline(placed(b, mirrored(2 * l, w, 0, w)), faded(theme.obstacleEdge, 0.7), 1);
   }
+}
+
+export function drawPolygon(painter: Painter, theme: Theme, xy: Float32Array) {
+  const points = Array.from({ length: xy.length / 2 }, (_, i): Point => [xy[2 * i], xy[2 * i + 1]]);
+  painter.fill(points, theme.obstacle);
+  painter.outline(points, theme.obstacleEdge, 1.2);
+}
+
+/** The body of a problem: its lines, and a box whose front is marked, or a dot where it has no size. */
+export function drawFigure(painter: Painter, theme: Theme, body: Body, lines: Float32Array[]) {
+  const edge = body.touched ? theme.collided : theme.carEdge;
+  for (const xy of lines) painter.polyline(xy, 0, xy.length / 2, theme.car, 4);
+  if (!body.length) {
+    painter.dot(body.x, body.y, 15, edge);
+    return painter.dot(body.x, body.y, 12, theme.car);
+  }
+  const [l, w] = [body.length / 2, body.width / 2];
+  painter.fill(corners(body), theme.car);
+  painter.outline(corners(body), edge, body.touched ? 4 : 1.2);
+  painter.fill(
+    placed(body, [
+      [0.8 * l, 0],
+      [0.2 * l, 0.6 * w],
+      [0.2 * l, -0.6 * w],
+    ]),
+    faded(theme.carEdge, 0.85),
+  );
 }
 
 /** Cars that are tracked: outlines, and a dot for each place where they may be, as opaque as it is likely. */

@@ -47,7 +47,7 @@ export default async function (h) {
     });
     assert.ok(at > 0 && at < (await h.state()).newest);
     const isShown = (text) =>
-      [...document.querySelectorAll("#charts em")].some((e) => e.textContent === text);
+      [...document.querySelectorAll("#charts .value")].some((e) => e.textContent === text);
     await h.until(isShown, `car ${speed.toFixed(2)}`);
     assert.equal(await page.isVisible("#timeline-mark"), true);
     await page.mouse.click(...place);

@@ -1,0 +1,225 @@
+#include <chrono>
+
+#include "controller.hpp"
+#include "slalom/view/serve.hpp"
+
+namespace slalom::python {
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// The arguments of `slalom.show` that say how a problem is drawn.
+struct Drawing {
+  std::vector<double> start;
+  int x = 0, y = 1, heading = -1;  ///< indices of states; no heading: -1
+  py::object pose, figure, shapes, move, plant;
+};
+
+Array row(std::span<const double> values) {
+  return Array(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+/// An array of points (n, 2), or of places (n, 3).
+Array places_of(const py::object& values, const std::string& what, bool may_have_yaw) {
+  const auto array = Array::ensure(values);
+  if (!array || array.ndim() != 2 || (array.shape(1) != 2 && !(may_have_yaw && array.shape(1) == 3)))
+    throw py::value_error(what + ": must be an array (n, 2)" + (may_have_yaw ? " or (n, 3)" : ""));
+  return array;
+}
+
+view::Line line_of(const py::object& values, const std::string& what) {
+  const Array array = places_of(values, what, false);
+  view::Line line;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) line.push_back({array.at(i, 0), array.at(i, 1)});
+  return line;
+}
+
+view::Shape shape_of(const py::object& values) {
+  const auto array = Array::ensure(values);
+  if (array && array.ndim() == 1 && array.size() == 3)
+    return view::disc(array.at(0), array.at(1), array.at(2));
+  if (array && array.ndim() == 1 && array.size() == 5)
+    return view::box({array.at(0), array.at(1), array.at(2)}, array.at(3), array.at(4));
+  return view::polygon(
+      line_of(values, "shapes: each (x, y, radius), (x, y, yaw, length, width), or a polygon"));
+}
+
+/// A controller of Python with its drawing. The page's thread holds the interpreter lock in every function.
+class PythonSubject final : public view::Subject {
+ public:
+  PythonSubject(py::object controller, std::shared_ptr<const Drawing> drawing,
+                std::shared_ptr<const view::SubjectFacts> facts)
+      : controller_(std::move(controller)), drawing_(std::move(drawing)), facts_(std::move(facts)) {}
+  ~PythonSubject() override {
+    const py::gil_scoped_acquire lock;
+    controller_ = py::object();
+    drawing_.reset();
+  }
+
+  std::unique_ptr<view::Subject> clone() const override {
+    const py::gil_scoped_acquire lock;
+    return std::make_unique<PythonSubject>(py::module_::import("copy").attr("copy")(controller_), drawing_,
+                                           facts_);
+  }
+  const view::SubjectFacts& facts() const override { return *facts_; }
+  std::vector<double> start() const override { return drawing_->start; }
+  double time_step() const override { return problem().evaluator().time_step(); }
+  const SolverOptions* options() const override { return &controller().options(); }
+  void set_options(const SolverOptions& options) override {
+    const py::gil_scoped_acquire lock;
+    controller_ =
+        py::type::of<Controller>()(options.method(), controller_.attr("problem"), **values_of(options));
+  }
+
+  const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
+    const py::gil_scoped_acquire lock;
+    controller().solve(controller_, {state.begin(), state.end()}, request);
+    return controller().result();
+  }
+  std::span<const double> inputs() const override { return controller().inputs(); }
+  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences) override {
+    const py::gil_scoped_acquire lock;
+    return problem().roll_out(state, sequences, controller().solver().horizon());
+  }
+  std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
+    const py::gil_scoped_acquire lock;
+    if (drawing_->plant.is_none()) return problem().step(state, input, 0);
+    return drawing_->plant(row(state), row(input)).cast<std::vector<double>>();
+  }
+
+  std::vector<maps::Pose> poses(std::span<const double> states) override {
+    const py::gil_scoped_acquire lock;
+    const Drawing& d = *drawing_;
+    const auto width = d.start.size(), count = states.size() / width;
+    std::vector<maps::Pose> all(count);
+    if (!d.pose.is_none()) {
+      const Array given({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(width)}, states.data());
+      const Array places = places_of(d.pose(given), "pose: its result", true);
+      if (places.shape(0) != given.shape(0))
+        throw py::value_error("pose: must return a place for each state");
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto at = static_cast<py::ssize_t>(i);
+        all[i] = {places.at(at, 0), places.at(at, 1), places.shape(1) == 3 ? places.at(at, 2) : 0};
+      }
+      return all;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* const state = &states[i * width];
+      all[i] = {state[d.x], state[d.y], d.heading < 0 ? 0 : state[d.heading]};
+    }
+    return all;
+  }
+  std::vector<view::Shape> shapes() override {
+    const py::gil_scoped_acquire lock;
+    std::vector<view::Shape> all;
+    const py::object& given = drawing_->shapes;
+    if (given.is_none()) return all;
+    const py::object now = PyCallable_Check(given.ptr()) ? given(controller_.attr("problem")) : given;
+    for (const py::handle& each : now) all.push_back(shape_of(py::reinterpret_borrow<py::object>(each)));
+    return all;
+  }
+  std::vector<view::Line> figure(std::span<const double> state) override {
+    const py::gil_scoped_acquire lock;
+    std::vector<view::Line> all;
+    if (drawing_->figure.is_none()) return all;
+    for (const py::handle& line : drawing_->figure(row(state)))
+      all.push_back(line_of(py::reinterpret_borrow<py::object>(line), "figure: a line"));
+    return all;
+  }
+  void place(std::span<double> state, const maps::Pose& to) override {
+    const auto at = [&](int i) -> double& { return state[static_cast<std::size_t>(i)]; };
+    at(drawing_->x) = to.x;
+    at(drawing_->y) = to.y;
+    if (drawing_->heading >= 0) at(drawing_->heading) = to.yaw;
+  }
+  void move(int shape, const maps::Point& to) override {
+    const py::gil_scoped_acquire lock;
+    drawing_->move(controller_.attr("problem"), shape, to.x, to.y);
+  }
+
+ private:
+  Controller& controller() const { return *py::cast<Controller*>(controller_); }
+  AnyProblem& problem() const { return controller().problem(); }
+
+  py::object controller_;
+  std::shared_ptr<const Drawing> drawing_;
+  std::shared_ptr<const view::SubjectFacts> facts_;
+};
+
+std::vector<std::string> names_of(std::vector<std::string> given, int count, const std::string& what) {
+  if (given.empty())
+    for (int i = 1; i <= count; ++i) given.push_back(what + " " + std::to_string(i));
+  if (static_cast<int>(given.size()) != count)
+    throw py::value_error(what + "_names: has " + std::to_string(given.size()) + " names, must have " +
+                          std::to_string(count));
+  return given;
+}
+
+std::unique_ptr<view::View> make_view(const py::object& controller, Drawing drawing, view::SubjectFacts facts,
+                                      const view::ServeOptions& options) {
+  AnyProblem& problem = controller.cast<Controller&>().problem();
+  const int states = problem.states();
+  if (static_cast<int>(drawing.start.size()) != states)
+    throw py::value_error("start: has " + std::to_string(drawing.start.size()) + " values, must have " +
+                          std::to_string(states));
+  for (const int index : {drawing.x, drawing.y, std::max(0, drawing.heading)})
+    if (drawing.pose.is_none() && (index < 0 || index >= states))
+      throw py::value_error("x, y, heading: " + std::to_string(index) +
+                            " must be an index of a state, in [0, " + std::to_string(states - 1) + "]");
+  facts.states = names_of(std::move(facts.states), states, "state");
+  facts.inputs = names_of(std::move(facts.inputs), problem.inputs(), "input");
+  facts.can_place = drawing.pose.is_none();
+  facts.can_move = !drawing.move.is_none();
+  const std::vector<double> rest(static_cast<std::size_t>(problem.inputs()));
+  for (const auto& [name, value] : problem.predict(drawing.start, rest).terms) facts.terms.push_back(name);
+  auto subject =
+      std::make_unique<PythonSubject>(py::module_::import("copy").attr("copy")(controller),
+                                      std::make_shared<const Drawing>(std::move(drawing)),
+                                      std::make_shared<const view::SubjectFacts>(std::move(facts)));
+  return std::make_unique<view::View>(std::move(subject), options);
+}
+
+}  // namespace
+
+void bind_view(py::module_& module) {
+  py::class_<view::View>(module, "_View", "A page that shows a controller; slalom.show makes it.")
+      .def(py::init([](const py::object& controller, std::vector<double> start, int x, int y,
+                       std::optional<int> heading, py::object pose, double length, double width,
+                       py::object figure, py::object shapes, py::object move,
+                       std::optional<maps::OccupancyGrid> map, py::object plant,
+                       std::vector<std::string> state_names, std::vector<std::string> input_names,
+                       const std::string& title, const std::string& host, std::uint16_t port,
+                       const std::string& token) {
+             return make_view(controller,
+                              {std::move(start), x, y, heading.value_or(-1), std::move(pose),
+                               std::move(figure), std::move(shapes), std::move(move), std::move(plant)},
+                              {.title = title,
+                               .states = std::move(state_names),
+                               .inputs = std::move(input_names),
+                               .length = length,
+                               .width = width,
+                               .map = std::move(map)},
+                              {.host = host, .port = port, .token = token});
+           }),
+           py::arg("controller"), py::arg("start"), py::kw_only(), py::arg("x") = 0, py::arg("y") = 1,
+           py::arg("heading") = py::none(), py::arg("pose") = py::none(), py::arg("length") = 0.0,
+           py::arg("width") = 0.0, py::arg("figure") = py::none(), py::arg("shapes") = py::none(),
+           py::arg("move") = py::none(), py::arg("map") = py::none(), py::arg("plant") = py::none(),
+           py::arg("state_names") = std::vector<std::string>{},
+           py::arg("input_names") = std::vector<std::string>{}, py::arg("title") = "",
+           py::arg("host") = "127.0.0.1", py::arg("port") = 8400, py::arg("token") = "")
+      .def_property_readonly("address", &view::View::address, "The address of the page.")
+      .def(
+          "turn",
+          [](view::View& view, double seconds) {
+            const py::gil_scoped_release unlock;
+            view.turn(
+                std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
+          },
+          py::arg("seconds") = 0.05,
+          "Executes the commands of the page and drives the step that is due; waits for one, for `seconds` "
+          "at "
+          "most.");
+}
+
+}  // namespace slalom::python

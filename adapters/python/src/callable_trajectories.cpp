@@ -1,0 +1,60 @@
+#include <algorithm>
+
+#include "callable_problem.hpp"
+
+namespace slalom::python {
+
+/// Rolls all sequences out together: a call takes as long as the computation.
+Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<const float> sequences,
+                                       int steps) {
+  const auto nx = static_cast<std::size_t>(parts_.states), nu = static_cast<std::size_t>(parts_.inputs);
+  const std::size_t points = static_cast<std::size_t>(steps) + 1;
+  const std::size_t count = sequences.size() / (static_cast<std::size_t>(steps) * nu);
+  const auto rows = static_cast<py::ssize_t>(count);
+  const Prediction first =
+      predict(state, std::vector<double>(sequences.begin(), sequences.begin() + steps * parts_.inputs));
+  const std::size_t terms = first.terms.size();
+  Trajectories all{std::vector<double>(count * points * nx), std::vector<double>(count * points * terms),
+                   std::vector<int>(count, -1)};
+  py::array_t<double> x({rows, static_cast<py::ssize_t>(nx)}), u({rows, static_cast<py::ssize_t>(nu)});
+  for (std::size_t s = 0; s < count; ++s) std::copy(state.begin(), state.end(), x.mutable_data() + s * nx);
+  std::vector<std::uint8_t> collided(count);
+  std::vector<double> values(count);
+  const auto add = [&](const char* what, const std::string& name, const py::object& result, std::size_t k) {
+    std::size_t term = 0;
+    while (term + 1 < terms && first.terms[term].first != name) ++term;
+    std::fill(values.begin(), values.end(), 0.0);
+    add_values_of(what, result, rows, values.data());
+    for (std::size_t s = 0; s < count; ++s) all.costs[(s * points + k) * terms + term] += values[s];
+  };
+  for (std::size_t k = 0; k < points; ++k) {
+    const auto now = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(x);
+    for (std::size_t s = 0; s < count; ++s) {
+      std::copy_n(now.data() + s * nx, nx, all.states.data() + (s * points + k) * nx);
+      if (k < points - 1)
+        for (std::size_t i = 0; i < nu; ++i)
+          u.mutable_data()[s * nu + i] = static_cast<double>(sequences[(s * (points - 1) + k) * nu + i]);
+    }
+    const bool is_last = k + 1 == points;
+    if (is_last && parts_.terminal_cost.is_none()) break;
+    const char* const what = is_last ? "terminal_cost" : "cost";
+    py::object cost = is_last ? parts_.terminal_cost(x) : stage_cost(x, u, static_cast<int>(k));
+    if (py::isinstance<py::tuple>(cost)) {
+      std::fill(values.begin(), values.end(), 0.0);
+      add_cost(what, cost, rows, values.data(), collided.data());
+      for (std::size_t s = 0; s < count; ++s)
+        if (collided[s] && all.collisions[s] < 0) all.collisions[s] = static_cast<int>(k);
+      cost = py::reinterpret_borrow<py::tuple>(cost)[0];
+    }
+    if (py::isinstance<py::dict>(cost)) {
+      for (const auto& [name, term] : py::reinterpret_borrow<py::dict>(cost))
+        add(what, py::str(name), py::reinterpret_borrow<py::object>(term), k);
+    } else {
+      add(what, is_last ? "terminal" : "stage", cost, k);
+    }
+    if (!is_last) x = next(x, u, static_cast<int>(k));
+  }
+  return all;
+}
+
+}  // namespace slalom::python

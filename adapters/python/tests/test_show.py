@@ -1,0 +1,109 @@
+"""The page of a controller: a client of its WebSocket gets the drive of the controller, and its commands act."""
+
+import base64
+import json
+import os
+import socket
+import struct
+import urllib.parse
+
+import numpy as np
+import pytest
+import slalom
+
+TREE = [4.0, 0.0]
+
+
+def dynamics(x, u):
+    return np.stack([x[:, 0] + 0.1 * u[:, 0] * np.cos(x[:, 2]), x[:, 1] + 0.1 * u[:, 0] * np.sin(x[:, 2]),
+                     x[:, 2] + 0.1 * u[:, 1]]).T.astype(x.dtype)
+
+
+def cost(x, u):
+    near = np.hypot(x[:, 0] - TREE[0], x[:, 1] - TREE[1]) < 1
+    return {"goal": np.hypot(x[:, 0] - 8, x[:, 1]), "tree": 100.0 * near}, near
+
+
+def garden():
+    problem = slalom.Problem(dynamics, cost, states=3, inputs=2, dt=0.1)
+    return slalom.SvgMppi(problem, horizon=20, samples=256, input_min=[0, -2], input_max=[1.5, 2])
+
+
+class Client:
+    """Speaks as much of the WebSocket protocol as these tests need."""
+
+    def __init__(self, address):
+        url = urllib.parse.urlparse(address)
+        self.socket = socket.create_connection((url.hostname, url.port), timeout=60)
+        key = base64.b64encode(os.urandom(16)).decode()
+        self.socket.sendall(f"GET /ws HTTP/1.1\r\nHost: {url.netloc}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                            f"Origin: http://{url.netloc}\r\nSec-WebSocket-Key: {key}\r\n"
+                            "Sec-WebSocket-Version: 13\r\n\r\n".encode())
+        self.file = self.socket.makefile("rb")
+        assert b"101" in self.file.readline()
+        while self.file.readline() != b"\r\n":
+            pass
+
+    def read(self):
+        """The next message: text as an object, the scalars of a frame as an array."""
+        kind, length = self.file.read(2)
+        if length == 126:
+            length = struct.unpack(">H", self.file.read(2))[0]
+        elif length == 127:
+            length = struct.unpack(">Q", self.file.read(8))[0]
+        content = self.file.read(length)
+        if kind & 15 == 1:
+            return json.loads(content)
+        return np.frombuffer(content, "<f8", struct.unpack_from("<I", content, 8)[0] // 8, 12)
+
+    def find(self, wanted):
+        while True:
+            message = self.read()
+            if wanted(message):
+                return message
+
+    def text(self, kind):
+        return self.find(lambda m: isinstance(m, dict) and m["type"] == kind)
+
+    def send(self, **command):
+        content = json.dumps(command).encode()
+        assert len(content) < 126
+        self.socket.sendall(bytes([0x81, 0x80 | len(content), 0, 0, 0, 0]) + content)
+
+
+@pytest.mark.parametrize("make", [garden, lambda: slalom.SvgMppi(slalom.DifferentialDrive(), horizon=20, samples=256,
+                                                                   input_min=[0, -2], input_max=[1.5, 2])])
+def test_a_page_shows_the_drive_of_a_controller(make):
+    moved = []
+    page = slalom.show(make(), [0, 0, 0], heading=2, shapes=lambda problem: [(*TREE, 1), [[2, 2], [3, 2], [3, 3]]],
+                       move=lambda problem, shape, x, y: moved.append((shape, x, y)), port=0, block=False,
+                       browser=False)
+    try:
+        client = Client(page.address)
+        names = client.text("hello")["scalars"]
+        frame = client.find(lambda m: isinstance(m, np.ndarray) and m[0] >= 5)
+        # The same drive without a page.
+        controller, x = make(), np.zeros(3)
+        for k in range(int(frame[0])):
+            x = controller.problem.step(x, controller.solve(x, elapsed=0.1 if k else 0).inputs[0])
+        assert np.allclose([frame[names.index(name)] for name in ("x", "y", "yaw")], x)
+        client.send(do="pause")
+        client.send(do="set", key="svg_mppi.samples", value="100")
+        samples = names.index("samples")
+        client.find(lambda m: isinstance(m, np.ndarray) and m[samples] < frame[samples])
+        client.send(do="move", body=1, x=3, y=1, id=7)
+        assert client.text("done")["id"] == 7
+        assert set(moved) == {(0, 3.0, 1.0)}
+        client.send(do="set", key="svg_mppi.samples", value="0", id=8)
+        assert "must be in" in client.text("error")["message"]
+    finally:
+        page.close()
+
+
+def test_wrong_drawings_are_errors():
+    for drawing, message in [({"start": [0, 0]}, "start: has 2 values, must have 3"),
+                             ({"start": [0, 0, 0], "heading": 3}, "3 must be an index of a state"),
+                             ({"start": [0, 0, 0], "state_names": ["x"]}, "has 1 names, must have 3"),
+                             ({"start": [0, 0, 0], "host": "0.0.0.0"}, "token: must be given")]:
+        with pytest.raises(ValueError, match=message):
+            slalom.show(garden(), drawing.pop("start"), port=0, block=False, browser=False, **drawing)

@@ -1,0 +1,218 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/trajectories.hpp"
+#include "slalom/view/subject.hpp"
+
+/// A page in the browser that shows how a controller solves your own problem, with its options, charts, pause
+/// and the past, and obstacles that you can drag:
+///
+///     slalom::view::serve(controller, {.start = {0, 0, 0}, .x = &State::x, .y = &State::y});
+///
+/// and open http://127.0.0.1:8400.
+namespace slalom::view {
+
+/// How a problem is drawn. Only `start`, and `x` and `y` or `pose`, must be given.
+template <class P>
+struct Drawing {
+  using State = typename Controller<P>::State;    ///< state of the problem
+  using Inputs = typename Controller<P>::Inputs;  ///< inputs of a step
+  using Member = double State::*;                 ///< a member of the state
+
+  State start{};                                   ///< the state in which the drive begins
+  Member x = nullptr, y = nullptr;                 ///< members with the position, m; the page can change them
+  Member heading = nullptr;                        ///< member with the heading, rad, if there is one
+  std::function<maps::Pose(const State&)> pose{};  ///< the place of a state that has no such members
+  double length = 0, width = 0;                    ///< m, of the body; 0: it is a dot
+  /// Lines that show the body, such as the rod of a pendulum.
+  std::function<std::vector<Line>(const State&)> figure{};
+  std::function<std::vector<Shape>(const P&)>
+      shapes{};  ///< discs, boxes and polygons, by the problem's parameters
+  /// Puts a shape elsewhere, by its index in `shapes`. Without it, shapes cannot be dragged.
+  std::function<void(P&, int shape, const maps::Point& to)> move{};
+  std::optional<maps::OccupancyGrid> map{};  ///< drawn under all else
+  /// The real system; by default the problem itself.
+  std::function<State(const State&, const Inputs&)> plant{};
+  std::vector<std::string> states{}, inputs{};  ///< names with their units, such as "speed, m/s"
+  std::string title{};                          ///< name of the problem
+};
+
+/// Where the page is served.
+struct ServeOptions {
+  std::string host = "127.0.0.1";  ///< IP address to listen on
+  std::uint16_t port = 8400;       ///< 0: any that is free
+  /// Must stand in the address as ?token=...; needed for addresses that other machines can reach.
+  std::string token{};
+  /// Called with the address of the page once it is served.
+  std::function<void(const std::string& address)> ready{};
+};
+
+/// A page that shows a subject.
+class View {
+ public:
+  /// Serves the page from now on. Throws std::invalid_argument if an option or the subject is not valid,
+  /// std::runtime_error if the port cannot be used.
+  explicit View(std::unique_ptr<Subject> subject, const ServeOptions& options = {});
+  ~View();
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
+
+  const std::string& address() const noexcept;  ///< address of the page
+  /// Executes the commands of the page and drives the step that is due; waits for one, for `at_most` at most.
+  void turn(std::chrono::nanoseconds at_most);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+namespace detail {
+
+/// A controller with its drawing.
+template <Problem P>
+class ControllerSubject final : public Subject {
+ public:
+  using State = typename Drawing<P>::State;
+  using Inputs = typename Drawing<P>::Inputs;
+
+  ControllerSubject(Controller<P> controller, Drawing<P> drawing)
+      : controller_(std::move(controller)), drawing_(std::make_shared<const Drawing<P>>(std::move(drawing))) {
+    const Drawing<P>& d = *drawing_;
+    if (!d.pose && !(d.x && d.y)) throw std::invalid_argument("drawing: must have x and y, or pose");
+    SubjectFacts facts{d.title, d.states, d.inputs, {}, d.length, d.width, d.x && d.y, bool(d.move), d.map};
+    fill_names(facts.states, state_size, "state ", "Drawing.states");
+    fill_names(facts.inputs, P::inputs, "input ", "Drawing.inputs");
+    for (const CostTerm& term : slalom::detail::cost_terms_of<P>()) facts.terms.emplace_back(term.name);
+    facts_ = std::make_shared<const SubjectFacts>(std::move(facts));
+  }
+
+  std::unique_ptr<Subject> clone() const override { return std::make_unique<ControllerSubject>(*this); }
+  const SubjectFacts& facts() const override { return *facts_; }
+  std::vector<double> start() const override { return values(drawing_->start); }
+  double time_step() const override { return controller_.evaluator().time_step(); }
+  const SolverOptions* options() const override { return controller_.options(); }
+  void set_options(const SolverOptions& options) override {
+    controller_ = Controller<P>(controller_.problem(), options);
+  }
+  std::vector<OptionEntry> parameters() const override {
+    if constexpr (has_parameters) return list_options(controller_.problem());
+    return {};
+  }
+  bool set_parameter([[maybe_unused]] const std::string& name,
+                     [[maybe_unused]] const std::string& text) override {
+    if constexpr (has_parameters) return set_option(controller_.problem(), name, text);
+    return false;
+  }
+
+  const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
+    const Plan<P> plan = controller_.solve(state_of(state.data()), request);
+    plan_.clear();
+    for (const Inputs& u : plan.inputs) plan_.insert(plan_.end(), u.value, u.value + P::inputs);
+    return plan.stats;
+  }
+  std::span<const double> inputs() const override { return plan_; }
+
+  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences) override {
+    const auto steps = static_cast<std::size_t>(controller_.solver().horizon());
+    Trajectories all;
+    std::vector<Inputs> inputs(steps);
+    for (std::size_t at = 0; at + steps * P::inputs <= sequences.size(); at += steps * P::inputs) {
+      for (std::size_t i = 0; i < steps * P::inputs; ++i)
+        inputs[i / P::inputs][static_cast<int>(i % P::inputs)] = static_cast<double>(sequences[at + i]);
+      hold_input_rates(controller_.problem(), inputs.front(), inputs.data(), static_cast<int>(steps));
+      add_trajectory<P>(all, controller_.problem(), state_of(state.data()), inputs);
+    }
+    return all;
+  }
+  std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
+    Inputs u;
+    std::copy_n(input.begin(), P::inputs, u.value);
+    const State x = state_of(state.data());
+    return values(drawing_->plant ? drawing_->plant(x, u) : next(x, u, 0));
+  }
+
+  std::vector<maps::Pose> poses(std::span<const double> states) override {
+    std::vector<maps::Pose> all;
+    for (std::size_t at = 0; at < states.size(); at += state_size) all.push_back(pose(state_of(&states[at])));
+    return all;
+  }
+  std::vector<Shape> shapes() override {
+    return drawing_->shapes ? drawing_->shapes(controller_.problem()) : std::vector<Shape>{};
+  }
+  std::vector<Line> figure(std::span<const double> state) override {
+    return drawing_->figure ? drawing_->figure(state_of(state.data())) : std::vector<Line>{};
+  }
+  void place(std::span<double> state, const maps::Pose& to) override {
+    State x = state_of(state.data());
+    x.*drawing_->x = to.x;
+    x.*drawing_->y = to.y;
+    if (drawing_->heading) x.*drawing_->heading = to.yaw;
+    std::memcpy(state.data(), &x, sizeof x);
+  }
+  void move(int shape, const maps::Point& to) override { drawing_->move(controller_.problem(), shape, to); }
+
+ private:
+  static constexpr std::size_t state_size = sizeof(State) / sizeof(double);
+  static constexpr bool has_parameters = requires(P & p) {
+    visit_options(p, [](auto&, const Declaration&) {});
+  };
+
+  static void fill_names(std::vector<std::string>& names, std::size_t count, const char* kind,
+                         const char* what) {
+    if (!names.empty() && names.size() != count)
+      throw std::invalid_argument(std::string(what) + ": has " + std::to_string(names.size()) +
+                                  " names, must have " + std::to_string(count));
+    for (std::size_t i = names.size(); i < count; ++i) names.push_back(kind + std::to_string(i + 1));
+  }
+  static State state_of(const double* from) {
+    State state;
+    std::memcpy(&state, from, sizeof state);
+    return state;
+  }
+  static std::vector<double> values(const State& state) {
+    std::vector<double> all(state_size);
+    std::memcpy(all.data(), &state, sizeof state);
+    return all;
+  }
+  State next(const State& x, const Inputs& u, int k) const {
+    const P& p = controller_.problem();
+    return slalom::detail::step<P, double>(p, x, slalom::detail::look_up<P, double>(p, x), u, k);
+  }
+  maps::Pose pose(const State& x) const {
+    const Drawing<P>& d = *drawing_;
+    if (d.pose) return d.pose(x);
+    return {x.*d.x, x.*d.y, d.heading ? x.*d.heading : 0};
+  }
+
+  Controller<P> controller_;
+  std::shared_ptr<const Drawing<P>> drawing_;
+  std::shared_ptr<const SubjectFacts> facts_;
+  std::vector<double> plan_;
+};
+
+}  // namespace detail
+
+/// Serves a page that shows how a controller, of which it takes a copy, solves its problem. Returns once
+/// `stop` is set. Throws like the constructor of `View`.
+template <Problem P>
+void serve(const Controller<P>& controller, std::type_identity_t<Drawing<P>> drawing,
+           const ServeOptions& options = {}, const std::atomic<bool>& stop = false) {
+  View view(std::make_unique<detail::ControllerSubject<P>>(controller, std::move(drawing)), options);
+  if (options.ready) options.ready(view.address());
+  while (!stop) view.turn(std::chrono::milliseconds(50));
+}
+
+}  // namespace slalom::view

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "slalom/core/option_access.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/solvers/solver.hpp"
+#include "slalom/solvers/solver_options.hpp"
+#include "slalom/solvers/trajectories.hpp"
+
+namespace slalom::view {
+
+using Line = std::vector<maps::Point>;  ///< points one after the other, m
+
+/// Something that stands in the scene: a disc, a box or a polygon.
+struct Shape {
+  maps::Pose pose{};             ///< middle of a disc or a box
+  double length = 0, width = 0;  ///< m; the length of a disc is its diameter
+  bool is_disc = false;          ///< whether it is a disc, not a box
+  Line corners{};                ///< corners of a polygon; empty for a disc or a box
+};
+/// Returns a disc.
+inline Shape disc(double x, double y, double radius) {
+  return {.pose = {x, y, 0}, .length = 2 * radius, .width = 2 * radius, .is_disc = true};
+}
+/// Returns a box around its middle.
+inline Shape box(const maps::Pose& middle, double length, double width) {
+  return {.pose = middle, .length = length, .width = width};
+}
+/// Returns a polygon.
+inline Shape polygon(Line corners) {
+  return {.corners = std::move(corners)};
+}
+
+/// Facts about a subject that do not change.
+struct SubjectFacts {
+  std::string title{};                                   ///< name of the problem
+  std::vector<std::string> states{}, inputs{}, terms{};  ///< names of states, inputs and cost terms
+  double length = 0, width = 0;                          ///< m, of the body; 0: it is a dot
+  bool can_place = false, can_move = false;              ///< whether body and shapes can be dragged
+  std::optional<maps::OccupancyGrid> map{};              ///< drawn under the scene
+};
+
+/// A controller with its problem, as the live view drives and draws it. `Controller` and the controllers of
+/// Python have one; `serve` makes it. All functions are called by one thread.
+class Subject {
+ public:
+  virtual ~Subject() = default;
+  /// Returns a copy that continues bit for bit like the original.
+  virtual std::unique_ptr<Subject> clone() const = 0;
+  virtual const SubjectFacts& facts() const = 0;     ///< names and sizes
+  virtual std::vector<double> start() const = 0;     ///< the state at the beginning
+  virtual double time_step() const = 0;              ///< s; 0: unknown
+  virtual const SolverOptions* options() const = 0;  ///< null with a solver of the user's own
+  /// Replaces the method or its options. Throws std::invalid_argument, and nothing changes, if one is not
+  /// valid.
+  virtual void set_options(const SolverOptions& options) = 0;
+  /// The problem's own parameters.
+  virtual std::vector<OptionEntry> parameters() const { return {}; }
+  /// Sets a parameter; false if there is none of that name. Throws std::invalid_argument out of its range.
+  virtual bool set_parameter(const std::string& /*name*/, const std::string& /*text*/) { return false; }
+
+  /// Solves from a state and returns the solver's result.
+  virtual const SolveResult& solve(std::span<const double> state, const SolveRequest& request) = 0;
+  virtual std::span<const double> inputs() const = 0;  ///< inputs of the last plan, [step][input]
+  /// Returns the trajectories of control sequences, [sequence][step][input].
+  virtual Trajectories roll_out(std::span<const double> state, std::span<const float> sequences) = 0;
+  /// Returns the state of the real system a step after `state`.
+  virtual std::vector<double> step(std::span<const double> state, std::span<const double> input) = 0;
+
+  /// Returns where the body is in each of some states, [state][value].
+  virtual std::vector<maps::Pose> poses(std::span<const double> states) = 0;
+  virtual std::vector<Shape> shapes() = 0;  ///< discs, boxes and polygons of the scene
+  /// Returns the lines that show the body in a state.
+  virtual std::vector<Line> figure(std::span<const double> state) = 0;
+  /// Puts the body of a state elsewhere, or a shape.
+  virtual void place(std::span<double> state, const maps::Pose& to) = 0;
+  /// Puts a shape elsewhere, by its index in `shapes`.
+  virtual void move(int shape, const maps::Point& to) = 0;
+};
+
+}  // namespace slalom::view

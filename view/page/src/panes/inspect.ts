@@ -1,0 +1,152 @@
+import uPlot from "uplot";
+import { get, make } from "../dom";
+import { page, redraw, scalar, send } from "../page";
+import type { Candidates, Frame } from "../protocol";
+import { costTerms } from "../scene/layers";
+import { collisionPoint } from "../scene/candidates";
+import { Chart, css, padded } from "./plots";
+import { looks } from "./strips";
+
+const bins = 24; // number in a histogram
+
+const percent = (share: number) => `${(100 * share).toPrecision(2)} %`;
+const short = (value: number) => (Number.isFinite(value) ? String(Number(value.toPrecision(4))) : "–");
+
+/** The candidates in the order of the solver's cost, the best first. */
+function ranked(c: Candidates): number[] {
+  const cost = (i: number) => c.terms[c.width * (i + 1) - 2];
+  return Array.from({ length: c.count }, (_, i) => i).sort((a, b) => cost(a) - cost(b));
+}
+
+/** Says what the solver knows of a candidate that is chosen, and how costs and weights are spread. */
+export class InspectPane {
+  chosen = -1; // index of a candidate
+  private frame?: Frame; // the one that is shown
+  private readonly rank = get<HTMLInputElement>("rank");
+  private readonly horizon: Chart;
+  private readonly costs: Chart;
+  private readonly weights: Chart;
+
+  constructor() {
+    const root = get("inspect-charts");
+    this.horizon = new Chart(root, "Cost over the horizon: plan solid, candidate dotted", []);
+    this.costs = new Chart(root, "Candidates by cost, without collisions", []);
+    this.weights = new Chart(root, "Candidates by weight, %", []);
+    this.rank.onchange = () => {
+      const candidates = page.frame?.candidates;
+      if (candidates) this.choose(ranked(candidates)[Number(this.rank.value) - 1] ?? -1);
+    };
+    new ResizeObserver(() => this.show()).observe(root);
+  }
+
+  /** Chooses a candidate of the frame that is shown, and pauses there. */
+  choose(index: number) {
+    this.chosen = index;
+    this.frame = page.frame;
+    if (index >= 0 && !page.state?.paused) send({ do: "pause" });
+    this.show();
+    redraw();
+  }
+
+  /** Shows a frame. Another one has other candidates. */
+  update(frame: Frame) {
+    if (frame !== this.frame && scalar("tick", frame.scalars) !== scalar("tick", this.frame?.scalars))
+      this.chosen = -1;
+    this.frame = frame;
+    this.show();
+  }
+
+  show() {
+    const { frame } = this;
+    if (get("pane-inspect").hidden || !frame?.candidates) return;
+    const c = frame.candidates;
+    const i = this.chosen;
+    const order = ranked(c);
+    this.rank.max = String(c.count);
+    if (document.activeElement !== this.rank) this.rank.value = i < 0 ? "" : String(order.indexOf(i) + 1);
+    get("inspect-text").textContent = i < 0 ? this.hint(c) : this.sentence(frame, c, i, order.indexOf(i) + 1);
+    this.showTerms(frame, c, i);
+    this.drawHorizon(frame, i);
+    const free = order.filter((k) => !c.collided[k]).map((k) => c.terms[c.width * (k + 1) - 2]);
+    this.histogram(this.costs, free, "");
+    this.histogram(
+      this.weights,
+      order.map((k) => 100 * c.terms[c.width * (k + 1) - 1]),
+      "%",
+    );
+  }
+
+  private hint(c: Candidates) {
+    const collided = c.collided.filter((v) => v > 0).length;
+    return `${c.count} of ${scalar("samples")} samples are shown; ${collided} of them collide. Click one in the
+      scene (Select), or enter its rank.`;
+  }
+
+  private sentence(frame: Frame, c: Candidates, i: number, rank: number) {
+    const weight = percent(c.terms[c.width * (i + 1) - 1]);
+    const at = collisionPoint(frame, i);
+    const time =
+      at === undefined ? "" : ` after ${(at * scalar("prediction_step")).toFixed(2)} s, at the cross`;
+    const end = c.collided[i] ? `It collides${time}.` : "It does not collide.";
+    return `Rank ${rank} of ${c.count} by cost, weight ${weight}. ${end}`;
+  }
+
+  private showTerms(frame: Frame, c: Candidates, i: number) {
+    const steps = frame.stepCosts;
+    const names = costTerms();
+    const plan = names.slice(0, -1).map((name, k) => {
+      if (!steps) return scalar(`${name}_cost`);
+      const values = Array.from({ length: steps.points }, (_, p) => steps.costs[p * steps.terms + k]);
+      return values.reduce((a, b) => a + b, 0);
+    });
+    plan.push(plan.reduce((a, b) => a + b, 0));
+    const rows = names.map((name, k) => {
+      const candidate = i < 0 ? "" : short(c.terms[c.width * i + k]);
+      const cells = [plan[k], candidate].map((v) =>
+        make("td", { className: "n" }, typeof v === "number" ? short(v) : v),
+      );
+      return make("tr", {}, make("td", {}, name), ...cells);
+    });
+    get("inspect-terms").replaceChildren(...rows);
+  }
+
+  private drawHorizon({ stepCosts }: Frame, i: number) {
+    this.horizon.box.hidden = !stepCosts;
+    if (!stepCosts || this.horizon.width < 50) return;
+    const { terms, points, costs } = stepCosts;
+    const of = (trajectory: number, term: number) =>
+      Array.from({ length: points }, (_, p) => costs[(trajectory * points + p) * terms + term]);
+    const all = Array.from({ length: terms }, (_, k) => k);
+    const shown = [...all.map((k) => of(0, k)), ...(i < 0 ? [] : all.map((k) => of(1 + i, k)))];
+    const series = shown.map((_, k) => {
+      const dash = k < terms ? undefined : [2, 3];
+      return {
+        stroke: css(`--${looks[(k % terms) % looks.length][0]}`),
+        width: 1.6,
+        dash,
+        points: { show: false },
+      };
+    });
+    const step = scalar("prediction_step");
+    const times = Array.from({ length: points }, (_, p) => +(p * step).toFixed(4));
+    this.horizon.draw("s", [times, ...shown], {
+      scales: { x: { time: false }, y: { range: padded } },
+      series: [{}, ...series],
+    });
+  }
+
+  private histogram(chart: Chart, values: number[], unit: string) {
+    const finite = values.filter(Number.isFinite).sort((a, b) => a - b);
+    chart.box.hidden = finite.length < 2;
+    if (finite.length < 2 || chart.width < 50) return;
+    const [low, high] = [finite[0], finite[Math.floor(0.98 * (finite.length - 1))]];
+    const width = Math.max(1e-12, high - low) / bins;
+    const counts = new Array<number>(bins).fill(0);
+    for (const v of finite) counts[Math.min(bins - 1, Math.floor((v - low) / width))] += 1;
+    const bars = { stroke: css("--blue"), fill: css("--blue") + "55", width: 1, points: { show: false } };
+    chart.draw(unit, [counts.map((_, k) => low + (k + 0.5) * width), counts], {
+      scales: { x: { time: false }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.15)] } },
+      series: [{}, { ...bars, paths: uPlot.paths.bars!({ size: [0.9] }) }],
+    });
+  }
+}

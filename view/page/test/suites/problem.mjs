@@ -1,0 +1,158 @@
+// A problem of the user's own on the page, and the inspection of candidates.
+import assert from "node:assert/strict";
+
+/** The place on the page of a point of the map frame. */
+const placeOf = (look, x, y) =>
+  look.evaluate(
+    ([x, y]) => {
+      const box = document.getElementById("scene").getBoundingClientRect();
+      const [px, py] = slalom.scene.camera.toScreen(x, y);
+      return [box.left + px, box.top + py];
+    },
+    [x, y],
+  );
+
+export default async function (h) {
+  const server = await h.start("view", "--problem", "differential_drive", "--port", "0");
+  const look = await h.open(server.address);
+  await h.until(() => window.slalom?.state && slalom.scalar("tick") > 5, null, look);
+
+  await h.test("a problem has its own charts, options and names", async () => {
+    const charts = await look.locator("#charts h2").allTextContents();
+    for (const name of ["Cost of the plan", "Speed, m/s", "X · y, m", "Yaw, rad"])
+      assert.ok(
+        charts.some((text) => text.startsWith(name)),
+        `${name} in ${charts}`,
+      );
+    for (const id of ["course", "ghost", "fork", "tab-laps", "nudge-left", "speed"])
+      assert.equal(await look.locator("#" + id).isVisible(), false, id);
+    assert.equal(await look.locator("#cost").isVisible(), true);
+    await look.locator("#tab-options").click();
+    await look.locator("#all-options").click();
+    for (const key of ["svg_mppi.samples", "problem.goal_x"])
+      assert.equal(await look.locator(`[data-key="${key}"]`).count(), 1, key);
+    await look.locator("#tab-charts").click();
+  });
+
+  await h.test("an obstacle is dragged while the drive is paused, and the plan goes around it", async () => {
+    await h.send({ do: "restart" }, look);
+    await h.until(() => slalom.scalar("tick") < 5, null, look);
+    await h.send({ do: "pause" }, look);
+    await h.until(() => slalom.state.paused, null, look);
+    const gap = () =>
+      look.evaluate(() => {
+        const disc = slalom.frame.bodies[1];
+        return (
+          Math.min(...slalom.frame.plan.map((p) => Math.hypot(p.x - disc.x, p.y - disc.y))) /
+          (disc.length / 2)
+        );
+      });
+    const tick = await look.evaluate(() => slalom.scalar("tick"));
+    for (const side of [0.5, -0.5]) {
+      const [from, to] = [
+        await placeOf(
+          look,
+          ...(await look.evaluate(() => [slalom.frame.bodies[1].x, slalom.frame.bodies[1].y])),
+        ),
+        await placeOf(look, 2, side),
+      ];
+      await look.mouse.move(...from);
+      await look.mouse.down();
+      await look.mouse.move((from[0] + to[0]) / 2, (from[1] + to[1]) / 2, { steps: 4 });
+      await look.mouse.move(...to, { steps: 4 });
+      await look.mouse.up();
+      await h.until((y) => Math.abs(slalom.frame.bodies[1].y - y) < 0.1, side, look);
+      assert.equal(await look.evaluate(() => slalom.scalar("tick")), tick);
+      assert.ok((await gap()) > 0.98, `the plan passes the disc at ${await gap()} of its radius`);
+    }
+  });
+
+  await h.test("method, options and parameters change, and can be reset", async () => {
+    await look.locator("#method").selectOption("mppi");
+    await h.until(() => slalom.state.method === "mppi", null, look);
+    await h.send({ do: "set", key: "problem.goal_x", value: "6" }, look);
+    await h.send({ do: "set", key: "mppi.samples", value: "200" }, look);
+    await h.until(() => slalom.scalar("samples") === 200, null, look);
+    await h.send({ do: "reset_options" }, look);
+    await h.until(() => slalom.scalar("samples") === 1024, null, look);
+    await h.send({ do: "method", method: "svg_mppi" }, look);
+    await h.until(() => slalom.state.method === "svg_mppi", null, look);
+  });
+
+  await h.test("a past step is shown again, and the drive goes on from there exactly", async () => {
+    await h.send({ do: "restart" }, look);
+    await h.until(() => slalom.scalar("tick") > 20, null, look);
+    await h.send({ do: "pause" }, look);
+    await h.until(() => slalom.state.paused, null, look);
+    const at = (tick) => h.until((t) => slalom.scalar("tick") === t && slalom.state.tick === t, tick, look);
+    const x = () => look.evaluate(() => slalom.scalar("x"));
+    await h.send({ do: "seek", tick: 18 }, look);
+    await at(18);
+    const before = await x();
+    await h.send({ do: "seek", tick: 7 }, look);
+    await at(7);
+    await h.send({ do: "step", ticks: 11 }, look);
+    await at(18);
+    assert.equal(await x(), before);
+  });
+
+  await h.test("a click on a candidate shows its rank, weight, cost by term and collision", async () => {
+    const middle = await look.evaluate(() => {
+      const c = slalom.frame.candidates;
+      const i = c.collided.findIndex((v) => v > 8);
+      const k = Math.max(0, i) * c.points + Math.round(0.7 * c.points);
+      return [c.xy[2 * k], c.xy[2 * k + 1]];
+    });
+    await look.mouse.click(...(await placeOf(look, ...middle)));
+    await look.locator("#pane-inspect").waitFor();
+    const text = await look.locator("#inspect-text").textContent();
+    assert.match(text, /^Rank \d+ of \d+ by cost, weight [\d.e-]+ %\. It (does not collide|collides)/);
+    const rows = await look.locator("#inspect-terms tr").allTextContents();
+    assert.ok(rows.length >= 2 && rows.at(-1).startsWith("total"), rows.join());
+    assert.equal(await look.locator("#inspect-charts .chart:visible canvas").count(), 3);
+    // By rank: the cost of the candidate is the sum of its terms, as the solver has it, but for float32.
+    await look.locator("#rank").fill("1");
+    await look.locator("#rank").press("Tab");
+    const [sum, cost] = await look.evaluate(() => {
+      const { candidates: c, stepCosts: s } = slalom.frame;
+      const i = slalom.scene.chosen;
+      const from = (1 + i) * s.points * s.terms;
+      const terms = s.costs.slice(from, from + s.points * s.terms);
+      return [terms.reduce((a, b) => a + b), c.terms[c.width * (i + 1) - 2]];
+    });
+    assert.ok(Math.abs(sum - cost) < 1e-3 * cost, `${sum} is ${cost}`);
+  });
+
+  await h.test("charts hide lines, zoom, and have a logarithmic axis", async () => {
+    await look.locator("#tab-charts").click();
+    const line = look.locator("#charts button.value").first();
+    await line.click();
+    assert.equal(await line.getAttribute("aria-pressed"), "false");
+    await line.click();
+    await look.locator("#log").check();
+    const box = await look.locator("#charts .u-over").nth(1).boundingBox();
+    await look.mouse.move(box.x + 0.2 * box.width, box.y + 20);
+    await look.mouse.down();
+    await look.mouse.move(box.x + 0.6 * box.width, box.y + 20, { steps: 5 });
+    await look.mouse.up();
+    await look.locator("#zoom-out").click();
+    assert.equal(await look.locator("#zoom-out").isVisible(), false);
+  });
+  await look.close();
+  await server.stop();
+
+  await h.test("a candidate of a car can be chosen by its rank, and its collision is marked", async () => {
+    await h.pause();
+    await h.page.locator("#tab-inspect").click();
+    await h.page.locator("#rank").fill("3");
+    await h.page.locator("#rank").press("Tab");
+    await h.until(() => /^Rank 3 of/.test(document.getElementById("inspect-text").textContent));
+    const rows = await h.page.locator("#inspect-terms tr").allTextContents();
+    assert.deepEqual(
+      rows.map((text) => text.replace(/[\d.–-].*/, "")),
+      ["distance", "yaw", "collision", "total"],
+    );
+    await h.page.locator("#tab-charts").click();
+    await h.play();
+  });
+}

@@ -1,0 +1,246 @@
+#include "view/problem/problem_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <span>
+
+namespace slalom::view {
+namespace {
+
+constexpr std::size_t most_candidates = 160, least_candidates = 20;
+constexpr std::size_t most_step_costs = 15000;  // values in a frame
+
+using Poses = std::span<const maps::Pose>;
+
+/// The control sequences of a step and their trajectories: plan, nominal, candidates, then guides.
+struct Sequences {
+  std::vector<float> values;  // [sequence][step][input]
+  std::vector<int> samples;   // index in the batch of each candidate
+  std::size_t candidates = 0, guides = 0, size = 0;
+  void add(std::span<const float> sequence) { values.insert(values.end(), sequence.begin(), sequence.end()); }
+};
+
+Sequences sequences_of(Subject& subject, const SolveResult& solve, std::size_t points) {
+  Sequences all;
+  const auto plan = subject.inputs();
+  all.size = plan.size();
+  all.values.assign(plan.begin(), plan.end());
+  if (solve.nominal.size() == all.size)
+    all.add(solve.nominal);
+  else
+    all.add(std::vector<float>(all.values));
+  if (const SequenceBatch* batch = solve.samples; batch && !solve.costs.empty()) {
+    const std::size_t terms = subject.facts().terms.size();
+    const std::size_t most =
+        std::clamp(most_step_costs / (points * terms), least_candidates, most_candidates);
+    const auto samples = static_cast<std::size_t>(batch->samples());
+    all.candidates = std::min(most, samples);
+    for (std::size_t i = 0; i < all.candidates; ++i) {
+      const int k = static_cast<int>(i * samples / all.candidates);
+      all.samples.push_back(k);
+      for (int row = 0; row < static_cast<int>(all.size); ++row)
+        all.values.push_back(batch->at(row / batch->inputs(), row % batch->inputs(), k));
+    }
+  }
+  const SequenceList& guides = solve.guide_path.sequences > 0 ? solve.guide_path : solve.guides;
+  all.guides = static_cast<std::size_t>(guides.sequences);
+  all.add(guides.values);
+  return all;
+}
+
+/// Writes trajectories with a unit that reaches all their points.
+void put_points(FrameWriter& to, Poses poses) {
+  const maps::Point origin{poses.front().x, poses.front().y};
+  double reach = 1e-3;
+  for (const maps::Pose& p : poses)
+    reach = std::max({reach, std::abs(p.x - origin.x), std::abs(p.y - origin.y)});
+  to.begin_points(origin, reach / 32000);
+  for (const maps::Pose& p : poses) to.put_point({p.x, p.y});
+}
+
+void put_lines(FrameWriter& to, Block block, const std::vector<Line>& lines) {
+  to.begin(block);
+  to.put(static_cast<std::uint32_t>(lines.size()));
+  for (const Line& line : lines) {
+    to.put(static_cast<std::uint32_t>(line.size()));
+    for (const maps::Point& p : line) to.put_f32(p.x), to.put_f32(p.y);
+  }
+  to.end();
+}
+
+void put_body(FrameWriter& to, int id, int kind, bool touched, const maps::Pose& at, double length,
+              double width) {
+  to.put(static_cast<std::uint16_t>(id));
+  to.put(static_cast<std::uint8_t>(kind));
+  to.put(static_cast<std::uint8_t>(touched));
+  for (const double value : {at.x, at.y, at.yaw, length, width}) to.put_f32(value);
+}
+
+/// Writes the body, 0, and the shapes, whose numbers are their indices + 1; polygons apart.
+void put_scene(FrameWriter& to, Subject& subject, const ProblemStep& step, const maps::Pose& pose,
+               bool collides) {
+  const SubjectFacts& facts = subject.facts();
+  const std::vector<Shape> shapes = subject.shapes();
+  std::vector<Line> polygons;
+  to.begin(Block::bodies);
+  const auto count = std::ranges::count_if(shapes, [](const Shape& s) { return s.corners.empty(); });
+  to.put(static_cast<std::uint32_t>(1 + count));
+  put_body(to, 0, 0, collides, pose, facts.length, facts.width);
+  int id = 0;
+  for (const Shape& s : shapes) {
+    ++id;
+    if (s.corners.empty())
+      put_body(to, id, s.is_disc ? 3 : 2, false, s.pose, s.length, s.width);
+    else
+      polygons.push_back(s.corners);
+  }
+  to.end();
+  put_lines(to, Block::polygons, polygons);
+  put_lines(to, Block::figure, subject.figure(step.state));
+}
+
+/// Writes candidates: each term of their costs, the solver's cost, the weight, and 1 + the first state that
+/// collides, at most 255.
+void put_candidates(FrameWriter& to, const Sequences& all, const SolveResult& solve,
+                    const Trajectories& rolled, std::size_t terms, std::size_t points, Poses poses) {
+  to.begin(Block::candidates);
+  to.put(static_cast<std::uint16_t>(all.candidates));
+  to.put(static_cast<std::uint16_t>(points));
+  const std::size_t first = 2;  // candidate among the sequences
+  for (std::size_t i = 0; i < all.candidates; ++i) {
+    for (std::size_t t = 0; t < terms; ++t) {
+      double sum = 0;
+      for (std::size_t k = 0; k < points; ++k) sum += rolled.costs[((first + i) * points + k) * terms + t];
+      to.put_f32(sum);
+    }
+    const auto sample = static_cast<std::size_t>(all.samples[i]);
+    to.put(solve.costs[sample]);
+    to.put(sample < solve.weights.size() ? solve.weights[sample] : 0.0f);
+  }
+  for (std::size_t i = 0; i < all.candidates; ++i) {
+    const bool collides = solve.collided[static_cast<std::size_t>(all.samples[i])] != 0;
+    const int at = rolled.collisions[first + i];
+    to.put(static_cast<std::uint8_t>(collides ? std::clamp(at + 1, 1, 255) : 0));
+  }
+  to.pad();
+  put_points(to, poses.subspan(first * points, all.candidates * points));
+  to.end();
+}
+
+}  // namespace
+
+std::vector<std::string> problem_scalars(const SubjectFacts& facts) {
+  std::vector<std::string> names = {"tick",
+                                    "time",
+                                    "x",
+                                    "y",
+                                    "yaw",
+                                    "status",
+                                    "minimum_cost",
+                                    "expected_cost",
+                                    "effective_samples",
+                                    "samples",
+                                    "collided_share",
+                                    "temperature",
+                                    "iterations",
+                                    "tick_ms",
+                                    "deadline_ms",
+                                    "contact",
+                                    "contacts",
+                                    "prediction_step",
+                                    "method",
+                                    "plan_cost"};
+  const auto add = [&](const char* kind, const std::vector<std::string>& all) {
+    for (const std::string& each : all) names.push_back(kind + each);
+  };
+  add("state.", facts.states);
+  add("input.", facts.inputs);
+  add("cost.", facts.terms);
+  return names;
+}
+
+ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const ProblemStep& step) {
+  const SubjectFacts& facts = subject.facts();
+  const std::size_t terms = facts.terms.size(), inputs = facts.inputs.size();
+  const std::size_t points = subject.inputs().size() / inputs + 1;
+  const Sequences all = sequences_of(subject, solve, points);
+  const Trajectories rolled = subject.roll_out(step.state, all.values);
+  const std::vector<maps::Pose> places = subject.poses(rolled.states);
+  const Poses poses(places);
+  ProblemFrame frame;
+  frame.collides = rolled.collisions.front() == 0;
+  const maps::Pose& now = poses.front();
+
+  FrameWriter to;
+  to.begin(Block::scalars);
+  const auto put = [&](std::initializer_list<double> values) {
+    for (const double value : values) to.put(value);
+  };
+  std::vector<double> sums(terms);
+  for (std::size_t i = 0; i < points * terms; ++i) sums[i % terms] += rolled.costs[i];
+  double cost = 0;
+  for (const double sum : sums) cost += sum;
+  put({static_cast<double>(step.tick), step.time, now.x, now.y, now.yaw, static_cast<double>(solve.status)});
+  put({solve.minimum_cost, solve.expected_cost, solve.effective_sample_size});
+  put({solve.samples ? solve.samples->samples() : 0.0, solve.collided_share, solve.temperature});
+  put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
+  put({frame.collides ? 1.0 : 0.0, static_cast<double>(step.collisions + frame.collides), step.period});
+  put({static_cast<double>(step.method), cost});
+  for (const double value : step.state) to.put(value);
+  for (std::size_t i = 0; i < inputs; ++i) to.put(subject.inputs()[i]);
+  for (const double sum : sums) to.put(sum);
+  to.end();
+
+  put_scene(to, subject, step, now, frame.collides);
+  if (all.candidates > 0) put_candidates(to, all, solve, rolled, terms, points, poses);
+  to.begin(Block::step_costs);
+  to.put(static_cast<std::uint16_t>(terms));
+  to.put(static_cast<std::uint16_t>(points));
+  for (std::size_t s = 0; s < 2 + all.candidates; ++s)
+    if (s != 1)
+      for (std::size_t i = 0; i < points * terms; ++i) to.put_f32(rolled.costs[s * points * terms + i]);
+  to.end();
+  if (all.guides > 0) {
+    const auto guides = static_cast<std::size_t>(std::max(1, solve.guides.sequences));
+    to.begin(Block::guides);
+    to.put(static_cast<std::uint16_t>(guides));
+    to.put(static_cast<std::uint16_t>(all.guides / guides));
+    to.put(static_cast<std::uint16_t>(points));
+    to.put(std::uint16_t{0});
+    put_points(to, poses.subspan((2 + all.candidates) * points));
+    to.end();
+  }
+  to.begin(Block::nominal);
+  to.put(static_cast<std::uint32_t>(points));
+  put_points(to, poses.subspan(points, points));
+  to.end();
+  to.begin(Block::plan);
+  to.put(static_cast<std::uint32_t>(points));
+  to.put(now.x);
+  to.put(now.y);
+  for (const maps::Pose& p : poses.first(points))
+    for (const double value : {p.x - now.x, p.y - now.y, p.yaw, 0.0, 0.0, 0.0}) to.put_f32(value);
+  to.end();
+  to.begin(Block::covariance);
+  for (std::size_t row = 0; row < solve.variances.size(); row += inputs) to.put(solve.variances[row]);
+  to.end();
+  frame.message = to.take();
+
+  frame.bounds = {now.x, now.y, now.x, now.y};
+  for (const maps::Pose& p : poses.first(2 * points)) frame.bounds.include(p.x, p.y);
+  for (const Line& line : subject.figure(step.state))
+    for (const maps::Point& p : line) frame.bounds.include(p.x, p.y);
+  for (const Shape& s : subject.shapes()) {
+    const double reach = 0.5 * std::max(s.length, s.width);
+    if (s.corners.empty()) {
+      frame.bounds.include(s.pose.x - reach, s.pose.y - reach);
+      frame.bounds.include(s.pose.x + reach, s.pose.y + reach);
+    }
+    for (const maps::Point& p : s.corners) frame.bounds.include(p.x, p.y);
+  }
+  return frame;
+}
+
+}  // namespace slalom::view

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <utility>
+
+#include "src/evaluation/json.hpp"
+#include "view/problem/problem_session.hpp"
+#include "view/protocol/grid_block.hpp"
+#include "view/protocol/option_json.hpp"
+
+namespace slalom::view {
+namespace {
+
+constexpr int max_steps_per_message = 800;
+
+std::shared_ptr<const std::string> binary(FrameWriter& message) {
+  return std::make_shared<const std::string>(message.take());
+}
+
+}  // namespace
+
+void ProblemSession::join(std::uint64_t client) {
+  audience_.join(client);
+  if (std::exchange(waiting_, false)) {
+    due_ = Clock::now();
+    tick();
+  }
+  audience_.tell(client, hello());
+  if (const auto& map = run_->subject->facts().map) {
+    FrameWriter scene;
+    put_grid(scene, *map);
+    server_.send(client, {binary(scene), true});
+  }
+  audience_.tell(client, options());
+  audience_.tell(client, state());
+  audience_.tell_roles();
+  if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
+}
+
+/// Sends the scalars of past steps, of as many as a message holds and as are still known.
+void ProblemSession::tell_past(std::uint64_t client, int from, int to) {
+  const std::size_t bytes = 8 * problem_scalars(run_->subject->facts()).size();
+  FrameWriter past;
+  past.begin(Block::past);
+  to = std::min(to, timeline_.newest());
+  from = std::max({from, timeline_.oldest(), to - max_steps_per_message + 1});
+  for (int tick = timeline_.empty() ? to + 1 : from; tick <= to; ++tick)
+    past.append(std::string_view(*timeline_.at(tick).frame).substr(FrameWriter::head_bytes, bytes));
+  past.end();
+  server_.send(client, {binary(past), true});
+}
+
+Json ProblemSession::hello() const {
+  const SubjectFacts& facts = run_->subject->facts();
+  Json statuses = Json::array();
+  for (int i = 0; i <= static_cast<int>(Status::invalid_time); ++i)
+    statuses.push_back(name(static_cast<Status>(i)));
+  return {{"type", "hello"},
+          {"protocol", 1},
+          {"scalars", problem_scalars(facts)},
+          {"statuses", statuses},
+          {"courses", Json::array()},
+          {"methods", methods_},
+          {"configurations", Json::array()},
+          {"terms", facts.terms},
+          {"problem",
+           {{"title", facts.title.empty() ? "your problem" : facts.title},
+            {"states", facts.states},
+            {"inputs", facts.inputs},
+            {"length", facts.length},
+            {"width", facts.width},
+            {"can_place", facts.can_place},
+            {"can_move", facts.can_move}}},
+          {"history_seconds", stored_seconds},
+          {"control_period", period_}};
+}
+
+Json ProblemSession::state() const {
+  const SolverOptions* options = (held_ && is_held() ? *held_ : *run_).subject->options();
+  return {{"type", "state"},
+          {"course", run_->subject->facts().title},
+          {"description", ""},
+          {"length", 0},
+          {"method", options ? options->method() : ""},
+          {"config", ""},
+          {"evaluation", ""},
+          {"seed", "0"},
+          {"obstacles", 0},
+          {"opponents", 0},
+          {"paused", paused_},
+          {"real_time", false},
+          {"rate", rate_},
+          {"pace", pace_},
+          {"tick", shown_tick()},
+          {"newest", timeline_.newest()},
+          {"oldest", timeline_.oldest()},
+          {"time", run_->steps * period_},
+          {"control_period", period_},
+          {"laps", Json::array()},
+          {"ghost", ""},
+          {"ghost_label", ""},
+          {"generation", generation_},
+          {"edited", edited_},
+          {"bounds", {bounds_.x0, bounds_.y0, bounds_.x1, bounds_.y1}}};
+}
+
+Json ProblemSession::options() const {
+  const Subject& subject = *run_->subject;
+  Json sections = Json::array(), changed = Json::array();
+  std::string yaml, section_yaml;
+  const auto add = [&](const std::string& name, const std::vector<OptionEntry>& now, const auto& loaded) {
+    Json options = Json::array();
+    section_yaml.clear();
+    for (const OptionEntry& each : now) {
+      const std::string option = each.declaration.name, value = to_text(each.value);
+      options.push_back(option_json(each, loaded(option)));
+      if (value == loaded(option)) continue;
+      changed.push_back(name + "." + option + "=" + value);
+      section_yaml += "  " + option + ": " + value + "\n";
+    }
+    if (!options.empty()) sections.push_back({{"name", name}, {"options", options}});
+    if (!section_yaml.empty()) yaml += name + ":\n" + section_yaml;
+  };
+  if (const SolverOptions* now = subject.options()) {
+    const auto before = list_options(loaded_.at(now->method()));
+    add(now->method(), list_options(*now), [&](const std::string& option) {
+      const auto found =
+          std::ranges::find_if(before, [&](const OptionEntry& e) { return option == e.declaration.name; });
+      return to_text(found->value);
+    });
+  }
+  add("problem", subject.parameters(), [&](const std::string& option) { return parameters_.at(option); });
+  return {{"type", "options"},  {"sections", sections}, {"changed", changed},
+          {"command_line", ""}, {"yaml", yaml},         {"undo", 0},
+          {"redo", 0}};
+}
+
+}  // namespace slalom::view

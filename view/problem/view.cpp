@@ -1,0 +1,44 @@
+#include "slalom/view/serve.hpp"
+#include "view/embedded.hpp"
+#include "view/problem/problem_session.hpp"
+#include "view/server/server.hpp"
+
+namespace slalom::view {
+namespace {
+
+ServerOptions server_options(const ServeOptions& given) {
+  if (given.token.empty() && !is_loopback(given.host))
+    throw std::invalid_argument("token: must be given where other machines can reach host " + given.host);
+  ServerOptions options;
+  options.host = given.host;
+  options.port = given.port;
+  options.token = given.token;
+  return options;
+}
+
+}  // namespace
+
+struct View::Implementation {
+  Implementation(std::unique_ptr<Subject> subject, const ServeOptions& options)
+      : server(server_options(options), {{"/", {"text/html; charset=utf-8", page_gzip(), true}}}),
+        session(std::move(subject), server) {
+    address = address_of(server, server_options(options));
+  }
+  Server server;
+  ProblemSession session;
+  std::string address;
+};
+
+View::View(std::unique_ptr<Subject> subject, const ServeOptions& options)
+    : implementation_(std::make_unique<Implementation>(std::move(subject), options)) {}
+View::~View() = default;
+
+const std::string& View::address() const noexcept {
+  return implementation_->address;
+}
+
+void View::turn(std::chrono::nanoseconds at_most) {
+  implementation_->session.turn(at_most);
+}
+
+}  // namespace slalom::view

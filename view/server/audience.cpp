@@ -1,0 +1,98 @@
+#include "view/server/audience.hpp"
+
+#include <cmath>
+
+#include "src/evaluation/json.hpp"
+
+namespace slalom::view {
+namespace field {
+
+void require(bool holds, const char* key, const char* rule) {
+  if (!holds) throw MalformedCommand(std::string(key) + ": must be " + rule);
+}
+
+double number(const Json& command, const char* key, std::optional<double> otherwise) {
+  if (otherwise && !command.contains(key)) return *otherwise;
+  const auto found = command.find(key);
+  const bool is_number = found != command.end() && found->is_number();
+  require(is_number && std::isfinite(found->get<double>()), key, "a finite number");
+  return found->get<double>();
+}
+
+int integer(const Json& command, const char* key, std::optional<int> otherwise) {
+  const double value = number(command, key, otherwise);
+  require(std::floor(value) == value && std::abs(value) <= 1e9, key, "an integer");
+  return static_cast<int>(value);
+}
+
+std::string text(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  require(found != command.end() && found->is_string(), key, "text");
+  return found->get<std::string>();
+}
+
+bool flag(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  require(found != command.end() && found->is_boolean(), key, "true or false");
+  return found->get<bool>();
+}
+
+}  // namespace field
+
+void Audience::join(std::uint64_t client) {
+  clients_.push_back(client);
+  if (driving_client_ == 0) driving_client_ = client;
+}
+
+void Audience::leave(std::uint64_t client) {
+  std::erase(clients_, client);
+  if (client != driving_client_) return;
+  driving_client_ = clients_.empty() ? 0 : clients_.front();
+  tell_roles();
+}
+
+void Audience::take_over(std::uint64_t client) {
+  driving_client_ = client;
+  tell_roles();
+}
+
+void Audience::require_driver(std::uint64_t client) const {
+  if (client != driving_client_)
+    throw std::invalid_argument("another page drives this car; take over to change it");
+}
+
+void Audience::tell_roles() {
+  for (const std::uint64_t client : clients_)
+    tell(client, {{"type", "role"}, {"drives", client == driving_client_}});
+}
+
+void Audience::tell(std::uint64_t client, const Json& message) {
+  tell_text(client, json_text(message));
+}
+
+void Audience::tell_text(std::uint64_t client, std::string text) {
+  server_.send(client, {std::make_shared<const std::string>(std::move(text)), false});
+}
+
+void Audience::execute(std::uint64_t client, const Json& command,
+                       const std::function<void(const std::string& what)>& obey) {
+  const auto id = command.find("id");
+  const bool has_id = id != command.end() && id->is_number_integer();
+  const auto fail = [&](const char* why) {
+    Json error = {{"type", "error"}, {"message", why}};
+    if (has_id) error["id"] = *id;
+    tell(client, error);
+  };
+  try {
+    if (!command.is_object()) throw MalformedCommand("a command must be a JSON object");
+    obey(field::text(command, "do"));
+    if (has_id) tell(client, {{"type", "done"}, {"id", *id}});
+  } catch (const MalformedCommand& error) {
+    ++refused_;
+    fail(error.what());
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+}  // namespace slalom::view
