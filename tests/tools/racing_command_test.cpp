@@ -84,7 +84,7 @@ TEST_F(RacingCommand, SaysWhatIsWrong) {
   expect_refused("reproduce --benchmark racing", {"--course", "folder"});
   expect_refused("reproduce --benchmark racing --course nowhere", {"nowhere", "aut.yaml"});
   expect_refused("reproduce --benchmark racing --course maps --driver tortoise", {"tortoise", "svg_mppi"});
-  expect_refused("reproduce --benchmark racing --course maps --margin 0.9", {"no closed way", "1.055"});
+  expect_refused("reproduce --benchmark racing --course maps --margin 2.25", {"no closed way", "1.055"});
   expect_refused("reproduce --driver mppi --out x", {"--driver", "--benchmark"});
   expect_refused("reproduce --margin 0.1 --out x", {"--margin", "--benchmark"});
   expect_refused("reproduce --course wren", {"--out", "is required"});

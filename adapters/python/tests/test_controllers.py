@@ -72,7 +72,8 @@ def test_mistakes_name_the_option_the_value_and_the_rule(make, error, text):
 
 
 def test_results_are_views_of_the_controller():
-    controller = slalom.SvgMppi(slalom.Pendulum(), horizon=8, samples=100, batches=1, guides=3, input_min=-5, input_max=5)
+    controller = slalom.SvgMppi(slalom.Pendulum(), horizon=8, samples=100, batches=1, guides=3, guide_iterations=2,
+                                 input_min=-5, input_max=5)
     plan = controller.solve([1.0, 0.0])
     shapes = {"inputs": (8, 1), "nominal": (8, 1), "variances": (8, 1), "samples": (100, 8, 1), "costs": (100,),
               "weights": (100,), "samples_collided": (100,), "guides": (3, 8, 1), "guide_path": (6, 8, 1)}
