@@ -151,7 +151,8 @@ std::vector<std::string> problem_scalars(const SubjectFacts& facts) {
                                     "contacts",
                                     "prediction_step",
                                     "method",
-                                    "plan_cost"};
+                                    "plan_cost",
+                                    "symptom"};
   const auto add = [&](const char* kind, const std::vector<std::string>& all) {
     for (const std::string& each : all) names.push_back(kind + each);
   };
@@ -187,7 +188,7 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
   put({solve.samples ? solve.samples->samples() : 0.0, solve.collided_share, solve.temperature});
   put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
   put({frame.collides ? 1.0 : 0.0, static_cast<double>(step.collisions + frame.collides), step.period});
-  put({static_cast<double>(step.method), cost});
+  put({static_cast<double>(step.method), cost, static_cast<double>(solve.symptom())});
   for (const double value : step.state) to.put(value);
   for (std::size_t i = 0; i < inputs; ++i) to.put(subject.inputs()[i]);
   for (const double sum : sums) to.put(sum);

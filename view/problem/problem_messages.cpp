@@ -5,6 +5,7 @@
 #include "view/problem/problem_session.hpp"
 #include "view/protocol/grid_block.hpp"
 #include "view/protocol/option_json.hpp"
+#include "view/protocol/symptom_json.hpp"
 
 namespace slalom::view {
 namespace {
@@ -57,6 +58,7 @@ Json ProblemSession::hello() const {
           {"protocol", 1},
           {"scalars", problem_scalars(facts)},
           {"statuses", statuses},
+          {"symptoms", symptoms_json()},
           {"courses", Json::array()},
           {"methods", methods_},
           {"configurations", Json::array()},

@@ -8,6 +8,7 @@
 #include "src/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/option_json.hpp"
+#include "view/protocol/symptom_json.hpp"
 
 namespace slalom::view {
 namespace {
@@ -70,17 +71,12 @@ std::string hello_message(const evaluation::Environment& environment, const Choi
   Json statuses = Json::array();
   for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)
     statuses.push_back(vehicle::name(static_cast<vehicle::PlannerStatus>(i)));
-  Json symptoms = Json::array();
-  for (int i = 0; i <= static_cast<int>(Symptom::no_progress); ++i) {
-    const auto symptom = static_cast<Symptom>(i);
-    symptoms.push_back({{"name", name(symptom)}, {"explanation", explanation(symptom)}});
-  }
   const sim::CarParameters& car = world.car;
   return json_text({{"type", "hello"},
                     {"protocol", 1},
                     {"scalars", scalar_names()},
                     {"statuses", statuses},
-                    {"symptoms", symptoms},
+                    {"symptoms", symptoms_json()},
                     {"courses", choices.courses},
                     {"methods", choices.methods},
                     {"configurations", choices.configurations},

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "src/evaluation/json.hpp"
+#include "slalom/solvers/symptom.hpp"
+
+namespace slalom::view {
+
+/// The names of all symptoms of a solve and what they mean, by their values.
+inline Json symptoms_json() {
+  Json symptoms = Json::array();
+  for (int i = 0; i <= static_cast<int>(Symptom::no_progress); ++i) {
+    const auto symptom = static_cast<Symptom>(i);
+    symptoms.push_back({{"name", name(symptom)}, {"explanation", explanation(symptom)}});
+  }
+  return symptoms;
+}
+
+}  // namespace slalom::view
