@@ -58,8 +58,8 @@ export default async function (h) {
       ];
       await look.mouse.move(...from);
       await look.mouse.down();
-      await look.mouse.move((from[0] + to[0]) / 2, (from[1] + to[1]) / 2, { steps: 4 });
-      await look.mouse.move(...to, { steps: 4 });
+      await look.mouse.move((from[0] + to[0]) / 2, (from[1] + to[1]) / 2, { steps: 12 });
+      await look.mouse.move(...to, { steps: 24 });
       await look.mouse.up();
       await h.until((y) => Math.abs(slalom.frame.bodies[1].y - y) < 0.1, side, look);
       assert.equal(await look.evaluate(() => slalom.scalar("tick")), tick);
@@ -136,7 +136,7 @@ export default async function (h) {
     await look.mouse.move(box.x + 0.6 * box.width, box.y + 20, { steps: 5 });
     await look.mouse.up();
     await look.locator("#zoom-out").click();
-    assert.equal(await look.locator("#zoom-out").isVisible(), false);
+    await look.locator("#zoom-out").waitFor({ state: "hidden" });
   });
   await look.close();
   await server.stop();
