@@ -1,7 +1,7 @@
 #pragma once
 
-#include "src/evaluation/json.hpp"
 #include "slalom/solvers/symptom.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::view {
 

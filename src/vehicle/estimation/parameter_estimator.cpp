@@ -22,6 +22,7 @@ constexpr double slowest = 1.0;          // m/s, below it tyres hardly slip
 constexpr double turning = 3.0;  // m/s^2, lateral acceleration from which old evidence fades at the full rate
 constexpr double offset_time = 0.5;     // s of straight driving within which the offset is learned
 constexpr double largest_offset = 0.1;  // rad
+constexpr double straight = 0.05;       // rad, angle of the wheels up to which a way counts as straight
 constexpr double farthest = 0.5;        // m or rad between poses: a jump of the localisation
 constexpr double largest_error = 5;     // deviations
 constexpr double strongest = 15;        // m/s^2, of a measured acceleration
@@ -193,17 +194,19 @@ void ParameterEstimator::weigh() noexcept {
     best = std::max(best, evidence_[i]);
   }
   for (double& each : evidence_) each -= best;
-  learn_offset(1 - turned_share);
+  learn_offset(turned_share);
 }
 
-/// Moves the offset of the steering towards the one that explains the yaw at the end of the window.
-void ParameterEstimator::learn_offset(double straightness) noexcept {
-  const double yaw_per_angle = ago(0).motion.speed * window_ * period_ / wheelbase_;
-  const double missing = -static_cast<double>(yaw_error_[given_]) / yaw_per_angle;
-  if (!(std::abs(missing) < largest_offset)) return;
+/// Moves the offset of the steering towards the one that explains the yaw at the end of the window, the less
+/// the more the car turns: there gain and friction decide.
+void ParameterEstimator::learn_offset(double turned_share) noexcept {
+  const double way = ago(0).motion.speed * window_ * period_;  // m
+  const double turned = maps::wrap_angle(ago(0).motion.pose.yaw - ago(window_).motion.pose.yaw);
+  const double share = 1 - turned_share - square(turned * wheelbase_ / way / straight);
+  const double missing = -static_cast<double>(yaw_error_[given_]) * wheelbase_ / way;
+  if (!(share > 0 && std::abs(missing) < largest_offset)) return;
   double& offset = estimate_.steering_offset;
-  offset =
-      std::clamp(offset + straightness * period_ / offset_time * missing, -largest_offset, largest_offset);
+  offset = std::clamp(offset + share * period_ / offset_time * missing, -largest_offset, largest_offset);
 }
 
 /// Returns the quantile of the friction's logarithm. The density is constant in the interval around a grid

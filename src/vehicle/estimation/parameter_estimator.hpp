@@ -28,9 +28,9 @@ struct MeasuredMotion {
 ///     s (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / 0.02 rad)^2)
 ///
 /// with the errors of the predicted pose at the end, and s = min(1, (a / 1.5 m/s^2)^2) with the root mean
-/// square a of the lateral acceleration in the window. The factor allows for the overlap of successive windows.
-/// Errors beyond five deviations count as five, so that a collision or a jump of the localisation decides
-/// nothing. The estimator forgets within 2 s of turning. On a straight line it can learn nothing
+/// square a of the lateral acceleration in the window. The factor allows for the overlap of successive
+/// windows. Errors beyond five deviations count as five, so that a collision or a jump of the localisation
+/// decides nothing. The estimator forgets within 2 s of turning. On a straight line it can learn nothing
 /// about the tyres and forgets nothing either: there it learns the offset of the steering, from the error of
 /// the yaw that the given values predict. The prior consists of independent normal distributions around
 /// the given values; that of the friction is for its logarithm.
@@ -85,7 +85,7 @@ class ParameterEstimator {
   Stretch last_stretch() const noexcept;
   double turning_share() const noexcept;
   void weigh() noexcept;
-  void learn_offset(double straightness) noexcept;
+  void learn_offset(double turned_share) noexcept;
   void summarise() noexcept;
   double log_quantile(const std::array<double, frictions>& shares) const noexcept;
   bool continues() const noexcept;

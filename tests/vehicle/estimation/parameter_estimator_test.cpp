@@ -117,6 +117,11 @@ TEST(ParameterEstimator, FindsAnOffsetOfTheSteeringOnALongStraightAndNothingElse
   EXPECT_NEAR(found.steering_offset, 0.01, 0.001);
 }
 
+TEST(ParameterEstimator, TakesNoWrongGainForAnOffset) {
+  const ParameterEstimate found = after({.gain = 0.93, .speed = 1.5, .swing = 0.3, .duration = 6});
+  EXPECT_NEAR(found.steering_offset, 0, 0.005);
+}
+
 TEST(ParameterEstimator, StandsTheNoiseOfALocalisation) {
   const ParameterEstimate found =
       after({.friction = 0.7, .delay = 0.1, .position_noise = 0.015, .yaw_noise = 0.005, .duration = 4});

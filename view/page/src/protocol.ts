@@ -61,8 +61,8 @@ const blocks = {
     return { ...pose, rows, columns, resolution, centerX, centerY, cells };
   },
   /**
-   * `terms`: of each trajectory its costs by term, the solver's cost and the weight, `width` values. `collided`:
-   * 0, or 1 + the index of the first state that collides.
+   * `terms`: of each trajectory its costs by term, the solver's cost and the weight, `width` values.
+   * `collided`: 0, or 1 + the index of the first state that collides.
    */
   candidates: (r: Reader) => {
     const size = r.end - r.at;

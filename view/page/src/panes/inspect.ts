@@ -78,8 +78,8 @@ export class InspectPane {
 
   private hint(c: Candidates) {
     const collided = c.collided.filter((v) => v > 0).length;
-    return `${c.count} of ${scalar("samples")} samples are shown; ${collided} of them collide. Click one in the
-      scene (Select), or enter its rank.`;
+    const count = `${c.count} of ${scalar("samples")} samples are shown; ${collided} of them collide.`;
+    return count + " Click one in the scene (Select), or enter its rank.";
   }
 
   private sentence(frame: Frame, c: Candidates, i: number, rank: number) {
