@@ -312,7 +312,7 @@ void add_further_tasks(std::vector<Task>& tasks) {
                   [](const auto& p, const auto& s, int) { return reached(s.x<-1.2, s.x> p.goal); }));
   add("vessel", Ways::one, 40, {{-0.5, 0.5}, {-0.5, 0.5}},
       closed_loop(Vessel{}, {0, 0, 0, 0, 0, 0}, 120, [](const auto& p, const auto& s, int) {
-        return reached(false, p.offset(s) < 0.4 && s.ahead < 0.3);
+        return reached(false, p.offset(s) < 0.4 && std::abs(s.ahead) < 0.3);
       }));
   add("trailer", Ways::one, 40, {{-1.5, 1.5}, {-0.3, 0.3}},
       closed_loop(Trailer{}, {0, 0, 0, 0}, 150,

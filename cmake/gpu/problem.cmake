@@ -19,7 +19,8 @@ function(slalom_gpu_problem target)
   list(APPEND includes $<TARGET_PROPERTY:slalom::gpu,INTERFACE_INCLUDE_DIRECTORIES>)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp)
   set(headers ${folder}/../../include/slalom)
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cu ${folder}/*.hpp ${headers}/gpu/kernels/*.hpp ${headers}/core/*.hpp ${headers}/core/*/*.hpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cu ${folder}/*.hpp ${headers}/gpu/kernels/*.hpp ${headers}/core/*.hpp ${headers}/core/*/*.hpp
+    ${headers}/problems/*.hpp ${folder}/../../src/solvers/methods/gaussian_fit.hpp)
   string(REPLACE ";" " " architectures "${arg_ARCHITECTURES}")
   add_custom_command(OUTPUT ${out} DEPENDS slalom_gpu_compile ${header} ${sources} VERBATIM COMMAND_EXPAND_LISTS
     COMMENT "Code of ${arg_PROBLEM} for GPUs"

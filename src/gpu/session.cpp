@@ -72,8 +72,12 @@ bool Session::check(const char* what, int result) noexcept {
   if (result == 0) return true;
   const char* words = nullptr;
   driver().error_text(result, &words);
-  if (fault_.empty())
-    fault_ = std::string("GPU: ") + what + ": " + (words ? words : "error " + std::to_string(result));
+  try {
+    if (fault_.empty())
+      fault_ = std::string("GPU: ") + what + ": " + (words ? words : "error " + std::to_string(result));
+  } catch (const std::bad_alloc&) {
+    fault_ = "no memory";  // short enough to need none
+  }
   return false;
 }
 
@@ -114,7 +118,8 @@ Session::~Session() {
   d.context_release(0);
 }
 
-void* Session::allocate(std::size_t bytes) noexcept {
+void* Session::allocate(std::size_t bytes) {
+  memory_.reserve(memory_.size() + 1);
   void* address = nullptr;
   if (!call("memory", driver().allocate, &address, bytes)) return nullptr;
   memory_.push_back(address);
@@ -122,7 +127,8 @@ void* Session::allocate(std::size_t bytes) noexcept {
   return address;
 }
 
-void* Session::allocate_on_host(std::size_t bytes) noexcept {
+void* Session::allocate_on_host(std::size_t bytes) {
+  host_memory_.reserve(host_memory_.size() + 1);
   void* address = nullptr;
   if (!call("memory of the host", driver().host_allocate, &address, bytes, device_map)) return nullptr;
   host_memory_.push_back(address);

@@ -11,8 +11,8 @@ extern "C" [[gnu::weak]] void __tsan_init();
 
 namespace slalom::testing {
 
-/// The time and memory that a call takes beyond what docs/robustness.md says for its size: 0.1 s of processor
-/// time of its thread, five times that beside other work, and 200 MB; more under sanitizers.
+/// The time and memory that a call takes beyond what docs/robustness.md says for its size: 0.5 s of processor
+/// time of its thread, and 200 MB; more under sanitizers.
 class CallLimits {
  public:
   /// Throws Finding where the calls since construction, one if not said, took more.

@@ -183,7 +183,9 @@ void declare_reproduce(Subcommand& command) {
       "With --benchmark: follow_the_gap, or a method: the planner of --config [racing_benchmark] then "
       "drives along the minimum-time raceline");
   command.option("--margin", arguments->margin,
-                 "With --benchmark: distance that the raceline keeps between the car and walls, m", {0, 10});
+                 "With --benchmark: distance that the car on the raceline keeps from walls, m; in narrow "
+                 "places less, down to 0.4 of it",
+                 {0, 10});
   command.option(
       "--car", arguments->car,
       "With --benchmark: car of the raceline: f1tenth, passenger, or a YAML file (docs/courses.md)");

@@ -42,9 +42,9 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Zeroed memory on the device. It lasts as long as the session.
-  void* allocate(std::size_t bytes) noexcept;
+  void* allocate(std::size_t bytes);
   /// Zeroed memory of the host that the device writes, at the same address.
-  void* allocate_on_host(std::size_t bytes) noexcept;
+  void* allocate_on_host(std::size_t bytes);
   /// Queues a copy to the device; `from` is read before this returns.
   bool copy_in(void* to, const void* from, std::size_t bytes) noexcept;
   /// Waits for everything that is queued, and copies from the device.

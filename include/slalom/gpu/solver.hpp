@@ -122,7 +122,7 @@ class GpuSolver final : public Solver {
  private:
   static constexpr std::size_t size(int count) noexcept { return static_cast<std::size_t>(count); }
   template <class T>
-  void allocate(T*& array, long long count) noexcept {
+  void allocate(T*& array, long long count) {
     if (count > 0) array = static_cast<T*>(session_.allocate(sizeof(T) * static_cast<std::size_t>(count)));
   }
 

@@ -7,8 +7,7 @@
 namespace slalom {
 
 /// The shape of the samples' noise. For one solver either `exponent` or `knots` may be above 0, not both, and
-/// with a horizon above 2048 steps neither: otherwise `make_solver` throws std::invalid_argument. `icem` has
-/// an exponent of 2 by default.
+/// with a horizon above 2048 steps neither: otherwise `make_solver` throws std::invalid_argument.
 /// `visit_noise_options` below describes the fields.
 struct NoiseOptions {
   PerInput exponent = 0;

@@ -302,11 +302,9 @@ void Guides::densities(double temperature, std::span<const int> points) noexcept
     const double* theta = path_[points[i]];
     double logarithm = -path_costs_[points[i]] / temperature;
     log_error_ = std::max(log_error_, std::abs(logarithm) * std::numeric_limits<float>::epsilon());
-    if (with_prior) {
-      for (int r = 0; r < rows_; ++r) {
-        const double difference = theta[r] - theta_[best_][r];
-        logarithm -= 0.5 * difference * difference * distance_weight_[r] / weight_temperature();
-      }
+    for (int r = 0; with_prior && r < rows_; ++r) {
+      const double difference = theta[r] - theta_[best_][r];
+      logarithm -= 0.5 * difference * difference * distance_weight_[r] / weight_temperature();
     }
     density_[i] = logarithm;
     largest = std::max(largest, logarithm);
@@ -333,9 +331,10 @@ void Guides::fit_variance(double temperature, float* variance) noexcept {
   for (int l = 0; l < iterations_; ++l)
     for (int g = 0; g < count_; ++g)
       if (reproduction().fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
-  const std::span<const int> points(fit_points_.data(), count);
+  const std::span points(fit_points_.data(), count);
   const bool has_temperature = temperature > 0 || reproduction().fit_target == FitTarget::state_cost;
-  const bool known = has_temperature && best_cost_ < infinite && count > 0;
+  const bool known = has_temperature && best_cost_ < infinite &&
+                     count >= (reproduction().fit_absolute_curvature ? 1 : 3);  // three determine a curvature
   if (known) {
     densities(temperature, points);
     fit_weights(density_.data(), count, square_.data(), logarithm_.data());

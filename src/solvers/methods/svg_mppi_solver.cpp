@@ -7,6 +7,7 @@
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/methods/guides.hpp"
 #include "solvers/methods/mppi_update.hpp"
+#include "solvers/sampling/seek_temperature.hpp"
 
 namespace slalom {
 
@@ -254,10 +255,8 @@ std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
   const int wanted = o.batches > 0 ? o.batches : std::clamp(total / 40, 4, 8);
   o.batches = one ? 1 : std::min(wanted, total);
   o.samples = (total + o.batches - 1) / o.batches;
-  // Plans that follow more samples than those of one batch keep farther from obstacles
-  // (docs/problem-suite.md).
   if (o.batches > 1 && o.temperature == 0 && o.weighting.target_ess_fraction == 0)
-    o.weighting.target_ess_fraction = 1 / std::sqrt(static_cast<double>(o.samples));
+    o.weighting.target_ess_fraction = detail::default_effective_size(o.samples, true) / o.samples;
   return std::make_unique<SvgMppiSolver>(o, total, inputs, std::move(pool));
 }
 

@@ -183,7 +183,8 @@ void ParameterEstimator::weigh() noexcept {
   predict_all(dynamics_, grid_, last_stretch(), lateral_error_.data(), yaw_error_.data());
   const double turned_share = turning_share();
   const double remembered = std::exp(-period_ / memory * turned_share);
-  const double share = 0.5 * std::min(4 * turned_share, 1.0) / window_, most = square(largest_error);
+  const double evidence_share = std::min(4 * turned_share, 1.0);
+  const double share = 0.5 * evidence_share / window_, most = square(largest_error);
   double best = -INFINITY;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     const double aside = square(lateral_error_[i] / lateral_noise_);
@@ -194,15 +195,15 @@ void ParameterEstimator::weigh() noexcept {
     best = std::max(best, evidence_[i]);
   }
   for (double& each : evidence_) each -= best;
-  learn_offset(turned_share);
+  learn_offset(1 - evidence_share);
 }
 
 /// Moves the offset of the steering towards the one that explains the yaw at the end of the window, the less
 /// the more the car turns: there gain and friction decide.
-void ParameterEstimator::learn_offset(double turned_share) noexcept {
+void ParameterEstimator::learn_offset(double straightness) noexcept {
   const double way = ago(0).motion.speed * window_ * period_;  // m
   const double turned = maps::wrap_angle(ago(0).motion.pose.yaw - ago(window_).motion.pose.yaw);
-  const double share = 1 - turned_share - square(turned * wheelbase_ / way / straight);
+  const double share = straightness - square(turned * wheelbase_ / way / straight);
   const double missing = -static_cast<double>(yaw_error_[given_]) * wheelbase_ / way;
   if (!(share > 0 && std::abs(missing) < largest_offset)) return;
   double& offset = estimate_.steering_offset;

@@ -85,7 +85,7 @@ class ParameterEstimator {
   Stretch last_stretch() const noexcept;
   double turning_share() const noexcept;
   void weigh() noexcept;
-  void learn_offset(double turned_share) noexcept;
+  void learn_offset(double straightness) noexcept;
   void summarise() noexcept;
   double log_quantile(const std::array<double, frictions>& shares) const noexcept;
   bool continues() const noexcept;

@@ -59,12 +59,11 @@ void check(const Corridor& corridor, const RacingCar& car) {
     if (width(i) < width(narrowest)) narrowest = i;
   if (width(narrowest) > 2 * least_wall_distance(car)) return;
   char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "corridor: %.3f m wide at (%.2f, %.2f); must be wider than %.3f m, the car and 0.4 margins on "
-      "both sides",
-      width(narrowest), corridor.centre_line[narrowest].x, corridor.centre_line[narrowest].y,
-      2 * least_wall_distance(car));
+  std::snprintf(text, sizeof text,
+                "corridor: %.3f m wide at (%.2f, %.2f); must be wider than %.3f m, the car with %.1f of its "
+                "margin on both sides",
+                width(narrowest), corridor.centre_line[narrowest].x, corridor.centre_line[narrowest].y,
+                2 * least_wall_distance(car), least_margin_share);
   throw std::invalid_argument(text);
 }
 

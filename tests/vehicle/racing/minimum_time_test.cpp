@@ -67,10 +67,17 @@ TEST(MinimumTime, KeepsTheMarginWhereItFitsAndLessInANarrowPlace) {
   corridor.left[narrow] = corridor.right[narrow] = 0.24;
   const Raceline line = minimum_time_raceline(corridor, car);
   for (std::size_t i = 0; i < line.points.size(); ++i) {
-    const double keep = i == narrow ? 0.5 * car.width + 0.4 * car.margin : 0.5 * car.width + car.margin;
+    const double keep = 0.5 * car.width + (i == narrow ? least_margin_share : 1) * car.margin;
     EXPECT_LE(offset(corridor, line, i), corridor.left[i] - keep) << i;
     EXPECT_GE(offset(corridor, line, i), keep - corridor.right[i]) << i;
   }
+}
+
+TEST(MinimumTime, TheMarginIsAQuarterOfTheRoomBesideTheCarBetweenItsLimits) {
+  const RacingCar car;
+  for (const auto& [room, margin] :
+       {std::pair(0.0, 0.06), {0.24, 0.06}, {0.4, 0.1}, {0.6, 0.15}, {2.0, 0.15}})
+    EXPECT_DOUBLE_EQ(wall_distance(car, car.width + room), 0.5 * car.width + margin) << room;
 }
 
 TEST(MinimumTime, OnAnOpenStraightItIsStraightAtTheTopSpeed) {

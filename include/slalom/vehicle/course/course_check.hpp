@@ -12,7 +12,7 @@ namespace slalom::vehicle {
 /// The car against which a course is checked.
 struct CourseCheckOptions {
   double half_width = 0.155;  ///< m, of the body
-  double margin = 0.06;       ///< m, that the body keeps from walls
+  double margin = 0;          ///< m, that the body keeps from walls
   SpeedLimits limits;         ///< limits of tyres, motor and brakes
   double tolerance = 0.05;    ///< share by which a profile may exceed the accelerations, since files are
                               ///< rounded; there is none for the top speed

@@ -23,7 +23,7 @@ struct Raceline {
 ///   minimise  sum_i 2 d_i / (v_i + v_{i+1})   over offsets n_i and speeds v_i, d_i = |p_{i+1} - p_i|,
 ///   p_i = c_i + n_i e_i  (c_i the centre line, e_i its normals)
 ///   subject to
-///     -(right_i - r) <= n_i <= left_i - r                   r = wall_distance()
+///     -(right_i - r_i) <= n_i <= left_i - r_i               r_i = wall_distance(car, left_i + right_i)
 ///     |k_i| <= tan(max_steering) / wheelbase                k_i the curvature of p_{i-1}, p_i, p_{i+1}
 ///     v_i <= top_speed,    a_i v_i <= power                 a_i = (v_{i+1}^2 - v_i^2) / (2 d_i)
 ///     (v_j^2 k_j / lateral)^2 + (a_i / along)^2 <= 1        j = i, i+1; along: acceleration or braking
@@ -33,8 +33,8 @@ struct Raceline {
 /// optimised together. Solved by a logarithmic barrier method (Boyd & Vandenberghe, "Convex Optimization",
 /// 2004, Sec. 11.3) with exact second derivatives; the result is a local minimum, within about 0.1 % of its
 /// time. The speeds returned are those of racing_speeds() along the line. Throws std::invalid_argument for an
-/// invalid car, fewer than 8 points, a corridor whose normals cross, or one that is narrower than the car and
-/// its margin anywhere; the message names the narrowest place.
+/// invalid car, fewer than 8 points, a corridor whose normals cross, or one that is somewhere narrower than
+/// the car with `least_margin_share` of its margin on both sides; the message names the narrowest place.
 Raceline minimum_time_raceline(const Corridor& corridor, const RacingCar& car);
 
 }  // namespace slalom::vehicle

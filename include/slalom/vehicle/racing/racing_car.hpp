@@ -24,7 +24,7 @@ struct GripAtSpeed {
 struct RacingCar {
   std::string name = "f1tenth";                ///< name of the car, for messages
   double width = 0.31;                         ///< m, of the body
-  double margin = 0.15;                        ///< m, that the body keeps from walls; wall_distance()
+  double margin = 0.15;                        ///< m, that the body keeps from walls in wide places
   double wheelbase = 0.3302;                   ///< m
   double max_steering = 0.4;                   ///< rad, of the front wheels
   double max_steering_rate = 3.2;              ///< rad/s
@@ -54,11 +54,14 @@ RacingCar racing_car(const Configuration& configuration);
 /// the rows of `grip`. Throws std::invalid_argument unless `friction` is finite and above 0.
 void set_friction(RacingCar& car, double friction);
 
-/// m that the centre of the car keeps from the walls of a corridor of this width (m) there: half the width of
-/// the car and its margin. Where the corridor is narrow, the margin is a quarter of the room beside the car,
-/// but at least 0.4 of it.
+/// The share of its margin that a car keeps in the narrowest places.
+inline constexpr double least_margin_share = 0.4;
+/// m that the centre of the car keeps from the walls of a corridor of this width (m): half the width of the
+/// car and its margin. Where the corridor is narrow, the margin is a quarter of the room beside the car, but
+/// at least `least_margin_share` of it.
 inline double wall_distance(const RacingCar& car, double corridor_width) {
-  return 0.5 * car.width + std::clamp(0.25 * (corridor_width - car.width), 0.4 * car.margin, car.margin);
+  return 0.5 * car.width +
+         std::clamp(0.25 * (corridor_width - car.width), least_margin_share * car.margin, car.margin);
 }
 /// The same in the narrowest place that the car can pass.
 inline double least_wall_distance(const RacingCar& car) {
