@@ -116,7 +116,8 @@ template <class Options, class Visit>
 void visit_variance_options(Options& o, Visit&& visit) {
   visit(o.use_nominal, {"use_nominal", "", "use the best guide as the nominal sequence (NS), equation (12)"});
   visit(o.adapt_covariance,
-        {"adapt_covariance", "", "fit the variances to the path of the best guide (AC), equation (13)"});
+        {"adapt_covariance", "",
+         "fit the variances to a path of 3 or more steps of the best guide (AC), equation (13)"});
   visit(o.variance_min,
         {"variance_min", "input^2", "least adapted variance; 0: a quarter of variance", 0, finite});
   visit(o.variance_max, {"variance_max", "input^2",
