@@ -18,7 +18,7 @@ import numpy as np
 import slalom
 from batched_mppi import NumpyMppi, TorchMppi
 from peers import PytorchMppi, pytorch_mppi_version
-from problems import DoubleIntegrator, Obstacles, Pendulum
+from problems import CartPole, DoubleIntegrator, Obstacles, Pendulum, Quadrotor
 
 try:
     import torch
@@ -33,15 +33,14 @@ SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 10
 
 
 def of_slalom(method, problem, p, seed, **options):
-    controller = method(problem, horizon=T, samples=K, temperature=p.temperature, input_min=p.low, input_max=p.high,
-                        seed=seed, **options)
+    controller = method(problem, horizon=T, samples=K, input_min=p.low, input_max=p.high, seed=seed, **options)
     return lambda x: controller.solve(x, elapsed=p.dt).inputs
 
 
-def guided(p):
-    v = np.array(p.variance)
-    return dict(guide_step=list(v / 4), guide_variance=list(v / 2), gradient_variance=list(v / 2),
-                gradient_temperature=p.temperature, variance_min=list(v / 4), variance_max=list(v))
+def same_mppi(problem, p):
+    """seed -> solve(x) of `mppi` with the noise, temperature and control term of the loops."""
+    return lambda seed: of_slalom(slalom.Mppi, problem, p, seed, temperature=p.temperature, variance=p.variance,
+                                  control_cost_discount=0)
 
 
 def callables(p):
@@ -57,15 +56,12 @@ def ways(Kind):
         yield "batched torch (this folder)", lambda seed: TorchMppi(Kind(torch), *common, seed).solve
         if PEER:
             yield f"pytorch_mppi {PEER}", lambda seed: PytorchMppi(Kind(torch), *common, seed).solve
-    own = callables(p)
-    yield "slalom `mppi`, numpy callables", lambda seed: of_slalom(
-        slalom.Mppi, own, p, seed, variance=p.variance, control_cost_discount=0)
-    built_in = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive()}.get(p.name)
-    if built_in:
-        yield "slalom `mppi`, compiled problem", lambda seed: of_slalom(
-            slalom.Mppi, built_in, p, seed, variance=p.variance, control_cost_discount=0)
-        yield "slalom `svg_mppi`, compiled problem", lambda seed: of_slalom(
-            slalom.SvgMppi, built_in, p, seed, **guided(p))
+    yield "slalom `mppi`, numpy callables", same_mppi(callables(p), p)
+    built_in = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive(),
+                "cart-pole": slalom.CartPole(dt=0.04), "quadrotor": slalom.Quadrotor()}.get(p.name, callables(p))
+    if p.name != "double integrator":
+        yield "slalom `mppi`, compiled problem", same_mppi(built_in, p)
+    yield "slalom `svg_mppi`, defaults", lambda seed: of_slalom(slalom.SvgMppi, built_in, p, seed)
 
 
 def drive(p, solve):
@@ -84,7 +80,7 @@ def drive(p, solve):
 print(f"K = {K}, T = {T}, {SEEDS} seeds, one thread, numpy {np.__version__}, torch {torch and torch.__version__}, "
       f"pytorch_mppi {PEER or '(none: SLALOM_PEERS_DIR)'}\n")
 print("| problem | solver | CPU time of a solve, ms (p50) | p99 | closed-loop cost (mean, standard error) |\n|---|---|---|---|---|")
-for Kind in Pendulum, DoubleIntegrator, Obstacles:
+for Kind in Pendulum, DoubleIntegrator, Obstacles, CartPole, Quadrotor:
     for name, make in ways(Kind):
         runs = [drive(Kind(np), make(seed)) for seed in range(SEEDS)]
         costs, times = [cost for cost, _ in runs], 1e3 * np.concatenate([t[3:] for _, t in runs])

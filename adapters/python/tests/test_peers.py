@@ -12,10 +12,10 @@ sys.path.append(str(Path(__file__).resolve().parents[3] / "bench" / "peers"))
 
 import peers  # noqa: E402
 from batched_mppi import NumpyMppi, TorchMppi  # noqa: E402
-from problems import DoubleIntegrator, Obstacles, Pendulum  # noqa: E402
+from problems import CartPole, DoubleIntegrator, Obstacles, Pendulum, Quadrotor  # noqa: E402
 
 SAMPLES, HORIZON = 208, 12  # a multiple of 16, to which a batch of samples is padded
-KINDS = [Pendulum, DoubleIntegrator, Obstacles]
+KINDS = [Pendulum, DoubleIntegrator, Obstacles, CartPole, Quadrotor]
 
 
 def settings(p):

@@ -70,8 +70,8 @@ struct SvgMppiOptions {
   PerInput variance_min = 0;
   PerInput variance_max = 0;
 
-  NoiseOptions noise{.exponent = 1.25};  ///< shape of the noise; coloured and normal
-  WeightingOptions weighting{};          ///< how costs become weights
+  NoiseOptions noise{.exponent = 2};  ///< shape of the noise; coloured and normal
+  WeightingOptions weighting{};       ///< how costs become weights
   double control_cost_discount = 0;
   double zero_mean_share = 0;
   bool shift_warm_start = true;  ///< the guides are shifted, too

@@ -52,7 +52,7 @@ void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, R
   } else {
     fill_normal(to, r.first, r.count, key);
   }
-  if (shape_.correlated()) shape_.apply(to, r);
+  if (shape_.correlated() && !white_) shape_.apply(to, r);
 }
 
 void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {

@@ -44,6 +44,8 @@ class SampleSet {
   int samples() const noexcept { return values_.samples(); }
   /// Draws so many samples from now on, at most as many as at construction.
   void set_samples(int samples) noexcept { values_.set_samples(samples); }
+  /// Draws white noise from now on, or again noise of its shape.
+  void set_white(bool white) noexcept { white_ = white; }
   int rows() const noexcept { return values_.rows(); }
   const SequenceBatch& values() const noexcept { return values_; }
   SequenceBatch& values() noexcept { return values_; }
@@ -138,6 +140,7 @@ class SampleSet {
   SequenceBatch values_;
   SequenceBatch noise_;
   NoiseShape shape_;
+  bool white_ = false;
   const float* proposals_ = nullptr;  ///< [proposal][row]
   int proposed_ = 0;
   RandomKey prepared_key_;

@@ -93,7 +93,40 @@ TEST(Batches, EvaluateAllSamples) {
   };
   for (const int batches : {0, 2, 3, 8})
     for (int samples = 100; samples < 110; ++samples)
-      EXPECT_EQ(rollouts(samples, batches) - rollouts(96, batches), samples - 96) << batches;
+      EXPECT_EQ(rollouts(samples, batches), samples + 38) << batches;
+}
+
+/// The correlation of neighbouring steps of the samples of the last batch.
+double correlation_of_neighbours(int batches, const NoiseOptions& noise) {
+  const auto flat = testing::sum_over_steps([](double, int) { return 0.0; });
+  const auto solver =
+      make_solver(SvgMppiOptions{.horizon = 16, .samples = 3000, .batches = batches, .noise = noise}, 1);
+  const SolveResult& result = solver->solve(flat, {});
+  const auto n = static_cast<std::size_t>(result.samples->samples());
+  std::vector<std::vector<float>> values(n, std::vector<float>(16));
+  std::vector<double> mean(16);
+  for (std::size_t k = 0; k < n; ++k) {
+    result.samples->get_sample(static_cast<int>(k), values[k]);
+    for (std::size_t t = 0; t < 16; ++t) mean[t] += values[k][t] / static_cast<double>(n);
+  }
+  double product = 0, square = 0;
+  for (const auto& value : values) {
+    for (std::size_t t = 1; t < 16; ++t) {
+      product += (value[t] - mean[t]) * (value[t - 1] - mean[t - 1]);
+      square += (value[t] - mean[t]) * (value[t] - mean[t]);
+    }
+  }
+  return product / square;
+}
+
+TEST(Batches, EveryThirdIsWhiteWhereNoiseIsColoured) {
+  const NoiseOptions coloured = SvgMppiOptions{}.noise;
+  for (const int batches : {2, 4, 5, 7})
+    EXPECT_GT(correlation_of_neighbours(batches, coloured), 0.5) << batches;
+  for (const int batches : {3, 6})
+    EXPECT_NEAR(correlation_of_neighbours(batches, coloured), 0, 0.05) << batches;
+  EXPECT_GT(correlation_of_neighbours(3, {.exponent = 2, .pinned = true}), 0.5);
+  EXPECT_GT(correlation_of_neighbours(3, {.knots = 4}), 0.5);
 }
 
 }  // namespace
