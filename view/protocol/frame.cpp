@@ -22,7 +22,8 @@ constexpr std::string_view scalar_labels =
     "collided_share temperature iterations tick_ms draw_ms evaluate_ms guide_ms update_ms solve_ms "
     "deadline_ms lap lap_time progress path_distance clearance contact contacts sequence_cost "
     "prediction_step method slip_estimate grip_used friction_estimate friction_relied_on "
-    "steering_gain_estimate delay_estimate odometry_x odometry_y odometry_yaw odometry_speed symptom";
+    "steering_gain_estimate steering_offset_estimate delay_estimate odometry_x odometry_y odometry_yaw "
+    "odometry_speed symptom";
 
 constexpr int sent_candidates = 160;  // samples that are sent
 
@@ -77,9 +78,9 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   if (estimate.friction > 0) {
     const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
     put({out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction});
-    put({estimate.cautious_friction, estimate.steering_gain, estimate.delay});
+    put({estimate.cautious_friction, estimate.steering_gain, estimate.steering_offset, estimate.delay});
   } else {
-    put({none, none, none, none, none, none});  // the tyres do not slip
+    put({none, none, none, none, none, none, none});  // the tyres do not slip
   }
   const maps::Pose& rear = tick.odometry.pose;
   put({rear.x, rear.y, rear.yaw, tick.odometry.speed,
