@@ -169,6 +169,10 @@ TEST_F(OwnProblem, OnlyTheLastStepOfADragIsPlannedFor) {
   tell({move + "3}", move + "3.5}", move + "4}"});
   EXPECT_EQ(last("state")["edited"], true);
   EXPECT_EQ(moves_, 1);
+  const std::string place = R"({"do": "place_car", "y": 0, "x": )";
+  tell({place + "-90}", place + "-1}"});
+  EXPECT_EQ(figure("x", 0), -1);
+  EXPECT_GT(last("state")["bounds"][0], -10) << "the first place was not drawn";
 }
 
 TEST_F(OwnProblem, AChangeJustBeforeAPauseIsShown) {

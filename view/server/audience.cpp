@@ -15,8 +15,8 @@ bool replaces(const Received& later, const Received& earlier) {
     return false;
   const Json a = parse_json_or_null(earlier.text), b = parse_json_or_null(later.text);
   const auto same = [&](const char* key) { return a.contains(key) && b.contains(key) && a[key] == b[key]; };
-  return a.is_object() && b.is_object() && !a.contains("id") && same("do") && a["do"] == "move" &&
-         same("body") && same("drag");
+  if (!a.is_object() || !b.is_object() || a.contains("id") || !same("do")) return false;
+  return a["do"] == "place_car" || (a["do"] == "move" && same("body") && same("drag"));
 }
 
 }  // namespace
@@ -100,36 +100,33 @@ void Audience::tell_text(std::uint64_t client, std::string text) {
   server_.send(client, {std::make_shared<const std::string>(std::move(text)), false});
 }
 
-void Audience::turn(const std::function<void(std::uint64_t client)>& open,
-                    const std::function<void(std::uint64_t, const std::string&, const Json&)>& obey) {
+void Audience::turn(const std::function<void(std::uint64_t client)>& open, const Obey& obey) {
   const std::vector<Received> received = server_.take();
   for (std::size_t i = 0; i < received.size(); ++i) {
     const Received& each = received[i];
     if (i + 1 < received.size() && replaces(received[i + 1], each)) continue;
-    if (each.kind == Received::Kind::joined) {
+    if (each.kind == Received::Kind::joined)
       open(each.client);
-    } else if (each.kind == Received::Kind::left) {
+    else if (each.kind == Received::Kind::left)
       leave(each.client);
-    } else {
-      const Json command = parse_json_or_null(each.text);
-      execute(each.client, command, [&](const std::string& what) { obey(each.client, what, command); });
-    }
+    else
+      execute(each, obey);
   }
 }
 
-void Audience::execute(std::uint64_t client, const Json& command,
-                       const std::function<void(const std::string& what)>& obey) {
+void Audience::execute(const Received& message, const Obey& obey) {
+  const Json command = parse_json_or_null(message.text);
   const auto id = command.find("id");
   const bool has_id = id != command.end() && id->is_number_integer();
   const auto fail = [&](const char* why) {
     Json error = {{"type", "error"}, {"message", why}};
     if (has_id) error["id"] = *id;
-    tell(client, error);
+    tell(message.client, error);
   };
   try {
     if (!command.is_object()) throw MalformedCommand("a command must be a JSON object");
-    obey(field::text(command, "do"));
-    if (has_id) tell(client, {{"type", "done"}, {"id", *id}});
+    obey(message.client, field::text(command, "do"), command);
+    if (has_id) tell(message.client, {{"type", "done"}, {"id", *id}});
   } catch (const MalformedCommand& error) {
     ++refused_;
     fail(error.what());

@@ -41,6 +41,7 @@ constexpr int max_steps = 400;
 class Audience {
  public:
   using Json = nlohmann::ordered_json;
+  using Obey = std::function<void(std::uint64_t client, const std::string& what, const Json& command)>;
 
   explicit Audience(Server& server) : server_(server) {}
 
@@ -59,13 +60,11 @@ class Audience {
   void tell_text(std::uint64_t client, std::string text);
   /// Executes what has come: a page that is opened by `open`, a command by `obey`. A command is answered by
   /// an error with the reason, and by `done` if it has an `id`. Of a drag, only the last step is executed.
-  void turn(const std::function<void(std::uint64_t client)>& open,
-            const std::function<void(std::uint64_t client, const std::string& what, const Json&)>& obey);
+  void turn(const std::function<void(std::uint64_t client)>& open, const Obey& obey);
   std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were not valid commands
 
  private:
-  void execute(std::uint64_t client, const Json& command,
-               const std::function<void(const std::string& what)>& obey);
+  void execute(const Received& message, const Obey& obey);
 
   Server& server_;
   std::vector<std::uint64_t> clients_;  ///< by age
