@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <span>
 
 namespace slalom::view {
@@ -68,17 +67,9 @@ void put_lines(FrameWriter& to, Block block, const std::vector<Line>& lines) {
   to.put(static_cast<std::uint32_t>(lines.size()));
   for (const Line& line : lines) {
     to.put(static_cast<std::uint32_t>(line.size()));
-    for (const maps::Point& p : line) to.put_f32(p.x), to.put_f32(p.y);
+    for (const maps::Point& p : line) to.put_f32({p.x, p.y});
   }
   to.end();
-}
-
-void put_body(FrameWriter& to, int id, int kind, bool touched, const maps::Pose& at, double length,
-              double width) {
-  to.put(static_cast<std::uint16_t>(id));
-  to.put(static_cast<std::uint8_t>(kind));
-  to.put(static_cast<std::uint8_t>(touched));
-  for (const double value : {at.x, at.y, at.yaw, length, width}) to.put_f32(value);
 }
 
 /// Writes the body, 0, and the shapes, whose numbers are their indices + 1; polygons apart.
@@ -88,12 +79,12 @@ void put_scene(FrameWriter& to, const SubjectFacts& facts, const std::vector<Sha
   to.begin(Block::bodies);
   const auto count = std::ranges::count_if(shapes, [](const Shape& s) { return s.corners.empty(); });
   to.put(static_cast<std::uint32_t>(1 + count));
-  put_body(to, 0, 0, collides, pose, facts.length, facts.width);
-  int id = 0;
+  to.put_body(0, 0, collides, pose, facts.length, facts.width);
+  std::size_t id = 0;
   for (const Shape& s : shapes) {
     ++id;
     if (s.corners.empty())
-      put_body(to, id, s.is_disc ? 3 : 2, false, s.pose, s.length, s.width);
+      to.put_body(id, s.is_disc ? 3 : 2, false, s.pose, s.length, s.width);
     else
       polygons.push_back(s.corners);
   }
@@ -133,27 +124,10 @@ void put_candidates(FrameWriter& to, const Sequences& all, const SolveResult& so
 }  // namespace
 
 std::vector<std::string> problem_scalars(const SubjectFacts& facts) {
-  std::vector<std::string> names = {"tick",
-                                    "time",
-                                    "x",
-                                    "y",
-                                    "yaw",
-                                    "status",
-                                    "minimum_cost",
-                                    "expected_cost",
-                                    "effective_samples",
-                                    "samples",
-                                    "collided_share",
-                                    "temperature",
-                                    "iterations",
-                                    "tick_ms",
-                                    "deadline_ms",
-                                    "contact",
-                                    "contacts",
-                                    "prediction_step",
-                                    "method",
-                                    "plan_cost",
-                                    "symptom"};
+  std::vector<std::string> names = words_of(
+      "tick time x y yaw status minimum_cost expected_cost effective_samples samples collided_share "
+      "temperature iterations tick_ms deadline_ms contact contacts prediction_step method plan_cost "
+      "symptom");
   const auto add = [&](const char* kind, const std::vector<std::string>& all) {
     for (const std::string& each : all) names.push_back(kind + each);
   };
@@ -177,19 +151,17 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
 
   FrameWriter to;
   to.begin(Block::scalars);
-  const auto put = [&](std::initializer_list<double> values) {
-    for (const double value : values) to.put(value);
-  };
   std::vector<double> sums(terms);
   for (std::size_t i = 0; i < points * terms; ++i) sums[i % terms] += rolled.costs[i];
   double cost = 0;
   for (const double sum : sums) cost += sum;
-  put({static_cast<double>(step.tick), step.time, now.x, now.y, now.yaw, static_cast<double>(solve.status)});
-  put({solve.minimum_cost, solve.expected_cost, solve.effective_sample_size});
-  put({solve.samples ? solve.samples->samples() : 0.0, solve.collided_share, solve.temperature});
-  put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
-  put({frame.collides ? 1.0 : 0.0, static_cast<double>(step.collisions + frame.collides), step.period});
-  put({static_cast<double>(step.method), cost, static_cast<double>(solve.symptom())});
+  to.put(
+      {static_cast<double>(step.tick), step.time, now.x, now.y, now.yaw, static_cast<double>(solve.status)});
+  to.put({solve.minimum_cost, solve.expected_cost, solve.effective_sample_size});
+  to.put({solve.samples ? solve.samples->samples() : 0.0, solve.collided_share, solve.temperature});
+  to.put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
+  to.put({frame.collides ? 1.0 : 0.0, static_cast<double>(step.collisions + frame.collides), step.period});
+  to.put({static_cast<double>(step.method), cost, static_cast<double>(solve.symptom())});
   for (const double value : step.state) to.put(value);
   for (std::size_t i = 0; i < inputs; ++i) to.put(subject.inputs()[i]);
   for (const double sum : sums) to.put(sum);
@@ -240,12 +212,9 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
   to.put(static_cast<std::uint32_t>(points));
   to.put(now.x);
   to.put(now.y);
-  for (const maps::Pose& p : poses.first(points))
-    for (const double value : {p.x - now.x, p.y - now.y, p.yaw, 0.0, 0.0, 0.0}) to.put_f32(value);
+  for (const maps::Pose& p : poses.first(points)) to.put_f32({p.x - now.x, p.y - now.y, p.yaw, 0, 0, 0});
   to.end();
-  to.begin(Block::covariance);
-  for (std::size_t row = 0; row < solve.variances.size(); row += inputs) to.put(solve.variances[row]);
-  to.end();
+  to.put_covariance(solve.variances, inputs);
   frame.message = to.take();
   return frame;
 }
