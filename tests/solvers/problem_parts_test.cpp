@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "slalom/slalom.hpp"
+#include "slalom/solvers/trajectories.hpp"
 #include "solvers/problems.hpp"
 
 namespace slalom {
@@ -63,6 +64,8 @@ TEST(RateLimits, StartFromTheAppliedInput) {
   const auto first = controller.solve(far_left);
   const double third = first.inputs[2][0];
   const auto second = controller.solve(far_left, {.elapsed = 0.3});  // three steps were driven
+  const Trajectories again = roll_out(controller.evaluator(), far_left, second.stats.inputs, 8);
+  EXPECT_NEAR(again.states[again.states.size() - 2], second.states.back().position, 1e-6);
   const double fourth = second.inputs[0][0];
   EXPECT_LE(std::abs(fourth - third), 0.2 + 1e-12);
   const double next = controller.solve(far_right, {.elapsed = 0.1}).inputs[0][0];  // one step was driven
@@ -88,6 +91,9 @@ TEST(InputLevels, PlansHaveThemAndReachWhatTheyCannotHold) {
       for (const auto& u : plan.inputs)
         ASSERT_TRUE(u[0] == -1 || u[0] == 0 || u[0] == 1) << name << ' ' << u[0];
       EXPECT_EQ(plan.corrections, 0);
+      const Trajectories again =
+          roll_out(controller.evaluator(), x, plan.stats.inputs, controller.solver().horizon());
+      EXPECT_EQ(again.states[again.states.size() - 2], plan.states.back().position) << name;
       pushes += plan.inputs[0][0] != 0;
       x = controller.problem().step(x, plan.inputs[0]);
     }

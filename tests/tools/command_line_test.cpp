@@ -267,6 +267,11 @@ TEST_F(CommandLine, ATokenMustFitIntoAnAddress) {
   refuses("view --port 0 --token 'a b/&?#'", {"--token: 'a b/&?#' must have only letters, digits"}, 2);
 }
 
+TEST_F(CommandLine, AProblemThatIsNotACarHasNoScenario) {
+  for (const char* option : {"--against mppi", "--course fox", "--eval ev", "--set mppi.samples=9"})
+    refuses(std::string("view --problem pendulum --port 0 ") + option, {"--problem: has only --method"}, 2);
+}
+
 TEST_F(CommandLine, ReportsThatMemoryRanOut) {
 #if !SLALOM_TESTS_LIMITS
   GTEST_SKIP() << "sanitizers take more address space than the limit leaves";

@@ -151,6 +151,8 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
   ASSERT_EQ(ticks.size(), result("out.json")["laps"][0]["steps"]);
   EXPECT_EQ(ticks[0]["plan"].size(), 21u);
   EXPECT_NEAR(ticks.back()["time"].get<double>(), result("out.json")["laps"][0]["time_s"], 0.05);
+  EXPECT_NEAR(ticks.back()["steering_offset_estimate"].get<double>(),
+              result("out.json")["laps"][0]["estimation"]["steering_offset_rad"], 1e-6);
   EXPECT_EQ(content(folder_ / "out.png").substr(1, 3), "PNG");
 }
 

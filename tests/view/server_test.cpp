@@ -65,6 +65,10 @@ TEST(ViewServer, ServesACompressedPageWithHeaders) {
         "X-Content-Type-Options: nosniff", "Content-Security-Policy: frame-ancestors 'none'\r\n"})
     EXPECT_NE(whole.find(line), std::string::npos) << whole;
   EXPECT_TRUE(whole.ends_with("\r\n\r\ncompressed"));
+  const Server framed({.framed_by = "http://localhost:*"}, page);
+  EXPECT_NE(answer_to(framed, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
+                .find("frame-ancestors http://localhost:*"),
+            std::string::npos);
   const std::string head = answer_to(server, "HEAD / HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(head.ends_with("\r\n\r\n")) << head;
 }

@@ -115,7 +115,12 @@ void declare_view(Subcommand& command) {
       "Without options of the scenario, the page opens with an introduction: svg_mppi and mppi side by "
       "side on the same seed, in slow motion before a parked car.");
   command.action([arguments, &command] {
-    if (!arguments->problem.empty()) return view_problem(*arguments);
+    if (!arguments->problem.empty()) {
+      if (!command.given_only({"--problem", "--method", "--seed", "--host", "--port", "--token"}))
+        throw CommandLineError("--problem",
+                               "has only --method, --seed, --host, --port and --token beside it");
+      return view_problem(*arguments);
+    }
     if (command.given_only({"--host", "--port", "--token", "--record-times", "--threads"}))
       set_introduction(*arguments);
     ScenarioArguments& scenario = arguments->scenario;

@@ -166,10 +166,6 @@ std::unique_ptr<view::Subject> arm(Solving solving) {
 
 }  // namespace
 
-std::span<const char* const> problem_names() noexcept {
-  return names;
-}
-
 std::unique_ptr<view::Subject> problem_subject(const std::string& name, const std::string& method,
                                                std::uint64_t seed) {
   constexpr std::array make{pendulum, cart_pole, differential_drive, quadrotor, arm};

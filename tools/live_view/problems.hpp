@@ -1,15 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 
 #include "slalom/view/subject.hpp"
 
 namespace slalom::tools {
-
-/// The names of the problems that `slalom view --problem` shows.
-std::span<const char* const> problem_names() noexcept;
 
 /// Returns a problem with a method that solves it with its default options, and its drawing. Throws
 /// std::invalid_argument, which lists the names, if there is none of that name.

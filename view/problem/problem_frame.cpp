@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <limits>
 #include <span>
 
 namespace slalom::view {
@@ -24,17 +22,16 @@ struct Sequences {
 
 Sequences sequences_of(Subject& subject, const SolveResult& solve, std::size_t points) {
   Sequences all;
-  const auto plan = subject.inputs();
-  all.size = plan.size();
-  all.values.assign(plan.begin(), plan.end());
+  all.size = solve.inputs.size();
+  all.add(solve.inputs);
   if (solve.nominal.size() == all.size)
     all.add(solve.nominal);
   else
     all.add(std::vector<float>(all.values));
   if (const SequenceBatch* batch = solve.samples; batch && !solve.costs.empty()) {
     const std::size_t terms = subject.facts().terms.size();
-    const std::size_t most =
-        std::clamp(most_step_costs / (points * terms), least_candidates, most_candidates);
+    const std::size_t most = std::clamp(most_step_costs / std::max<std::size_t>(1, points * terms),
+                                        least_candidates, most_candidates);
     const auto samples = static_cast<std::size_t>(batch->samples());
     all.candidates = std::min(most, samples);
     for (std::size_t i = 0; i < all.candidates; ++i) {
@@ -50,13 +47,18 @@ Sequences sequences_of(Subject& subject, const SolveResult& solve, std::size_t p
   return all;
 }
 
-/// Writes trajectories with a unit that reaches all their points.
-void put_points(FrameWriter& to, Poses poses) {
-  const maps::Point origin{poses.front().x, poses.front().y};
+/// The largest distance along an axis of some points from the first, m.
+double reach_of(Poses poses) {
   double reach = 1e-3;
   for (const maps::Pose& p : poses)
-    reach = std::max({reach, std::abs(p.x - origin.x), std::abs(p.y - origin.y)});
-  to.begin_points(origin, reach / 32000);
+    reach = std::max({reach, std::abs(p.x - poses.front().x), std::abs(p.y - poses.front().y)});
+  return reach;
+}
+
+/// Writes trajectories with a unit that reaches all their points up to `most` (m), which keeps their
+/// resolution where one of them diverges.
+void put_points(FrameWriter& to, Poses poses, double most) {
+  to.begin_points({poses.front().x, poses.front().y}, std::min(reach_of(poses), most) / 32000);
   for (const maps::Pose& p : poses) to.put_point({p.x, p.y});
 }
 
@@ -65,46 +67,36 @@ void put_lines(FrameWriter& to, Block block, const std::vector<Line>& lines) {
   to.put(static_cast<std::uint32_t>(lines.size()));
   for (const Line& line : lines) {
     to.put(static_cast<std::uint32_t>(line.size()));
-    for (const maps::Point& p : line) to.put_f32(p.x), to.put_f32(p.y);
+    for (const maps::Point& p : line) to.put_f32({p.x, p.y});
   }
   to.end();
 }
 
-void put_body(FrameWriter& to, int id, int kind, bool touched, const maps::Pose& at, double length,
-              double width) {
-  to.put(static_cast<std::uint16_t>(id));
-  to.put(static_cast<std::uint8_t>(kind));
-  to.put(static_cast<std::uint8_t>(touched));
-  for (const double value : {at.x, at.y, at.yaw, length, width}) to.put_f32(value);
-}
-
 /// Writes the body, 0, and the shapes, whose numbers are their indices + 1; polygons apart.
-void put_scene(FrameWriter& to, Subject& subject, const ProblemStep& step, const maps::Pose& pose,
-               bool collides) {
-  const SubjectFacts& facts = subject.facts();
-  const std::vector<Shape> shapes = subject.shapes();
+void put_scene(FrameWriter& to, const SubjectFacts& facts, const std::vector<Shape>& shapes,
+               const maps::Pose& pose, bool collides) {
   std::vector<Line> polygons;
   to.begin(Block::bodies);
   const auto count = std::ranges::count_if(shapes, [](const Shape& s) { return s.corners.empty(); });
   to.put(static_cast<std::uint32_t>(1 + count));
-  put_body(to, 0, 0, collides, pose, facts.length, facts.width);
-  int id = 0;
+  to.put_body(0, 0, collides, pose, facts.length, facts.width);
+  std::size_t id = 0;
   for (const Shape& s : shapes) {
     ++id;
     if (s.corners.empty())
-      put_body(to, id, s.is_disc ? 3 : 2, false, s.pose, s.length, s.width);
+      to.put_body(id, s.is_disc ? 3 : 2, false, s.pose, s.length, s.width);
     else
       polygons.push_back(s.corners);
   }
   to.end();
   put_lines(to, Block::polygons, polygons);
-  put_lines(to, Block::figure, subject.figure(step.state));
 }
 
 /// Writes candidates: each term of their costs, the solver's cost, the weight, and 1 + the first state that
 /// collides, at most 255.
 void put_candidates(FrameWriter& to, const Sequences& all, const SolveResult& solve,
-                    const Trajectories& rolled, std::size_t terms, std::size_t points, Poses poses) {
+                    const Trajectories& rolled, std::size_t terms, std::size_t points, Poses poses,
+                    double reach) {
   to.begin(Block::candidates);
   to.put(static_cast<std::uint16_t>(all.candidates));
   to.put(static_cast<std::uint16_t>(points));
@@ -125,34 +117,17 @@ void put_candidates(FrameWriter& to, const Sequences& all, const SolveResult& so
     to.put(static_cast<std::uint8_t>(collides ? std::clamp(at + 1, 1, 255) : 0));
   }
   to.pad();
-  put_points(to, poses.subspan(first * points, all.candidates * points));
+  put_points(to, poses.subspan(first * points, all.candidates * points), reach);
   to.end();
 }
 
 }  // namespace
 
 std::vector<std::string> problem_scalars(const SubjectFacts& facts) {
-  std::vector<std::string> names = {"tick",
-                                    "time",
-                                    "x",
-                                    "y",
-                                    "yaw",
-                                    "status",
-                                    "minimum_cost",
-                                    "expected_cost",
-                                    "effective_samples",
-                                    "samples",
-                                    "collided_share",
-                                    "temperature",
-                                    "iterations",
-                                    "tick_ms",
-                                    "deadline_ms",
-                                    "contact",
-                                    "contacts",
-                                    "prediction_step",
-                                    "method",
-                                    "plan_cost",
-                                    "symptom"};
+  std::vector<std::string> names = words_of(
+      "tick time x y yaw status minimum_cost expected_cost effective_samples samples collided_share "
+      "temperature iterations tick_ms deadline_ms contact contacts prediction_step method plan_cost "
+      "symptom");
   const auto add = [&](const char* kind, const std::vector<std::string>& all) {
     for (const std::string& each : all) names.push_back(kind + each);
   };
@@ -165,7 +140,7 @@ std::vector<std::string> problem_scalars(const SubjectFacts& facts) {
 ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const ProblemStep& step) {
   const SubjectFacts& facts = subject.facts();
   const std::size_t terms = facts.terms.size(), inputs = facts.inputs.size();
-  const std::size_t points = subject.inputs().size() / inputs + 1;
+  const std::size_t points = solve.inputs.size() / inputs + 1;
   const Sequences all = sequences_of(subject, solve, points);
   const Trajectories rolled = subject.roll_out(step.state, all.values);
   const std::vector<maps::Pose> places = subject.poses(rolled.states);
@@ -176,26 +151,42 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
 
   FrameWriter to;
   to.begin(Block::scalars);
-  const auto put = [&](std::initializer_list<double> values) {
-    for (const double value : values) to.put(value);
-  };
   std::vector<double> sums(terms);
   for (std::size_t i = 0; i < points * terms; ++i) sums[i % terms] += rolled.costs[i];
   double cost = 0;
   for (const double sum : sums) cost += sum;
-  put({static_cast<double>(step.tick), step.time, now.x, now.y, now.yaw, static_cast<double>(solve.status)});
-  put({solve.minimum_cost, solve.expected_cost, solve.effective_sample_size});
-  put({solve.samples ? solve.samples->samples() : 0.0, solve.collided_share, solve.temperature});
-  put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
-  put({frame.collides ? 1.0 : 0.0, static_cast<double>(step.collisions + frame.collides), step.period});
-  put({static_cast<double>(step.method), cost, static_cast<double>(solve.symptom())});
+  to.put(
+      {static_cast<double>(step.tick), step.time, now.x, now.y, now.yaw, static_cast<double>(solve.status)});
+  to.put({solve.minimum_cost, solve.expected_cost, solve.effective_sample_size});
+  to.put({solve.samples ? solve.samples->samples() : 0.0, solve.collided_share, solve.temperature});
+  to.put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
+  to.put({frame.collides ? 1.0 : 0.0, static_cast<double>(step.collisions + frame.collides), step.period});
+  to.put({static_cast<double>(step.method), cost, static_cast<double>(solve.symptom())});
   for (const double value : step.state) to.put(value);
   for (std::size_t i = 0; i < inputs; ++i) to.put(subject.inputs()[i]);
   for (const double sum : sums) to.put(sum);
   to.end();
 
-  put_scene(to, subject, step, now, frame.collides);
-  if (all.candidates > 0) put_candidates(to, all, solve, rolled, terms, points, poses);
+  const std::vector<Shape> shapes = subject.shapes();
+  const std::vector<Line> figure = subject.figure(step.state);
+  frame.bounds = {now.x, now.y, now.x, now.y};
+  for (const maps::Pose& p : poses.first(2 * points)) frame.bounds.include(p.x, p.y);
+  for (const Line& line : figure)
+    for (const maps::Point& p : line) frame.bounds.include(p.x, p.y);
+  for (const Shape& s : shapes) {
+    const double reach = 0.5 * std::max(s.length, s.width);
+    if (s.corners.empty()) {
+      frame.bounds.include(s.pose.x - reach, s.pose.y - reach);
+      frame.bounds.include(s.pose.x + reach, s.pose.y + reach);
+    }
+    for (const maps::Point& p : s.corners) frame.bounds.include(p.x, p.y);
+  }
+  const Bounds& b = frame.bounds;
+  const double reach = 20 * std::max({b.x1 - b.x0, b.y1 - b.y0, 1e-3});
+
+  put_scene(to, facts, shapes, now, frame.collides);
+  put_lines(to, Block::figure, figure);
+  if (all.candidates > 0) put_candidates(to, all, solve, rolled, terms, points, poses, reach);
   to.begin(Block::step_costs);
   to.put(static_cast<std::uint16_t>(terms));
   to.put(static_cast<std::uint16_t>(points));
@@ -210,37 +201,21 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
     to.put(static_cast<std::uint16_t>(all.guides / guides));
     to.put(static_cast<std::uint16_t>(points));
     to.put(std::uint16_t{0});
-    put_points(to, poses.subspan((2 + all.candidates) * points));
+    put_points(to, poses.subspan((2 + all.candidates) * points), reach);
     to.end();
   }
   to.begin(Block::nominal);
   to.put(static_cast<std::uint32_t>(points));
-  put_points(to, poses.subspan(points, points));
+  put_points(to, poses.subspan(points, points), reach);
   to.end();
   to.begin(Block::plan);
   to.put(static_cast<std::uint32_t>(points));
   to.put(now.x);
   to.put(now.y);
-  for (const maps::Pose& p : poses.first(points))
-    for (const double value : {p.x - now.x, p.y - now.y, p.yaw, 0.0, 0.0, 0.0}) to.put_f32(value);
+  for (const maps::Pose& p : poses.first(points)) to.put_f32({p.x - now.x, p.y - now.y, p.yaw, 0, 0, 0});
   to.end();
-  to.begin(Block::covariance);
-  for (std::size_t row = 0; row < solve.variances.size(); row += inputs) to.put(solve.variances[row]);
-  to.end();
+  to.put_covariance(solve.variances, inputs);
   frame.message = to.take();
-
-  frame.bounds = {now.x, now.y, now.x, now.y};
-  for (const maps::Pose& p : poses.first(2 * points)) frame.bounds.include(p.x, p.y);
-  for (const Line& line : subject.figure(step.state))
-    for (const maps::Point& p : line) frame.bounds.include(p.x, p.y);
-  for (const Shape& s : subject.shapes()) {
-    const double reach = 0.5 * std::max(s.length, s.width);
-    if (s.corners.empty()) {
-      frame.bounds.include(s.pose.x - reach, s.pose.y - reach);
-      frame.bounds.include(s.pose.x + reach, s.pose.y + reach);
-    }
-    for (const maps::Point& p : s.corners) frame.bounds.include(p.x, p.y);
-  }
   return frame;
 }
 

@@ -8,27 +8,17 @@
 #include "view/protocol/symptom_json.hpp"
 
 namespace slalom::view {
-namespace {
-
-constexpr int max_steps_per_message = 800;
-
-std::shared_ptr<const std::string> binary(FrameWriter& message) {
-  return std::make_shared<const std::string>(message.take());
-}
-
-}  // namespace
-
 void ProblemSession::join(std::uint64_t client) {
   audience_.join(client);
   if (std::exchange(waiting_, false)) {
-    due_ = Clock::now();
+    pace_.due = Clock::now();
     tick();
   }
   audience_.tell(client, hello());
   if (const auto& map = run_->subject->facts().map) {
     FrameWriter scene;
     put_grid(scene, *map);
-    server_.send(client, {binary(scene), true});
+    server_.send(client, {shared(scene.take()), true});
   }
   audience_.tell(client, options());
   audience_.tell(client, state());
@@ -38,26 +28,16 @@ void ProblemSession::join(std::uint64_t client) {
 
 /// Sends the scalars of past steps, of as many as a message holds and as are still known.
 void ProblemSession::tell_past(std::uint64_t client, int from, int to) {
-  const std::size_t bytes = 8 * problem_scalars(run_->subject->facts()).size();
-  FrameWriter past;
-  past.begin(Block::past);
-  to = std::min(to, timeline_.newest());
-  from = std::max({from, timeline_.oldest(), to - max_steps_per_message + 1});
-  for (int tick = timeline_.empty() ? to + 1 : from; tick <= to; ++tick)
-    past.append(std::string_view(*timeline_.at(tick).frame).substr(FrameWriter::head_bytes, bytes));
-  past.end();
-  server_.send(client, {binary(past), true});
+  const std::size_t scalars = problem_scalars(run_->subject->facts()).size();
+  server_.send(client, {shared(timeline_.past(from, to, scalars)), true});
 }
 
 Json ProblemSession::hello() const {
   const SubjectFacts& facts = run_->subject->facts();
-  Json statuses = Json::array();
-  for (int i = 0; i <= static_cast<int>(Status::invalid_time); ++i)
-    statuses.push_back(name(static_cast<Status>(i)));
   return {{"type", "hello"},
           {"protocol", 1},
           {"scalars", problem_scalars(facts)},
-          {"statuses", statuses},
+          {"statuses", names_json(Status::invalid_time)},
           {"symptoms", symptoms_json()},
           {"courses", Json::array()},
           {"methods", methods_},
@@ -72,11 +52,11 @@ Json ProblemSession::hello() const {
             {"can_place", facts.can_place},
             {"can_move", facts.can_move}}},
           {"history_seconds", stored_seconds},
-          {"control_period", period_}};
+          {"control_period", run_->period}};
 }
 
-Json ProblemSession::state() const {
-  const SolverOptions* options = (held_ && is_held() ? *held_ : *run_).subject->options();
+Json ProblemSession::state() {
+  const SolverOptions* options = shown().subject->options();
   return {{"type", "state"},
           {"course", run_->subject->facts().title},
           {"description", ""},
@@ -90,12 +70,12 @@ Json ProblemSession::state() const {
           {"paused", paused_},
           {"real_time", false},
           {"rate", rate_},
-          {"pace", pace_},
+          {"pace", measured_rate_},
           {"tick", shown_tick()},
           {"newest", timeline_.newest()},
           {"oldest", timeline_.oldest()},
-          {"time", run_->steps * period_},
-          {"control_period", period_},
+          {"time", run_->steps * run_->period},
+          {"control_period", run_->period},
           {"laps", Json::array()},
           {"ghost", ""},
           {"ghost_label", ""},
@@ -104,8 +84,8 @@ Json ProblemSession::state() const {
           {"bounds", {bounds_.x0, bounds_.y0, bounds_.x1, bounds_.y1}}};
 }
 
-Json ProblemSession::options() const {
-  const Subject& subject = *run_->subject;
+Json ProblemSession::options() {
+  const Subject& subject = *shown().subject;
   Json sections = Json::array(), changed = Json::array();
   std::string yaml, section_yaml;
   const auto add = [&](const std::string& name, const std::vector<OptionEntry>& now, const auto& loaded) {

@@ -1,8 +1,6 @@
 #include "view/problem/problem_session.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "slalom/solvers/registry.hpp"
@@ -11,44 +9,40 @@
 namespace slalom::view {
 namespace {
 
-constexpr auto min_frame_gap = std::chrono::milliseconds(12);  // no screen shows more
-constexpr auto max_state_gap = std::chrono::seconds(1);
 constexpr double usual_period = 0.05;  // s, where the problem does not tell the duration of its steps
-constexpr int max_late_steps = 4;      // steps that a late clock may owe
-constexpr int max_steps = 400;         // most steps of a command "step"
+// One is not always enough for a plan on the other side of an obstacle that was moved into the way.
+constexpr int solves_of_change = 3;
 
-std::shared_ptr<const std::string> shared(std::string text) {
-  return std::make_shared<const std::string>(std::move(text));
+double period_of(const Subject& subject) {
+  return subject.time_step() > 0 ? subject.time_step() : usual_period;
 }
 
-/// Estimates the bytes of a copy of a controller: the batch of samples, and other arrays of that order.
-std::size_t bytes_of(const SolveResult& solve) {
-  const SequenceBatch* batch = solve.samples;
-  if (!batch) return 1;
-  return std::size_t{8} * sizeof(float) * static_cast<std::size_t>(batch->samples()) *
-         static_cast<std::size_t>(batch->steps()) * static_cast<std::size_t>(batch->inputs());
+/// Takes the options that all methods have.
+void take_common(SolverOptions& to, const SolverOptions& from) {
+  for (const OptionEntry& each : list_options(from))
+    for (const char* common : {"horizon", "samples", "input_min", "input_max", "seed", "threads"})
+      if (std::string_view(each.declaration.name) == common) set_option(to, common, to_text(each.value));
 }
 
 }  // namespace
 
 const SolveResult& Run::decide() {
-  const double elapsed = steps > 0 && subject->time_step() > 0 ? period : 0;
-  return subject->solve(state, {.elapsed = elapsed});
+  return subject->solve(state, {.elapsed = std::exchange(elapsed, 0)});
 }
 
 void Run::advance() {
   state = subject->step(state, subject->inputs().first(subject->facts().inputs.size()));
   ++steps;
+  elapsed = subject->time_step() > 0 ? period : 0;
 }
 
 ProblemSession::ProblemSession(std::unique_ptr<Subject> subject, Server& server)
     : server_(server), audience_(server) {
   for (const char* name : solver_names()) methods_.emplace_back(name);
-  period_ = subject->time_step() > 0 ? subject->time_step() : usual_period;
   if (const SolverOptions* options = subject->options()) loaded_.emplace(options->method(), *options);
   for (const OptionEntry& each : subject->parameters())
     parameters_.emplace(each.declaration.name, to_text(each.value));
-  run_ = Run{std::move(subject), {}, period_};
+  run_ = Run{std::move(subject), {}};
   restart();
 }
 
@@ -57,30 +51,24 @@ void ProblemSession::restart() {
   Polymorphic<Subject> subject(run_->subject->clone());
   if (const SolverOptions* options = subject->options()) subject->set_options(SolverOptions(*options));
   std::vector<double> start = subject->start();
-  run_ = Run{std::move(subject), std::move(start), period_};
-  timeline_ = Timeline(period_);
+  const double period = period_of(*subject);
+  run_ = Run{std::move(subject), std::move(start), period};
+  timeline_ = Timeline(period);
   held_.reset();
   viewed_ = -1;
   steps_left_ = 0;
+  collided_.clear();
   ++generation_;
-  due_ = paced_ = Clock::now();
+  pace_ = {};
   is_state_changed_ = true;
+  if (paused_) tick();
 }
 
 void ProblemSession::turn(std::chrono::nanoseconds at_most) {
   const auto wait = std::min<Clock::duration>(until_due(), at_most);
   if (wait > Clock::duration::zero()) server_.wait(wait);
-  for (const Received& each : server_.take()) {
-    if (each.kind == Received::Kind::joined)
-      join(each.client);
-    else if (each.kind == Received::Kind::left)
-      audience_.leave(each.client);
-    else {
-      const Json command = parse_json_or_null(each.text);
-      audience_.execute(each.client, command,
-                        [&](const std::string& what) { obey(each.client, what, command); });
-    }
-  }
+  audience_.turn([this](auto client) { join(client); },
+                 [this](auto client, const auto& what, const Json& command) { obey(client, what, command); });
   if (until_due() <= Clock::duration::zero()) {
     if (steps_left_ > 0) --steps_left_;
     tick();
@@ -90,46 +78,54 @@ void ProblemSession::turn(std::chrono::nanoseconds at_most) {
   if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
   last_state_ = now;
   is_state_changed_ = false;
-  measure_pace();
+  measured_rate_ = pace_.measure(measured_rate_, run_->period, paused_);
   audience_.tell(0, state());
+  std::string now_options = json_text(options());
+  if (now_options != std::exchange(told_options_, now_options))
+    audience_.tell_text(0, std::move(now_options));
 }
 
 ProblemSession::Clock::duration ProblemSession::until_due() const {
   if (steps_left_ > 0) return Clock::duration::zero();
   if (waiting_ || paused_) return std::chrono::hours(1);
-  if (rate_ <= 0) return Clock::duration::zero();
-  return due_ - Clock::now();
+  return pace_.until_due(rate_);
 }
 
 void ProblemSession::tick() {
-  if (rate_ > 0) {
-    const auto step =
-        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_ / rate_));
-    due_ = std::max(due_ + step, Clock::now() - max_late_steps * step);
-  }
-  Run& run = *run_;
-  timeline_.checkpoint(run, copy_bytes_, solve_time_);
+  pace_.step(run_->period, rate_);
+  timeline_.checkpoint(*run_, copy_bytes_, solve_time_);
+  keep(drive(*run_));
+}
+
+/// Drives a run one step further and returns the frame of the step.
+ProblemFrame ProblemSession::drive(Run& run) {
   const auto begin = Clock::now();
   const SolveResult& solve = run.decide();
   solve_time_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  copy_bytes_ = bytes_of(solve);
+  copy_bytes_ = bytes_of(&solve);
   const auto method =
       std::ranges::find(methods_, run.subject->options() ? run.subject->options()->method() : "");
+  const auto earlier = std::ranges::lower_bound(collided_, run.steps) - collided_.begin();
   ProblemFrame frame = encode_step(*run.subject, solve,
                                    {.tick = run.steps,
-                                    .time = run.steps * period_,
-                                    .period = period_,
+                                    .time = run.steps * run.period,
+                                    .period = run.period,
                                     .solve_time = solve_time_,
-                                    .collisions = run.collisions,
+                                    .collisions = static_cast<int>(earlier),
                                     .method = static_cast<int>(method - methods_.begin()),
                                     .state = run.state});
-  run.collisions += frame.collides;
-  if (run.steps == 0) bounds_ = frame.bounds;
+  run.advance();
+  return frame;
+}
+
+/// Keeps and shows the last step of the present run.
+void ProblemSession::keep(ProblemFrame frame) {
+  const int number = run_->steps - 1;
+  collided_.erase(std::ranges::lower_bound(collided_, number), collided_.end());
+  if (frame.collides) collided_.push_back(number);
+  if (number == 0) bounds_ = frame.bounds;
   bounds_.include(frame.bounds.x0, frame.bounds.y0);
   bounds_.include(frame.bounds.x1, frame.bounds.y1);
-  const int number = run.steps;
-  run.advance();
-  ++paced_ticks_;
   timeline_.keep({number, {}, shared(std::move(frame.message))});
   if (paused_ || Clock::now() - last_frame_ >= min_frame_gap) publish(number);
 }
@@ -141,6 +137,7 @@ void ProblemSession::publish(int tick) {
 
 /// Pauses and shows a stored step.
 void ProblemSession::show_step(int tick) {
+  steps_left_ = 0;
   if (timeline_.empty()) return;
   tick = std::clamp(tick, timeline_.oldest(), timeline_.newest());
   viewed_ = tick == timeline_.newest() ? -1 : tick;
@@ -156,14 +153,12 @@ void ProblemSession::continue_from_shown() {
   run_ = std::move(run);
   timeline_.forget_after(viewed_, viewed_);
   viewed_ = -1;
-  due_ = Clock::now();
+  pace_.due = Clock::now();
 }
 
 /// Whether a change is to be shown before the next step: the drive is paused, or in slow motion.
 bool ProblemSession::is_held() const {
-  constexpr double longest_wait = 0.05;  // s
-  const bool is_slow = rate_ > 0 && period_ > longest_wait * rate_;
-  return (paused_ || is_slow) && steps_left_ == 0 && !timeline_.empty();
+  return (paused_ || Pace::is_slow(run_->period, rate_)) && steps_left_ == 0 && !timeline_.empty();
 }
 
 /// Returns the run that a change applies to: while nothing moves, as it was when the step that is shown
@@ -174,24 +169,35 @@ const Run& ProblemSession::present() {
   return *held_;
 }
 
-/// Applies an action from the step that is shown on. While nothing moves, this step is driven again, so that
-/// the plan that is shown belongs to the change. If the action throws, nothing has changed.
-void ProblemSession::perform(const Timeline::Action& action) {
+/// Applies a change from the step that is shown on. While nothing moves, this step is driven again, so that
+/// the plan that is shown belongs to the change. With another duration of steps the drive begins anew. If the
+/// change, a solve or a function of the drawing throws, nothing has changed.
+void ProblemSession::perform(const Timeline::Action& change) {
   const bool is_driven_again = is_held();
   const int shown = shown_tick();
+  const auto action = [change, solves = is_driven_again ? solves_of_change : 1](Run& run) {
+    change(run);
+    for (int i = 1; i < solves; ++i) run.decide();
+  };
   Run run = present();
   action(run);
-  run_ = std::move(run);
-  if (is_driven_again) timeline_.forget_after(shown - 1, shown);
-  timeline_.note(run_->steps, action);
+  Run before = run;
+  ProblemFrame frame;
+  if (is_driven_again) frame = drive(run);
   edited_ = is_state_changed_ = true;
-  viewed_ = -1;
+  if (period_of(*before.subject) != before.period) {
+    run_ = std::move(before);
+    return restart();
+  }
+  if (is_driven_again) timeline_.forget_after(shown - 1, shown);
+  timeline_.note(before.steps, action);
+  run_ = std::move(run);
   if (!is_driven_again) return;
-  held_ = *run_;
-  const Clock::time_point due = due_;
-  tick();
-  publish(timeline_.newest());
-  due_ = due;
+  timeline_.checkpoint(before, copy_bytes_, 1);  // a copy in any case: going back need not repeat the changes
+  held_ = std::move(before);
+  viewed_ = -1;
+  keep(std::move(frame));
+  publish(shown);
 }
 
 void ProblemSession::obey(std::uint64_t client, const std::string& what, const Json& command) {
@@ -202,27 +208,25 @@ void ProblemSession::obey(std::uint64_t client, const std::string& what, const J
   is_state_changed_ = true;
   const SubjectFacts& facts = run_->subject->facts();
   if (what == "pause") {
+    if (!paused_ && timeline_.is_action_due()) tick();
     paused_ = true;
     steps_left_ = 0;
     if (!timeline_.empty()) publish(shown_tick());
   } else if (what == "play" || what == "step") {
+    const int steps = what == "step" ? field::steps(command) : 0;
     continue_from_shown();
     waiting_ = false;
-    paused_ = what == "step";
-    steps_left_ = paused_ ? std::clamp(field::integer(command, "ticks", 1), 1, max_steps) : 0;
-    due_ = paced_ = Clock::now();
-    paced_ticks_ = 0;
+    paused_ = steps > 0;
+    steps_left_ = paused_ ? std::min(steps_left_ + steps, field::max_steps) : 0;
+    pace_ = {};
   } else if (what == "seek") {
-    steps_left_ = 0;
     show_step(field::integer(command, "tick"));
   } else if (what == "rate") {
-    rate_ = field::number(command, "rate");
-    field::require(rate_ == 0 || (rate_ >= 0.001 && rate_ <= 100), "rate",
-                   "0 for the maximum speed, or in [0.001, 100]");
-    due_ = Clock::now();
+    rate_ = field::rate(command);
+    pace_.due = Clock::now();
   } else if (what == "restart") {
-    restart();
     paused_ = false;
+    restart();
   } else if (what == "place_car" && facts.can_place) {
     const maps::Pose to{field::number(command, "x"), field::number(command, "y"),
                         field::number(command, "yaw", 0)};
@@ -230,17 +234,19 @@ void ProblemSession::obey(std::uint64_t client, const std::string& what, const J
   } else if (what == "move" && facts.can_move) {
     const maps::Point to{field::number(command, "x"), field::number(command, "y")};
     const int shape = field::integer(command, "body") - 1;
-    field::require(shape >= 0 && shape < std::ssize(run_->subject->shapes()), "body", "a shape of the scene");
-    perform([=](Run& run) { run.subject->move(shape, to); });
+    perform([=](Run& run) {
+      const bool is_known = shape >= 0 && shape < std::ssize(run.subject->shapes());
+      field::require(is_known, "body", "a shape of the scene");
+      run.subject->move(shape, to);
+    });
   } else if (what == "set") {
     set(field::text(command, "key"), field::text(command, "value"));
   } else if (what == "reset_options") {
-    if (run_->subject->options()) {
-      const SolverOptions options = loaded_.at(run_->subject->options()->method());
-      perform([options](Run& run) { run.subject->set_options(options); });
-    }
-    for (const auto& [name, text] : parameters_) set("problem." + name, text);
-    audience_.tell(0, options());
+    perform([loaded = loaded_, parameters = parameters_](Run& run) {
+      for (const auto& [name, text] : parameters) run.subject->set_parameter(name, text);
+      if (const SolverOptions* now = run.subject->options())
+        run.subject->set_options(SolverOptions(loaded.at(now->method())));
+    });
   } else if (what == "method") {
     set_method(field::text(command, "method"));
   } else {
@@ -252,7 +258,7 @@ void ProblemSession::obey(std::uint64_t client, const std::string& what, const J
 void ProblemSession::set(const std::string& key, const std::string& value) {
   const auto dot = key.find('.');
   const std::string section = key.substr(0, dot), name = dot == std::string::npos ? "" : key.substr(dot + 1);
-  const auto require = [&](bool is_known) {
+  const auto require = [key](bool is_known) {
     if (!is_known) throw std::invalid_argument(key.substr(0, 80) + ": is not an option");
   };
   if (section == "problem") {
@@ -264,32 +270,17 @@ void ProblemSession::set(const std::string& key, const std::string& value) {
     require(set_option(changed, name, value));
     perform([changed](Run& run) { run.subject->set_options(changed); });
   }
-  audience_.tell(0, options());
 }
 
 /// Lets another method solve, with the horizon, samples, bounds and seed of the present one.
 void ProblemSession::set_method(const std::string& method) {
   const SolverOptions* now = present().subject->options();
   if (!now) throw std::invalid_argument("method: the controller has a solver of its own");
-  const auto known = loaded_.find(method);
-  SolverOptions changed = known == loaded_.end() ? solver_options(method) : known->second;
-  for (const OptionEntry& each : list_options(*now))
-    for (const char* common : {"horizon", "samples", "input_min", "input_max", "seed", "threads"})
-      if (std::string_view(each.declaration.name) == common) set_option(changed, common, to_text(each.value));
+  SolverOptions loaded = solver_options(method);
+  take_common(loaded, loaded_.at(now->method()));
+  SolverOptions changed = loaded_.emplace(method, loaded).first->second;
+  take_common(changed, *now);
   perform([changed](Run& run) { run.subject->set_options(changed); });
-  loaded_.emplace(method, changed);
-  audience_.tell(0, options());
-}
-
-/// Measures the simulated time per time while the drive goes on.
-void ProblemSession::measure_pace() {
-  const auto now = Clock::now();
-  const double passed = std::chrono::duration<double>(now - paced_).count();
-  if (paused_) pace_ = 0;
-  if (passed < 0.5 && !paused_) return;
-  if (!paused_) pace_ = paced_ticks_ * period_ / passed;
-  paced_ = now;
-  paced_ticks_ = 0;
 }
 
 }  // namespace slalom::view

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "slalom/view/subject.hpp"
 #include "view/problem/problem_frame.hpp"
 #include "view/server/audience.hpp"
+#include "view/session/pace.hpp"
 #include "view/session/timeline.hpp"
 
 namespace slalom::view {
@@ -21,9 +21,9 @@ namespace slalom::view {
 struct Run {
   Polymorphic<Subject> subject;
   std::vector<double> state;
-  double period = 0;  ///< s of a control step
-  int steps = 0;      ///< control steps until now
-  int collisions = 0;
+  double period = 0;   ///< s of a control step
+  int steps = 0;       ///< control steps until now
+  double elapsed = 0;  ///< s since the last solve
 
   int ticks() const noexcept { return steps; }
   /// Solves from the present state.
@@ -47,18 +47,21 @@ class ProblemSession {
   void turn(std::chrono::nanoseconds at_most);
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = Pace::Clock;
   using Json = nlohmann::ordered_json;
   using Timeline = TimelineOf<Run>;
 
   void restart();
   void tick();
+  ProblemFrame drive(Run& run);
+  void keep(ProblemFrame frame);
   void publish(int tick);
   void show_step(int tick);
   void continue_from_shown();
   void perform(const Timeline::Action& action);
   bool is_held() const;
   const Run& present();
+  const Run& shown() { return viewed_ >= 0 ? present() : *run_; }
   int shown_tick() const { return viewed_ >= 0 ? viewed_ : timeline_.newest(); }
   Clock::duration until_due() const;
 
@@ -67,10 +70,9 @@ class ProblemSession {
   void set_method(const std::string& method);
   void join(std::uint64_t client);
   void tell_past(std::uint64_t client, int from, int to);
-  void measure_pace();
   Json hello() const;
-  Json state() const;
-  Json options() const;
+  Json state();
+  Json options();
 
   Server& server_;
   Audience audience_;
@@ -81,16 +83,17 @@ class ProblemSession {
   std::map<std::string, SolverOptions> loaded_;    ///< options of each method before changes
   std::map<std::string, std::string> parameters_;  ///< parameters of the problem before changes
   Bounds bounds_;
-  double period_ = 0;           ///< s of a control step
-  double rate_ = 1, pace_ = 0;  ///< simulated to real time: asked, measured
-  double solve_time_ = 0;       ///< s of wall clock
-  std::size_t copy_bytes_ = 0;  ///< about the size of a copy of the run
+  std::vector<int> collided_;  ///< steps that collided
+  std::string told_options_;   ///< message with the options that the pages have
+  Pace pace_;
+  double rate_ = 1, measured_rate_ = 0;  ///< simulated to real time
+  double solve_time_ = 0;                ///< s of wall clock
+  std::size_t copy_bytes_ = 0;           ///< about the size of a copy of the run
   bool paused_ = false, waiting_ = true, edited_ = false, is_state_changed_ = true;
-  int viewed_ = -1;      ///< step that is shown while it is not the newest
-  int steps_left_ = 0;   ///< steps of a command "step" to come
-  int generation_ = 0;   ///< number of drives that have begun
-  int paced_ticks_ = 0;  ///< steps since `paced_`
-  Clock::time_point due_ = Clock::now(), last_state_ = due_, last_frame_ = due_, paced_ = due_;
+  int viewed_ = -1;     ///< step that is shown while it is not the newest
+  int steps_left_ = 0;  ///< steps of a command "step" to come
+  int generation_ = 0;  ///< number of drives that have begun
+  Clock::time_point last_state_ = Clock::now(), last_frame_ = last_state_;
 };
 
 }  // namespace slalom::view

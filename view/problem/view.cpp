@@ -13,6 +13,7 @@ ServerOptions server_options(const ServeOptions& given) {
   options.host = given.host;
   options.port = given.port;
   options.token = given.token;
+  options.framed_by = "http://localhost:* http://127.0.0.1:* vscode-webview: vscode-file:";  // notebooks
   return options;
 }
 
@@ -23,6 +24,7 @@ struct View::Implementation {
       : server(server_options(options), {{"/", {"text/html; charset=utf-8", page_gzip(), true}}}),
         session(std::move(subject), server) {
     address = address_of(server, server_options(options));
+    if (options.ready) options.ready(address);
   }
   Server server;
   ProblemSession session;

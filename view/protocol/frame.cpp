@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <iterator>
 #include <limits>
-#include <sstream>
 
 #include "slalom/core/gravity.hpp"
 #include "view/protocol/frame_writer.hpp"
@@ -16,13 +13,14 @@ namespace {
 using evaluation::ControlStep;
 using vehicle::PredictedState;
 
-constexpr std::string_view scalar_labels =
+constexpr const char* scalar_labels =
     "tick time x y yaw speed steer yaw_rate slip command_steer command_speed steer_estimate status "
     "distance_cost yaw_cost collision_cost minimum_cost expected_cost effective_samples samples "
     "collided_share temperature iterations tick_ms draw_ms evaluate_ms guide_ms update_ms solve_ms "
     "deadline_ms lap lap_time progress path_distance clearance contact contacts sequence_cost "
     "prediction_step method slip_estimate grip_used friction_estimate friction_relied_on "
-    "steering_gain_estimate delay_estimate odometry_x odometry_y odometry_yaw odometry_speed symptom";
+    "steering_gain_estimate steering_offset_estimate delay_estimate odometry_x odometry_y odometry_yaw "
+    "odometry_speed symptom";
 
 constexpr int sent_candidates = 160;  // samples that are sent
 
@@ -34,10 +32,7 @@ std::size_t states_of(const vehicle::Planner& planner, std::span<const float> in
 }  // namespace
 
 const std::vector<std::string>& scalar_names() {
-  static const std::vector<std::string> names = [] {
-    std::istringstream words{std::string(scalar_labels)};
-    return std::vector<std::string>(std::istream_iterator<std::string>(words), {});
-  }();
+  static const std::vector<std::string> names = words_of(scalar_labels);
   return names;
 }
 
@@ -53,37 +48,34 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   if (solve && !out.inputs.empty()) predict(tick.planner, out.inputs);
   FrameWriter to;
   to.begin(Block::scalars);
-  const auto put = [&](std::initializer_list<double> values) {
-    for (const double value : values) to.put(value);
-  };
   const double none = std::numeric_limits<double>::quiet_NaN(), step = tick.step;
-  put({step, tick.time, car.x, car.y, car.yaw, car.speed, car.steer, car.yaw_rate, car.slip});
-  put({out.command.steer, out.command.speed, out.steer_estimate, static_cast<double>(out.status)});
-  put({cost_.distance, cost_.state - cost_.distance, cost_.collision});
+  to.put({step, tick.time, car.x, car.y, car.yaw, car.speed, car.steer, car.yaw_rate, car.slip});
+  to.put({out.command.steer, out.command.speed, out.steer_estimate, static_cast<double>(out.status)});
+  to.put({cost_.distance, cost_.state - cost_.distance, cost_.collision});
   if (solve) {
     const double samples = solve->samples ? solve->samples->samples() : 0;
-    put({solve->minimum_cost, solve->expected_cost, solve->effective_sample_size, samples});
-    put({solve->collided_share, solve->temperature, static_cast<double>(solve->iterations)});
+    to.put({solve->minimum_cost, solve->expected_cost, solve->effective_sample_size, samples});
+    to.put({solve->collided_share, solve->temperature, static_cast<double>(solve->iterations)});
   } else {
-    put({none, none, none, 0, none, none, 0});
+    to.put({none, none, none, 0, none, none, 0});
   }
-  put({1e3 * out.tick_time, 1e3 * times.draw, 1e3 * times.evaluate, 1e3 * times.guide});
-  put({1e3 * times.update, 1e3 * times.total, 1e3 * facts.deadline});
+  to.put({1e3 * out.tick_time, 1e3 * times.draw, 1e3 * times.evaluate, 1e3 * times.guide});
+  to.put({1e3 * times.update, 1e3 * times.total, 1e3 * facts.deadline});
   const int lap = laps.laps();
-  put({static_cast<double>(lap), tick.time - laps.lap_start_time()});
-  put({laps.progress() / world.track().lap_path()->length() - lap, laps.lateral(), clearance_of(world)});
-  put({tick.seen.collides() ? 1.0 : 0.0, static_cast<double>(tick.collisions), tick.cost.total()});
-  put({facts.prediction_step, static_cast<double>(facts.method)});
+  to.put({static_cast<double>(lap), tick.time - laps.lap_start_time()});
+  to.put({laps.progress() / world.track().lap_path()->length() - lap, laps.lateral(), clearance_of(world)});
+  to.put({tick.seen.collides() ? 1.0 : 0.0, static_cast<double>(tick.collisions), tick.cost.total()});
+  to.put({facts.prediction_step, static_cast<double>(facts.method)});
   if (estimate.friction > 0) {
     const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
-    put({out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction});
-    put({estimate.cautious_friction, estimate.steering_gain, estimate.delay});
+    to.put({out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction});
+    to.put({estimate.cautious_friction, estimate.steering_gain, estimate.steering_offset, estimate.delay});
   } else {
-    put({none, none, none, none, none, none});  // the tyres do not slip
+    to.put({none, none, none, none, none, none, none});  // the tyres do not slip
   }
   const maps::Pose& rear = tick.odometry.pose;
-  put({rear.x, rear.y, rear.yaw, tick.odometry.speed,
-       static_cast<double>(solve ? solve->symptom() : Symptom::none)});
+  to.put({rear.x, rear.y, rear.yaw, tick.odometry.speed,
+          static_cast<double>(solve ? solve->symptom() : Symptom::none)});
   to.end();
   put_scan(to, tick);
   put_cost_map(to, tick);
@@ -97,10 +89,7 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   put_states(to, tick.planner, solve->nominal);
   to.end();
   put_plan(to, tick);
-  to.begin(Block::covariance);
-  const auto width = static_cast<std::size_t>(tick.planner.solver().inputs());
-  for (std::size_t row = 0; row < solve->variances.size(); row += width) to.put(solve->variances[row]);
-  to.end();
+  to.put_covariance(solve->variances, static_cast<std::size_t>(tick.planner.solver().inputs()));
   return to.take();
 }
 
@@ -135,9 +124,7 @@ void FrameEncoder::put_cost_map(FrameWriter& to, const ControlStep& tick) const 
   to.put_pose(tick.odometry.pose);
   to.put(static_cast<std::uint16_t>(geometry.rows));
   to.put(static_cast<std::uint16_t>(geometry.columns));
-  to.put_f32(geometry.resolution);
-  to.put_f32(geometry.center_x);
-  to.put_f32(geometry.center_y);
+  to.put_f32({geometry.resolution, geometry.center_x, geometry.center_y});
   unsigned bits = 0;
   int filled = 0;
   for (int row = 0; row < geometry.rows; ++row) {
@@ -175,9 +162,7 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
       sequence_[static_cast<std::size_t>(row)] = batch.at(row / inputs, row % inputs, k);
     put_states(points, tick.planner, sequence_);
     const auto at = static_cast<std::size_t>(k);
-    to.put_f32(cost_.distance);
-    to.put_f32(cost_.state - cost_.distance);
-    to.put_f32(cost_.collision);
+    to.put_f32({cost_.distance, cost_.state - cost_.distance, cost_.collision});
     to.put(solve.costs[at]);
     to.put(at < solve.weights.size() ? solve.weights[at] : 0.0f);
   }
@@ -233,9 +218,8 @@ void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
   to.put(tick.seen.pose.y);
   for (std::size_t k = 0; k < plan.size(); ++k) {
     const PredictedState& state = plan[k];
-    for (const double value : {state.pose.x - tick.seen.pose.x, state.pose.y - tick.seen.pose.y,
-                               state.pose.yaw, state.speed, state.steer, std::sqrt(spread[k])})
-      to.put_f32(value);
+    to.put_f32({state.pose.x - tick.seen.pose.x, state.pose.y - tick.seen.pose.y, state.pose.yaw, state.speed,
+                state.steer, std::sqrt(spread[k])});
   }
   to.end();
 }
@@ -246,7 +230,7 @@ void FrameEncoder::put_others(FrameWriter& to, const ControlStep& tick) {
   to.begin(Block::others);
   to.put(static_cast<std::uint32_t>(tick.others.size()));
   for (const maps::PredictedObstacle& other : tick.others) {
-    for (const double value : {other.length, other.width, other.poses.front().pose.yaw}) to.put_f32(value);
+    to.put_f32({other.length, other.width, other.poses.front().pose.yaw});
     to.put(static_cast<std::uint16_t>(other.hypotheses));
     to.put(static_cast<std::uint16_t>(other.times()));
     for (int k = 0; k < other.hypotheses; ++k) to.put_f32(other.weights[static_cast<std::size_t>(k)]);

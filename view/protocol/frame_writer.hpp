@@ -3,9 +3,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
+#include <iterator>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "slalom/maps/pose.hpp"
 
@@ -34,6 +38,12 @@ enum class Block : std::uint16_t {
   file = 30,
 };
 
+/// The words of a text.
+inline std::vector<std::string> words_of(const char* text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
 /// Writes a binary message: "SLV1", then blocks of kind (u16), 0 (u16), length (u32) and payload, padded with
 /// zeros to four bytes. Numbers are little-endian, as in the memory of all supported machines.
 class FrameWriter {
@@ -61,10 +71,25 @@ class FrameWriter {
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
   void put_f32(double value) { put(static_cast<float>(value)); }
-  void put_pose(const maps::Pose& pose) {
-    put(pose.x);
-    put(pose.y);
-    put(pose.yaw);
+  void put(std::initializer_list<double> values) {
+    for (const double value : values) put(value);
+  }
+  void put_f32(std::initializer_list<double> values) {
+    for (const double value : values) put_f32(value);
+  }
+  void put_pose(const maps::Pose& pose) { put({pose.x, pose.y, pose.yaw}); }
+  /// Writes a body of the block `bodies`; its length and width in m.
+  void put_body(std::size_t id, int kind, bool touched, const maps::Pose& at, double length, double width) {
+    put(static_cast<std::uint16_t>(id));
+    put(static_cast<std::uint8_t>(kind));
+    put(static_cast<std::uint8_t>(touched));
+    put_f32({at.x, at.y, at.yaw, length, width});
+  }
+  /// Writes the variance of the first input of each step, [step][input].
+  void put_covariance(std::span<const float> variances, std::size_t inputs) {
+    begin(Block::covariance);
+    for (std::size_t row = 0; row < variances.size(); row += inputs) put(variances[row]);
+    end();
   }
 
   /// Begins a list of points with their origin and unit (m), of which 16 bits reach 32767 either way. Each

@@ -68,14 +68,11 @@ std::string command_line(const OptionsFacts& facts) {
 std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
                           double control_period) {
   const sim::WorldOptions world = environment.world_options();
-  Json statuses = Json::array();
-  for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)
-    statuses.push_back(vehicle::name(static_cast<vehicle::PlannerStatus>(i)));
   const sim::CarParameters& car = world.car;
   return json_text({{"type", "hello"},
                     {"protocol", 1},
                     {"scalars", scalar_names()},
-                    {"statuses", statuses},
+                    {"statuses", names_json(vehicle::PlannerStatus::solver_degenerate)},
                     {"symptoms", symptoms_json()},
                     {"courses", choices.courses},
                     {"methods", choices.methods},

@@ -33,11 +33,7 @@ std::string encode_bodies(const sim::World& world) {
     const bool hit = i == 0 ? seen.collides()
                             : std::find(seen.colliding.begin(), seen.colliding.end(), static_cast<int>(i)) !=
                                   seen.colliding.end();
-    to.put(static_cast<std::uint16_t>(i));
-    to.put(static_cast<std::uint8_t>(kind));
-    to.put(static_cast<std::uint8_t>(hit));
-    for (const double value : {box.pose.x, box.pose.y, box.pose.yaw, box.length, box.width})
-      to.put_f32(value);
+    to.put_body(i, kind, hit, box.pose, box.length, box.width);
   }
   to.end();
   return to.take_blocks();
@@ -48,10 +44,8 @@ std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> pl
   FrameWriter to;
   to.begin(Block::ghost);
   to.put_pose({car.x, car.y, car.yaw});
-  to.put(car.steer);
-  to.put(car.speed);
-  to.put(world.laps(0)->progress() / world.track().lap_path()->length());
-  to.put(world.laps(0)->last_lap_time());
+  const double laps = world.laps(0)->progress() / world.track().lap_path()->length();
+  to.put({car.steer, car.speed, laps, world.laps(0)->last_lap_time()});
   to.put(static_cast<std::uint32_t>(plan.size()));
   to.begin_points({car.x, car.y});
   for (const maps::Pose& pose : plan) to.put_point({pose.x, pose.y});
@@ -73,8 +67,7 @@ std::string encode_scene(const evaluation::Environment& environment) {
   to.begin(Block::path);
   to.put(static_cast<std::uint32_t>(environment.path.size()));
   to.put(static_cast<std::uint32_t>(environment.course.closed));
-  for (const maps::ReferencePoint& point : environment.path)
-    for (const double value : {point.x, point.y, point.speed}) to.put_f32(value);
+  for (const maps::ReferencePoint& p : environment.path) to.put_f32({p.x, p.y, p.speed});
   to.end();
   return to.take();
 }

@@ -1,10 +1,26 @@
 #include "view/server/audience.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "src/evaluation/json.hpp"
 
 namespace slalom::view {
+namespace {
+
+/// Whether a message is a later step of the same drag of a body: only the last one is worth a plan.
+bool replaces(const Received& later, const Received& earlier) {
+  if (later.kind != Received::Kind::message || earlier.kind != Received::Kind::message ||
+      later.client != earlier.client)
+    return false;
+  const Json a = parse_json_or_null(earlier.text), b = parse_json_or_null(later.text);
+  const auto same = [&](const char* key) { return a.contains(key) && b.contains(key) && a[key] == b[key]; };
+  if (!a.is_object() || !b.is_object() || a.contains("id") || !same("do")) return false;
+  return a["do"] == "place_car" || (a["do"] == "move" && same("body") && same("drag"));
+}
+
+}  // namespace
+
 namespace field {
 
 void require(bool holds, const char* key, const char* rule) {
@@ -35,6 +51,16 @@ bool flag(const Json& command, const char* key) {
   const auto found = command.find(key);
   require(found != command.end() && found->is_boolean(), key, "true or false");
   return found->get<bool>();
+}
+
+double rate(const Json& command) {
+  const double rate = number(command, "rate");
+  require(rate == 0 || (rate >= 0.001 && rate <= 100), "rate", "0 for the maximum speed, or in [0.001, 100]");
+  return rate;
+}
+
+int steps(const Json& command) {
+  return std::clamp(integer(command, "ticks", 1), 1, max_steps);
 }
 
 }  // namespace field
@@ -74,19 +100,33 @@ void Audience::tell_text(std::uint64_t client, std::string text) {
   server_.send(client, {std::make_shared<const std::string>(std::move(text)), false});
 }
 
-void Audience::execute(std::uint64_t client, const Json& command,
-                       const std::function<void(const std::string& what)>& obey) {
+void Audience::turn(const std::function<void(std::uint64_t client)>& open, const Obey& obey) {
+  const std::vector<Received> received = server_.take();
+  for (std::size_t i = 0; i < received.size(); ++i) {
+    const Received& each = received[i];
+    if (i + 1 < received.size() && replaces(received[i + 1], each)) continue;
+    if (each.kind == Received::Kind::joined)
+      open(each.client);
+    else if (each.kind == Received::Kind::left)
+      leave(each.client);
+    else
+      execute(each, obey);
+  }
+}
+
+void Audience::execute(const Received& message, const Obey& obey) {
+  const Json command = parse_json_or_null(message.text);
   const auto id = command.find("id");
   const bool has_id = id != command.end() && id->is_number_integer();
   const auto fail = [&](const char* why) {
     Json error = {{"type", "error"}, {"message", why}};
     if (has_id) error["id"] = *id;
-    tell(client, error);
+    tell(message.client, error);
   };
   try {
     if (!command.is_object()) throw MalformedCommand("a command must be a JSON object");
-    obey(field::text(command, "do"));
-    if (has_id) tell(client, {{"type", "done"}, {"id", *id}});
+    obey(message.client, field::text(command, "do"), command);
+    if (has_id) tell(message.client, {{"type", "done"}, {"id", *id}});
   } catch (const MalformedCommand& error) {
     ++refused_;
     fail(error.what());

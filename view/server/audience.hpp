@@ -29,6 +29,11 @@ double number(const nlohmann::ordered_json& command, const char* key, std::optio
 int integer(const nlohmann::ordered_json& command, const char* key, std::optional<int> otherwise = {});
 std::string text(const nlohmann::ordered_json& command, const char* key);
 bool flag(const nlohmann::ordered_json& command, const char* key);
+/// Returns the ratio of simulated to real time of a command: 0, or in [0.001, 100].
+double rate(const nlohmann::ordered_json& command);
+/// Returns the number of steps of a command, at most `max_steps`.
+int steps(const nlohmann::ordered_json& command);
+constexpr int max_steps = 400;
 
 }  // namespace field
 
@@ -36,6 +41,7 @@ bool flag(const nlohmann::ordered_json& command, const char* key);
 class Audience {
  public:
   using Json = nlohmann::ordered_json;
+  using Obey = std::function<void(std::uint64_t client, const std::string& what, const Json& command)>;
 
   explicit Audience(Server& server) : server_(server) {}
 
@@ -52,12 +58,14 @@ class Audience {
   /// Sends a message to one client, or to all with 0.
   void tell(std::uint64_t client, const Json& message);
   void tell_text(std::uint64_t client, std::string text);
-  /// Executes a command by `obey` and answers it: an error with the reason, and `done` if it has an `id`.
-  void execute(std::uint64_t client, const Json& command,
-               const std::function<void(const std::string& what)>& obey);
+  /// Executes what has come: a page that is opened by `open`, a command by `obey`. A command is answered by
+  /// an error with the reason, and by `done` if it has an `id`. Of a drag, only the last step is executed.
+  void turn(const std::function<void(std::uint64_t client)>& open, const Obey& obey);
   std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were not valid commands
 
  private:
+  void execute(const Received& message, const Obey& obey);
+
   Server& server_;
   std::vector<std::uint64_t> clients_;  ///< by age
   std::uint64_t driving_client_ = 0;    ///< 0 if there is no client

@@ -94,7 +94,7 @@ void HttpConnection::answer() {
     response_.set(http::field::content_type, resource.type);
     if (resource.is_gzip) response_.set(http::field::content_encoding, "gzip");
     // The page declares its policy in its head, but browsers take this part of it from the header alone.
-    response_.set("Content-Security-Policy", "frame-ancestors 'none'");
+    response_.set("Content-Security-Policy", "frame-ancestors " + all_.options.framed_by);
     body = resource.body;
   } else {
     ++all_.refused;

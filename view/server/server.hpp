@@ -24,6 +24,7 @@ struct ServerOptions {
   std::string host = "127.0.0.1";    ///< IP address to listen on
   std::uint16_t port = 0;            ///< port to listen on; 0: any that is free
   std::string token{};               ///< if not empty, page and WebSocket need `?token=`
+  std::string framed_by = "'none'";  ///< pages that may show this one inside, as in `frame-ancestors`
   std::size_t max_message = 16384;   ///< bytes of a message from a client; a longer one ends the connection
   int max_clients = 32;              ///< further WebSockets are refused
   double messages_per_second = 120;  ///< mean rate of one client; messages beyond it are not delivered

@@ -10,9 +10,6 @@
 namespace slalom::view {
 namespace {
 
-constexpr auto min_frame_gap = std::chrono::milliseconds(12);  // no screen shows more
-constexpr auto max_state_gap = std::chrono::seconds(1);
-constexpr int max_late_ticks = 4;         // ticks that a late clock may owe
 constexpr std::size_t max_changes = 200;  // that can be undone
 
 // The introduction, in slow motion until the cars have passed the obstacle.
@@ -21,29 +18,6 @@ constexpr double reach = 4;             // m from the car to an obstacle ahead, 
 constexpr double beside = 1.5;          // m to either side of the car's axis
 constexpr double behind = 0.6;          // m from the centre of a car to that of a car that it has passed
 constexpr int max_passing_ticks = 120;  // a car may be blocked
-
-std::shared_ptr<const std::string> shared(std::string text) {
-  return std::make_shared<const std::string>(std::move(text));
-}
-
-/// Estimates the bytes of a copy of a controller: the batch of samples, and other arrays of that order.
-std::size_t bytes_of(const SolveResult* solve) {
-  if (!solve || !solve->samples) return 0;
-  const SequenceBatch& batch = *solve->samples;
-  return std::size_t{8} * sizeof(float) * static_cast<std::size_t>(batch.samples()) *
-         static_cast<std::size_t>(batch.steps()) * static_cast<std::size_t>(batch.inputs());
-}
-
-/// Whether a message is a later step of the same drag of a body: only the last one is worth a plan.
-bool replaces(const Received& later, const Received& earlier) {
-  if (later.kind != Received::Kind::message || earlier.kind != Received::Kind::message ||
-      later.client != earlier.client)
-    return false;
-  const Json a = parse_json_or_null(earlier.text), b = parse_json_or_null(later.text);
-  const auto same = [&](const char* key) { return a.contains(key) && b.contains(key) && a[key] == b[key]; };
-  return a.is_object() && b.is_object() && !a.contains("id") && same("do") && a["do"] == "move" &&
-         same("body") && same("drag");
-}
 
 /// The message of a tick: the blocks of the car, the bodies of its world, and the same of the ghost.
 std::string frame_of(std::string_view car, std::string_view ghost, const Drives& drives) {
@@ -81,17 +55,8 @@ void Session::run(const std::atomic<bool>& stop) {
 }
 
 void Session::turn() {
-  const std::vector<Received> received = server_.take();
-  for (std::size_t i = 0; i < received.size(); ++i) {
-    const Received& each = received[i];
-    if (i + 1 < received.size() && replaces(received[i + 1], each)) continue;
-    if (each.kind == Received::Kind::joined)
-      join(each.client);
-    else if (each.kind == Received::Kind::left)
-      audience_.leave(each.client);
-    else
-      execute(each);
-  }
+  audience_.turn([this](auto client) { join(client); },
+                 [this](auto client, const auto& what, const Json& command) { obey(client, what, command); });
   if (until_due() <= Clock::duration::zero()) {
     if (steps_left_ > 0) --steps_left_;
     tick();
@@ -104,21 +69,14 @@ void Session::turn() {
   if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
   last_state_ = now;
   is_state_changed_ = false;
-  measure_pace();
+  state_.pace = pace_.measure(state_.pace, control_period(), state_.paused);
   audience_.tell_text(0, state());
-}
-
-void Session::execute(const Received& message) {
-  const Json command = parse_json_or_null(message.text);
-  audience_.execute(message.client, command,
-                    [&](const std::string& what) { obey(message.client, what, command); });
 }
 
 Session::Clock::duration Session::until_due() const {
   if (steps_left_ > 0) return Clock::duration::zero();
   if (waiting_ || state_.paused) return std::chrono::hours(1);
-  if (state_.rate <= 0) return Clock::duration::zero();
-  return due_ - Clock::now();
+  return pace_.until_due(state_.rate);
 }
 
 /// Drives a scenario from its start, without a ghost.
@@ -157,16 +115,12 @@ void Session::begin(Drives drives) {
   steps_left_ = 0;
   held_.reset();
   slow_down();
-  due_ = Clock::now();
+  pace_.due = Clock::now();
   is_state_changed_ = are_options_changed_ = true;
 }
 
 void Session::tick(bool is_shown) {
-  if (state_.rate > 0) {
-    const auto period = std::chrono::duration<double>(control_period());
-    const auto step = std::chrono::duration_cast<Clock::duration>(period / state_.rate);
-    due_ = std::max(due_ + step, Clock::now() - max_late_ticks * step);
-  }
+  pace_.step(control_period(), state_.rate);
   Drives& drives = *drives_;
   timeline_.checkpoint(drives, copy_bytes_, last_updates_.car + last_updates_.ghost);
   copy_bytes_ = 0;
@@ -189,7 +143,6 @@ void Session::tick(bool is_shown) {
     frame = frame_of(car, ghost, drives);
   };
   drives.tick(delays, on_car, on_ghost);
-  ++paced_ticks_;
   timeline_.keep({number, delays, shared(std::move(frame))});
   note_laps(drives.car, driver().method, false);
   if (drives.ghost) note_laps(*drives.ghost, drives.ghost_label, true);
@@ -242,18 +195,6 @@ void Session::show_step(int tick) {
   server_.publish(0, timeline_.at(tick).frame);
 }
 
-/// Measures the simulated time per time while the drive goes on.
-void Session::measure_pace() {
-  constexpr double least = 0.5;  // s
-  const auto now = Clock::now();
-  const double passed = std::chrono::duration<double>(now - paced_).count();
-  if (state_.paused) state_.pace = 0;
-  if (passed < least && !state_.paused) return;
-  if (!state_.paused) state_.pace = paced_ticks_ * control_period() / passed;
-  paced_ = now;
-  paced_ticks_ = 0;
-}
-
 /// Keeps the introduction in slow motion until both cars have passed the obstacle.
 void Session::slow_down() {
   if (!state_.introduction || passing_ticks_ > max_passing_ticks) return;
@@ -271,9 +212,8 @@ void Session::slow_down() {
 
 /// Whether a change is to be shown before the next tick: the drive is paused, or in slow motion.
 bool Session::is_held() const {
-  constexpr double longest_wait = 0.05;  // s
-  const bool is_slow = state_.rate > 0 && control_period() > longest_wait * state_.rate;
-  return (state_.paused || is_slow) && steps_left_ == 0 && !timeline_.empty();
+  return (state_.paused || Pace::is_slow(control_period(), state_.rate)) && steps_left_ == 0 &&
+         !timeline_.empty();
 }
 
 /// Returns the drives that a change applies to. While nothing moves these are the drives when the tick that
@@ -292,7 +232,7 @@ void Session::continue_from_shown() {
   drives.tick(timeline_.at(viewed_).delays);
   drives_ = std::move(drives);
   forget_after(viewed_, viewed_);
-  due_ = Clock::now();
+  pace_.due = Clock::now();
 }
 
 /// Forgets what was driven after a tick, and what was changed after `ticks` ticks.
@@ -321,13 +261,13 @@ void Session::perform(const std::vector<Action>& actions, int lead) {
   is_state_changed_ = are_options_changed_ = true;
   if (!is_driven_again) return;
   held_ = *drives_;
-  const Clock::time_point due = due_;
+  const Clock::time_point due = pace_.due;
   if (acted_ < shown) {
     tick(false);
     timeline_.act(*drives_);
   }
   tick();
-  due_ = due;
+  pace_.due = due;
 }
 
 /// Stores what a change has replaced, so that it can be undone; what was undone cannot be done again after

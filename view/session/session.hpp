@@ -15,6 +15,7 @@
 #include "view/protocol/messages.hpp"
 #include "view/server/audience.hpp"
 #include "view/session/drives.hpp"
+#include "view/session/pace.hpp"
 
 namespace slalom::view {
 
@@ -59,13 +60,13 @@ class Session {
   /// Executes the commands that have come, and drives one tick if it is due; for tests.
   void turn();
 
-  std::uint64_t refused() const noexcept {
-    return audience_.refused();
-  }                                                          ///< messages that were not valid commands
-  bool is_busy() const noexcept { return steps_left_ > 0; }  ///< whether ticks of a command "step" are left
+  /// Number of messages that were not valid commands.
+  std::uint64_t refused() const noexcept { return audience_.refused(); }
+  /// Whether ticks of a command "step" are left.
+  bool is_busy() const noexcept { return steps_left_ > 0; }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = Pace::Clock;
   static constexpr int scan_lead = 1;  ///< ticks before the one that is shown, whose end made its scan
   using Json = nlohmann::ordered_json;
   /// The options or the bodies that a change has replaced after some ticks.
@@ -82,7 +83,6 @@ class Session {
   void show_step(int tick);
   void publish_newest();
   void slow_down();
-  void measure_pace();
   void note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost);
   StepFacts facts_of(const evaluation::LapDrive& drive) const;
   Clock::duration until_due() const;
@@ -101,7 +101,6 @@ class Session {
   void show_lap(const Json& command);
 
   // Commands.
-  void execute(const Received& message);
   void obey(std::uint64_t client, const std::string& what, const Json& command);
   bool obey_transport(const std::string& what, const Json& command);
   bool obey_options(const std::string& what, const Json& command);
@@ -136,7 +135,6 @@ class Session {
 
   FrameEncoder encoder_;
   Delays last_updates_;         ///< s of wall clock
-  int paced_ticks_ = 0;         ///< ticks since `paced_`
   std::size_t copy_bytes_ = 0;  ///< about the size of a copy of the drives
 
   bool waiting_ = true;     ///< for the first page to be opened
@@ -144,9 +142,9 @@ class Session {
   int stop_at_ = -1;        ///< tick at which to pause
   int steps_left_ = 0;      ///< ticks of a command "step" that are still to come
   int passing_ticks_ = -1;  ///< ticks of the introduction since the cars came to the obstacle; -1 before
-  Clock::time_point due_ = Clock::now(), last_state_ = due_, last_frame_ = due_;
-  Clock::time_point paced_ = due_;  ///< from when the pace of the drive is measured
-  bool is_newest_sent_ = true;      ///< false if the newest tick came too early for a frame
+  Pace pace_;
+  Clock::time_point last_state_ = Clock::now(), last_frame_ = last_state_;
+  bool is_newest_sent_ = true;  ///< false if the newest tick came too early for a frame
   bool is_state_changed_ = true, are_options_changed_ = false;
   std::future<void> saving_;  ///< the last member: its thread ends before what it uses
 };

@@ -10,8 +10,6 @@
 namespace slalom::view {
 namespace {
 
-constexpr int max_steps = 400;  // ticks of one command "step"
-constexpr double least_rate = 0.001, most_rate = 100;
 constexpr double before_contact = 2.0, after_contact = 0.25;  // s that are shown of a collision
 constexpr double contact_rate = 0.25;
 
@@ -56,23 +54,19 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
     stop_at_ = -1;
     steps_left_ = 0;
     state_.paused = waiting_ = false;
-    due_ = paced_ = Clock::now();
-    paced_ticks_ = 0;
+    pace_ = {};
   } else if (what == "step") {
-    const int ticks = std::clamp(field::integer(command, "ticks", 1), 1, max_steps);
+    const int ticks = field::steps(command);
     continue_from_shown();
     waiting_ = false;
     state_.paused = true;
-    steps_left_ = std::min(steps_left_ + ticks, max_steps);
+    steps_left_ = std::min(steps_left_ + ticks, field::max_steps);
   } else if (what == "seek") {
     steps_left_ = 0;
     show_step(field::integer(command, "tick"));
   } else if (what == "rate") {
-    const double rate = field::number(command, "rate");
-    if (rate != 0 && !(rate >= least_rate && rate <= most_rate))
-      throw MalformedCommand("rate: must be 0 for the maximum speed, or in [0.001, 100]");
-    state_.rate = rate;
-    due_ = Clock::now();
+    state_.rate = field::rate(command);
+    pace_.due = Clock::now();
   } else if (what == "real_time") {
     state_.real_time = field::flag(command, "on");
     if (state_.real_time) state_.rate = 1;
@@ -211,7 +205,7 @@ void Session::show_lap(const Json& command) {
     state_.rate = contact_rate;
   }
   state_.contact = {experiment, lap, contact, hit};
-  due_ = Clock::now();
+  pace_.due = Clock::now();
 }
 
 }  // namespace slalom::view

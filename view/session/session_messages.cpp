@@ -13,8 +13,6 @@
 namespace slalom::view {
 namespace {
 
-constexpr int max_ticks_per_message = 800;
-
 std::string file_message(const std::string& name, const std::string& content) {
   FrameWriter to;
   to.begin(Block::file);
@@ -36,21 +34,13 @@ void Session::join(std::uint64_t client) {
   audience_.tell_text(client, state());
   if (!options_.evaluation.empty()) audience_.tell_text(client, options_.evaluation);
   audience_.tell_roles();
-  if (std::exchange(waiting_, false)) due_ = Clock::now();
+  if (std::exchange(waiting_, false)) pace_.due = Clock::now();
   if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
 }
 
 /// Sends the scalars of past ticks, of as many as a message holds and as are still known.
 void Session::tell_past(std::uint64_t client, int from, int to) {
-  FrameWriter past;
-  past.begin(Block::past);
-  to = std::min(to, timeline_.newest());
-  from = std::max({from, timeline_.oldest(), to - max_ticks_per_message + 1});
-  for (int tick = timeline_.empty() ? to + 1 : from; tick <= to; ++tick)
-    past.append(std::string_view(*timeline_.at(tick).frame)
-                    .substr(FrameWriter::head_bytes, 8 * scalar_names().size()));
-  past.end();
-  server_.send(client, {std::make_shared<const std::string>(past.take()), true});
+  server_.send(client, {shared(timeline_.past(from, to, scalar_names().size())), true});
 }
 
 std::string Session::hello() const {
@@ -120,7 +110,7 @@ void Session::save(std::uint64_t client, const std::string& what) {
         tell_drive(recorder);
         file = std::move(stream).str();
       }
-      server_.send(client, {std::make_shared<const std::string>(file_message(name, file)), true});
+      server_.send(client, {shared(file_message(name, file)), true});
     } catch (const std::exception& error) {
       audience_.tell(client, {{"type", "error"}, {"message", error.what()}});
     }

@@ -7,12 +7,28 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "slalom/solvers/solver.hpp"
+#include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {
 
 constexpr double stored_seconds = 60;  ///< s of a drive that can be shown again
+
+inline std::shared_ptr<const std::string> shared(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
+/// Estimates the bytes of a copy of a controller: the batch of samples, and other arrays of that order.
+inline std::size_t bytes_of(const SolveResult* solve) {
+  if (!solve || !solve->samples) return 0;
+  const SequenceBatch& batch = *solve->samples;
+  return std::size_t{8} * sizeof(float) * static_cast<std::size_t>(batch.samples()) *
+         static_cast<std::size_t>(batch.steps()) * static_cast<std::size_t>(batch.inputs());
+}
 
 /// Delays by which commands take effect later than the settings say, s.
 struct Delays {
@@ -77,6 +93,19 @@ class TimelineOf {
   /// Returns a stored tick.
   const Step& at(int tick) const { return steps_.at(static_cast<std::size_t>(tick - oldest())); }
 
+  /// Returns the message with the first `scalars` values of the frames of past ticks, of as many as a message
+  /// holds and as are still known.
+  std::string past(int from, int to, std::size_t scalars) const {
+    FrameWriter past;
+    past.begin(Block::past);
+    to = std::min(to, newest());
+    from = empty() ? to + 1 : std::max({from, oldest(), to - max_ticks_per_message + 1});
+    for (; from <= to; ++from)
+      past.append(std::string_view(*at(from).frame).substr(FrameWriter::head_bytes, 8 * scalars));
+    past.end();
+    return past.take();
+  }
+
   /// Returns the drives as they were when a stored tick began, with the actions before it: a copy, driven on.
   Drives before(int tick) const {
     const auto later = std::ranges::find_if(copies_, [&](const Drives& each) { return each.ticks() > tick; });
@@ -100,6 +129,7 @@ class TimelineOf {
   bool is_action_due() const { return !actions_.empty() && actions_.back().first > newest(); }
 
  private:
+  static constexpr int max_ticks_per_message = 800;
   static constexpr std::size_t max_frame_bytes = 400u << 20;
   static constexpr std::size_t max_copy_bytes = 1u << 30;
   static constexpr std::size_t max_copies = 200;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import threading
 import webbrowser
 from typing import Any
@@ -17,6 +18,7 @@ class Showing:
         self._open = True
         self._thread = threading.Thread(target=self._run, args=(view,), daemon=True)
         self._thread.start()
+        atexit.register(self.close)  # a thread must not run Python code while Python ends
 
     def _run(self, view: Any) -> None:
         while self._open:
@@ -26,6 +28,7 @@ class Showing:
         """Ends the page."""
         self._open = False
         self._thread.join()
+        atexit.unregister(self.close)
 
     def __repr__(self) -> str:
         return f"Showing({self.address})"

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <optional>
 
 #include "controller.hpp"
 #include "slalom/view/serve.hpp"
@@ -11,7 +12,8 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// The arguments of `slalom.show` that say how a problem is drawn.
 struct Drawing {
   std::vector<double> start;
-  int x = 0, y = 1, heading = -1;  ///< indices of states; no heading: -1
+  int x = 0, y = 1;  ///< indices of states
+  std::optional<int> heading;
   py::object pose, figure, shapes, move, plant;
 };
 
@@ -49,7 +51,9 @@ class PythonSubject final : public view::Subject {
  public:
   PythonSubject(py::object controller, std::shared_ptr<const Drawing> drawing,
                 std::shared_ptr<const view::SubjectFacts> facts)
-      : controller_(std::move(controller)), drawing_(std::move(drawing)), facts_(std::move(facts)) {}
+      : drawing_(std::move(drawing)), facts_(std::move(facts)) {
+    set_controller(std::move(controller));
+  }
   ~PythonSubject() override {
     const py::gil_scoped_acquire lock;
     controller_ = py::object();
@@ -67,8 +71,8 @@ class PythonSubject final : public view::Subject {
   const SolverOptions* options() const override { return &controller().options(); }
   void set_options(const SolverOptions& options) override {
     const py::gil_scoped_acquire lock;
-    controller_ =
-        py::type::of<Controller>()(options.method(), controller_.attr("problem"), **values_of(options));
+    set_controller(
+        py::type::of<Controller>()(options.method(), controller_.attr("problem"), **values_of(options)));
   }
 
   const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
@@ -79,7 +83,7 @@ class PythonSubject final : public view::Subject {
   std::span<const double> inputs() const override { return controller().inputs(); }
   Trajectories roll_out(std::span<const double> state, std::span<const float> sequences) override {
     const py::gil_scoped_acquire lock;
-    return problem().roll_out(state, sequences, controller().solver().horizon());
+    return problem().roll_out(state, sequences, controller().solver().horizon(), facts_->terms);
   }
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
     const py::gil_scoped_acquire lock;
@@ -105,7 +109,7 @@ class PythonSubject final : public view::Subject {
     }
     for (std::size_t i = 0; i < count; ++i) {
       const double* const state = &states[i * width];
-      all[i] = {state[d.x], state[d.y], d.heading < 0 ? 0 : state[d.heading]};
+      all[i] = {state[d.x], state[d.y], d.heading ? state[*d.heading] : 0};
     }
     return all;
   }
@@ -130,7 +134,7 @@ class PythonSubject final : public view::Subject {
     const auto at = [&](int i) -> double& { return state[static_cast<std::size_t>(i)]; };
     at(drawing_->x) = to.x;
     at(drawing_->y) = to.y;
-    if (drawing_->heading >= 0) at(drawing_->heading) = to.yaw;
+    if (drawing_->heading) at(*drawing_->heading) = to.yaw;
   }
   void move(int shape, const maps::Point& to) override {
     const py::gil_scoped_acquire lock;
@@ -138,39 +142,38 @@ class PythonSubject final : public view::Subject {
   }
 
  private:
-  Controller& controller() const { return *py::cast<Controller*>(controller_); }
+  /// Requires the interpreter lock, unlike those that read it.
+  void set_controller(py::object controller) {
+    native_ = py::cast<Controller*>(controller);
+    controller_ = std::move(controller);
+  }
+  Controller& controller() const { return *native_; }
   AnyProblem& problem() const { return controller().problem(); }
 
   py::object controller_;
+  Controller* native_ = nullptr;  ///< owned by `controller_`
   std::shared_ptr<const Drawing> drawing_;
   std::shared_ptr<const view::SubjectFacts> facts_;
 };
 
-std::vector<std::string> names_of(std::vector<std::string> given, int count, const std::string& what) {
-  if (given.empty())
-    for (int i = 1; i <= count; ++i) given.push_back(what + " " + std::to_string(i));
-  if (static_cast<int>(given.size()) != count)
-    throw py::value_error(what + "_names: has " + std::to_string(given.size()) + " names, must have " +
-                          std::to_string(count));
-  return given;
-}
-
 std::unique_ptr<view::View> make_view(const py::object& controller, Drawing drawing, view::SubjectFacts facts,
                                       const view::ServeOptions& options) {
-  AnyProblem& problem = controller.cast<Controller&>().problem();
+  auto& native = controller.cast<Controller&>();
+  AnyProblem& problem = native.problem();
   const int states = problem.states();
   if (static_cast<int>(drawing.start.size()) != states)
     throw py::value_error("start: has " + std::to_string(drawing.start.size()) + " values, must have " +
                           std::to_string(states));
-  for (const int index : {drawing.x, drawing.y, std::max(0, drawing.heading)})
+  for (const int index : {drawing.x, drawing.y, drawing.heading.value_or(0)})
     if (drawing.pose.is_none() && (index < 0 || index >= states))
       throw py::value_error("x, y, heading: " + std::to_string(index) +
                             " must be an index of a state, in [0, " + std::to_string(states - 1) + "]");
-  facts.states = names_of(std::move(facts.states), states, "state");
-  facts.inputs = names_of(std::move(facts.inputs), problem.inputs(), "input");
+  const auto inputs = static_cast<std::size_t>(problem.inputs());
+  view::fill_names(facts.states, drawing.start.size(), "state", "state_names");
+  view::fill_names(facts.inputs, inputs, "input", "input_names");
   facts.can_place = drawing.pose.is_none();
   facts.can_move = !drawing.move.is_none();
-  const std::vector<double> rest(static_cast<std::size_t>(problem.inputs()));
+  const std::vector<double> rest(static_cast<std::size_t>(native.solver().horizon()) * inputs);
   for (const auto& [name, value] : problem.predict(drawing.start, rest).terms) facts.terms.push_back(name);
   auto subject =
       std::make_unique<PythonSubject>(py::module_::import("copy").attr("copy")(controller),
@@ -191,8 +194,8 @@ void bind_view(py::module_& module) {
                        const std::string& title, const std::string& host, std::uint16_t port,
                        const std::string& token) {
              return make_view(controller,
-                              {std::move(start), x, y, heading.value_or(-1), std::move(pose),
-                               std::move(figure), std::move(shapes), std::move(move), std::move(plant)},
+                              {std::move(start), x, y, heading, std::move(pose), std::move(figure),
+                               std::move(shapes), std::move(move), std::move(plant)},
                               {.title = title,
                                .states = std::move(state_names),
                                .inputs = std::move(input_names),

@@ -41,7 +41,8 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void set_state(std::span<const double> state) override;
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
-  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps) override;
+  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps,
+                        std::span<const std::string> terms) override;
   void begin(void* owner) override;
   /// Rethrows the first exception of a callable during the solve.
   void finish() override;

@@ -4,16 +4,19 @@
 
 namespace slalom::python {
 
-/// Rolls all sequences out together: a call takes as long as the computation.
+/// Rolls all sequences out together, since a call of a function takes as long as what it computes for all.
+/// Throws py::value_error if a cost has a term that is not one of `terms`.
 Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<const float> sequences,
-                                       int steps) {
+                                       int steps, std::span<const std::string> names) {
   const auto nx = static_cast<std::size_t>(parts_.states), nu = static_cast<std::size_t>(parts_.inputs);
   const std::size_t points = static_cast<std::size_t>(steps) + 1;
   const std::size_t count = sequences.size() / (static_cast<std::size_t>(steps) * nu);
   const auto rows = static_cast<py::ssize_t>(count);
-  const Prediction first =
-      predict(state, std::vector<double>(sequences.begin(), sequences.begin() + steps * parts_.inputs));
-  const std::size_t terms = first.terms.size();
+  const std::size_t terms = names.size();
+  std::vector<double> held(sequences.begin(), sequences.end());
+  const std::vector<double> before(previous_.begin(), previous_.end());
+  const std::size_t size = (points - 1) * nu;
+  for (std::size_t s = 0; s < count; ++s) hold_rates(before, std::span(held).subspan(s * size, size));
   Trajectories all{std::vector<double>(count * points * nx), std::vector<double>(count * points * terms),
                    std::vector<int>(count, -1)};
   py::array_t<double> x({rows, static_cast<py::ssize_t>(nx)}), u({rows, static_cast<py::ssize_t>(nu)});
@@ -21,8 +24,11 @@ Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<
   std::vector<std::uint8_t> collided(count);
   std::vector<double> values(count);
   const auto add = [&](const char* what, const std::string& name, const py::object& result, std::size_t k) {
-    std::size_t term = 0;
-    while (term + 1 < terms && first.terms[term].first != name) ++term;
+    const auto term = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+    if (term == terms)
+      throw py::value_error(std::string("Problem.") + what + ": the term '" + name +
+                            "' is not among those of a prediction from the start; a cost must always return "
+                            "the same terms, if need be with zeros");
     std::fill(values.begin(), values.end(), 0.0);
     add_values_of(what, result, rows, values.data());
     for (std::size_t s = 0; s < count; ++s) all.costs[(s * points + k) * terms + term] += values[s];
@@ -31,9 +37,7 @@ Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<
     const auto now = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(x);
     for (std::size_t s = 0; s < count; ++s) {
       std::copy_n(now.data() + s * nx, nx, all.states.data() + (s * points + k) * nx);
-      if (k < points - 1)
-        for (std::size_t i = 0; i < nu; ++i)
-          u.mutable_data()[s * nu + i] = static_cast<double>(sequences[(s * (points - 1) + k) * nu + i]);
+      if (k < points - 1) std::copy_n(&held[s * size + k * nu], nu, u.mutable_data() + s * nu);
     }
     const bool is_last = k + 1 == points;
     if (is_last && parts_.terminal_cost.is_none()) break;

@@ -46,9 +46,11 @@ class AnyProblem {
   virtual std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) = 0;
   /// `inputs` [step][input].
   virtual Prediction predict(std::span<const double> state, std::span<const double> inputs) = 0;
-  /// Returns the trajectories of control sequences [sequence][`steps`][input], with the terms of `predict`. A
-  /// problem that tells only sums has them at the last state.
-  virtual Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps);
+  /// Returns the trajectories of control sequences [sequence][`steps`][input], with rates and levels as in
+  /// the last solve. `terms`: the names of the terms of `predict`. A problem that tells only sums has them at
+  /// the last state.
+  virtual Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps,
+                                std::span<const std::string> terms);
   /// Bounds of the problem for an input; infinite if it has none.
   virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
   virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
@@ -71,7 +73,7 @@ class AnyProblem {
 };
 
 inline Trajectories AnyProblem::roll_out(std::span<const double> state, std::span<const float> sequences,
-                                         int steps) {
+                                         int steps, std::span<const std::string>) {
   Trajectories all;
   const auto size = static_cast<std::size_t>(steps * inputs());
   for (std::size_t at = 0; at + size <= sequences.size(); at += size) {
@@ -136,17 +138,9 @@ class BuiltIn : public Base {
     return result;
   }
 
-  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps) override {
-    Trajectories all;
-    std::vector<Input<double, P::inputs>> inputs(static_cast<std::size_t>(steps));
-    const std::size_t size = inputs.size() * P::inputs;
-    for (std::size_t at = 0; at + size <= sequences.size(); at += size) {
-      for (std::size_t i = 0; i < size; ++i)
-        inputs[i / P::inputs][static_cast<int>(i % P::inputs)] = static_cast<double>(sequences[at + i]);
-      hold_input_rates(problem(), inputs.front(), inputs.data(), steps);
-      add_trajectory<P>(all, problem(), to_state(state), inputs);
-    }
-    return all;
+  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps,
+                        std::span<const std::string>) override {
+    return slalom::roll_out<P>(evaluator_, to_state(state), sequences, steps);
   }
 
   double input_min(int input) const override { return slalom::detail::min_input(problem(), input); }

@@ -5,7 +5,11 @@ import json
 import os
 import socket
 import struct
+import subprocess
+import sys
+import time
 import urllib.parse
+import urllib.request
 
 import numpy as np
 import pytest
@@ -24,8 +28,8 @@ def cost(x, u):
     return {"goal": np.hypot(x[:, 0] - 8, x[:, 1]), "tree": 100.0 * near}, near
 
 
-def garden():
-    problem = slalom.Problem(dynamics, cost, states=3, inputs=2, dt=0.1)
+def garden(cost=cost, **limits):
+    problem = slalom.Problem(dynamics, cost, states=3, inputs=2, dt=0.1, **limits)
     return slalom.SvgMppi(problem, horizon=20, samples=256, input_min=[0, -2], input_max=[1.5, 2])
 
 
@@ -54,13 +58,24 @@ class Client:
         content = self.file.read(length)
         if kind & 15 == 1:
             return json.loads(content)
+        self.frame = content
         return np.frombuffer(content, "<f8", struct.unpack_from("<I", content, 8)[0] // 8, 12)
 
     def find(self, wanted):
-        while True:
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
             message = self.read()
             if wanted(message):
                 return message
+        raise TimeoutError
+
+    def block(self, kind):
+        """The payload of a block of the last frame."""
+        at, found, length = 4, 0, 0
+        while found != kind:
+            found, length = struct.unpack_from("<HxxI", self.frame, at)
+            at += 8 + (length + 3) // 4 * 4
+        return self.frame[at - (length + 3) // 4 * 4:]
 
     def text(self, kind):
         return self.find(lambda m: isinstance(m, dict) and m["type"] == kind)
@@ -98,6 +113,56 @@ def test_a_page_shows_the_drive_of_a_controller(make):
         assert "must be in" in client.text("error")["message"]
     finally:
         page.close()
+
+
+def test_a_plan_on_the_page_keeps_the_rates_of_the_problem():
+    make = lambda: garden(input_rate_max=[2, 3])
+    page = slalom.show(make(), [0, 0, 0], heading=2, port=0, block=False, browser=False)
+    try:
+        client = Client(page.address)
+        tick = int(client.find(lambda m: isinstance(m, np.ndarray))[0])
+        points, *middle = struct.unpack_from("<Idd", client.block(7))
+        shown = np.frombuffer(client.block(7), "<f4", 6 * points, 20).reshape(points, 6)[:, :2] + middle
+        controller, x = make(), np.zeros(3)
+        for k in range(tick + 1):
+            plan = controller.solve(x, elapsed=0.1 if k else 0)
+            x = controller.problem.step(x, plan.inputs[0])
+        assert np.allclose(shown, plan.states[:, :2], atol=1e-5)
+    finally:
+        page.close()
+
+
+def test_a_cost_without_terms_has_a_page():
+    page = slalom.show(garden(lambda x, u: {}), [0, 0, 0], port=0, block=False, browser=False)
+    try:
+        client = Client(page.address)
+        assert client.text("hello")["terms"] == []
+        client.find(lambda m: isinstance(m, np.ndarray) and m[0] >= 1)
+    finally:
+        page.close()
+
+
+def test_a_cost_whose_terms_change_is_an_error():
+    view = slalom._slalom._View(garden(lambda x, u: {"far" if x[:, 0].max() > 0.01 else "near": x[:, 0]}), [0, 0, 0],
+                                port=0)
+    _client = Client(view.address)
+    with pytest.raises(ValueError, match="the term 'far' is not among those"):
+        for _ in range(100):
+            view.turn()
+
+
+def test_a_notebook_shows_the_page_inside():
+    page = slalom.show(garden(), [0, 0, 0], port=0, block=False, browser=False)
+    policy = urllib.request.urlopen(page.address).headers["Content-Security-Policy"]
+    page.close()
+    assert page.address in page._repr_html_()
+    assert policy.startswith("frame-ancestors http://localhost:* ")
+
+
+def test_a_program_ends_while_a_page_is_open():
+    program = ("import slalom, time; slalom.show(slalom.SvgMppi(slalom.DifferentialDrive()), [0, 0, 0], port=0,"
+               " block=False, browser=False); time.sleep(0.2)")
+    assert subprocess.run([sys.executable, "-c", program], timeout=60).returncode == 0
 
 
 def test_wrong_drawings_are_errors():

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "slalom/core/problem_parts.hpp"
+#include "slalom/core/problem_evaluator.hpp"
 
 namespace slalom {
 
@@ -41,6 +41,28 @@ void add_trajectory(Trajectories& all, const P& problem, detail::StateOf<P, doub
   }
   const auto seen = detail::look_up<P, double>(problem, x);
   add_state(k, detail::terminal_cost<P, double>(problem, x, seen), true);
+}
+
+/// Returns the trajectories of control sequences [sequence][`steps`][input] from state `x`, with rates and
+/// levels as in the rollouts of the last solve.
+template <Problem P>
+Trajectories roll_out(const ProblemEvaluator<P>& evaluator, const detail::StateOf<P, double>& x,
+                      std::span<const float> sequences, int steps) {
+  Trajectories all;
+  std::vector<Input<double, P::inputs>> inputs(static_cast<std::size_t>(steps));
+  Input<double, P::inputs> previous{};
+  if constexpr (detail::carries_inputs<P>)
+    for (int i = 0; i < P::inputs; ++i)
+      previous[i] =
+          static_cast<double>(evaluator.start()[static_cast<std::size_t>(detail::state_size<P> + i)]);
+  const std::size_t size = inputs.size() * P::inputs;
+  for (std::size_t at = 0; at + size <= sequences.size(); at += size) {
+    for (std::size_t i = 0; i < size; ++i)
+      inputs[i / P::inputs][static_cast<int>(i % P::inputs)] = static_cast<double>(sequences[at + i]);
+    hold_input_rates(evaluator.problem(), previous, inputs.data(), steps);
+    add_trajectory<P>(all, evaluator.problem(), x, inputs);
+  }
+  return all;
 }
 
 }  // namespace slalom

@@ -1,12 +1,14 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -39,8 +41,8 @@ struct Drawing {
   double length = 0, width = 0;                    ///< m, of the body; 0: it is a dot
   /// Lines that show the body, such as the rod of a pendulum.
   std::function<std::vector<Line>(const State&)> figure{};
-  std::function<std::vector<Shape>(const P&)>
-      shapes{};  ///< discs, boxes and polygons, by the problem's parameters
+  /// Discs, boxes and polygons, by the problem's parameters.
+  std::function<std::vector<Shape>(const P&)> shapes{};
   /// Puts a shape elsewhere, by its index in `shapes`. Without it, shapes cannot be dragged.
   std::function<void(P&, int shape, const maps::Point& to)> move{};
   std::optional<maps::OccupancyGrid> map{};  ///< drawn under all else
@@ -93,8 +95,8 @@ class ControllerSubject final : public Subject {
     const Drawing<P>& d = *drawing_;
     if (!d.pose && !(d.x && d.y)) throw std::invalid_argument("drawing: must have x and y, or pose");
     SubjectFacts facts{d.title, d.states, d.inputs, {}, d.length, d.width, d.x && d.y, bool(d.move), d.map};
-    fill_names(facts.states, state_size, "state ", "Drawing.states");
-    fill_names(facts.inputs, P::inputs, "input ", "Drawing.inputs");
+    fill_names(facts.states, state_size, "state", "Drawing.states");
+    fill_names(facts.inputs, P::inputs, "input", "Drawing.inputs");
     for (const CostTerm& term : slalom::detail::cost_terms_of<P>()) facts.terms.emplace_back(term.name);
     facts_ = std::make_shared<const SubjectFacts>(std::move(facts));
   }
@@ -126,16 +128,8 @@ class ControllerSubject final : public Subject {
   std::span<const double> inputs() const override { return plan_; }
 
   Trajectories roll_out(std::span<const double> state, std::span<const float> sequences) override {
-    const auto steps = static_cast<std::size_t>(controller_.solver().horizon());
-    Trajectories all;
-    std::vector<Inputs> inputs(steps);
-    for (std::size_t at = 0; at + steps * P::inputs <= sequences.size(); at += steps * P::inputs) {
-      for (std::size_t i = 0; i < steps * P::inputs; ++i)
-        inputs[i / P::inputs][static_cast<int>(i % P::inputs)] = static_cast<double>(sequences[at + i]);
-      hold_input_rates(controller_.problem(), inputs.front(), inputs.data(), static_cast<int>(steps));
-      add_trajectory<P>(all, controller_.problem(), state_of(state.data()), inputs);
-    }
-    return all;
+    const int steps = controller_.solver().horizon();
+    return slalom::roll_out<P>(controller_.evaluator(), state_of(state.data()), sequences, steps);
   }
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
     Inputs u;
@@ -170,13 +164,6 @@ class ControllerSubject final : public Subject {
     visit_options(p, [](auto&, const Declaration&) {});
   };
 
-  static void fill_names(std::vector<std::string>& names, std::size_t count, const char* kind,
-                         const char* what) {
-    if (!names.empty() && names.size() != count)
-      throw std::invalid_argument(std::string(what) + ": has " + std::to_string(names.size()) +
-                                  " names, must have " + std::to_string(count));
-    for (std::size_t i = names.size(); i < count; ++i) names.push_back(kind + std::to_string(i + 1));
-  }
   static State state_of(const double* from) {
     State state;
     std::memcpy(&state, from, sizeof state);
@@ -211,7 +198,6 @@ template <Problem P>
 void serve(const Controller<P>& controller, std::type_identity_t<Drawing<P>> drawing,
            const ServeOptions& options = {}, const std::atomic<bool>& stop = false) {
   View view(std::make_unique<detail::ControllerSubject<P>>(controller, std::move(drawing)), options);
-  if (options.ready) options.ready(view.address());
   while (!stop) view.turn(std::chrono::milliseconds(50));
 }
 

@@ -3,7 +3,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slalom/core/option_access.hpp"
@@ -44,6 +46,16 @@ struct SubjectFacts {
   bool can_place = false, can_move = false;              ///< whether body and shapes can be dragged
   std::optional<maps::OccupancyGrid> map{};              ///< drawn under the scene
 };
+
+/// Names those that have no names, by their kind and number. `what`: where the names come from. Throws
+/// std::invalid_argument if there are some names, but not `count`.
+inline void fill_names(std::vector<std::string>& names, std::size_t count, const std::string& kind,
+                       const std::string& what) {
+  if (!names.empty() && names.size() != count)
+    throw std::invalid_argument(what + ": has " + std::to_string(names.size()) + " names, must have " +
+                                std::to_string(count));
+  for (std::size_t i = names.size(); i < count; ++i) names.push_back(kind + " " + std::to_string(i + 1));
+}
 
 /// A controller with its problem, as the live view drives and draws it. `Controller` and the controllers of
 /// Python have one; `serve` makes it. All functions are called by one thread.

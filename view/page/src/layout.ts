@@ -38,14 +38,13 @@ export function fillTerms() {
 }
 
 /** Gives the page the name of a problem of the user's own, and hides what only a car on a course has. */
-export function nameProblem({ title, can_place }: { title: string; can_place: boolean }) {
+export function nameProblem({ title }: { title: string }) {
   document.body.classList.add("own");
   document.title = title;
   document.querySelector('[data-follow="fit"]')!.textContent = "Fit";
   get("caption").hidden = false;
   get("caption").textContent = title;
   get("scene").setAttribute("aria-label", `The scene of ${title}, and the plans of the controller`);
-  document.body.classList.toggle("fixed", !can_place);
 }
 
 /** Puts course, method and ghost into the header where there is room, else into the sheet of the scenario. */

@@ -47,6 +47,7 @@ function forgetPast() {
   past.clear();
   ghostPast.clear();
   best.forget();
+  charts.zoom();
 }
 
 const handlers: Handlers = {
@@ -57,7 +58,6 @@ const handlers: Handlers = {
   scene(next) {
     scene.setScene(next);
     forgetPast();
-    charts.clear();
     redraw();
   },
   past(scalars, from) {
@@ -98,6 +98,8 @@ const evaluation = new EvaluationPane(() => {
 
 function got(message: Text) {
   if (message.type === "hello") {
+    const isOther = page.hello && String(page.hello.scalars) !== String(message.scalars);
+    if (isOther) return location.reload(); // another server, which shows something else
     page.hello = message;
     if (!isReplay) past.most = ghostPast.most = Math.ceil(message.history_seconds / message.control_period);
     fields.offer(message);
@@ -288,7 +290,7 @@ const showPane = attachPanes(document.querySelector("nav")!, (name) => {
 const menu = attachSaveMenu(() => scene.draw());
 
 function deleteSelected() {
-  if (scene.selected > 0) send({ do: "remove", body: scene.selected });
+  if (scene.selected > 0 && !page.hello?.problem) send({ do: "remove", body: scene.selected });
   scene.selected = -1;
 }
 const arrows = {

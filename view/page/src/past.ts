@@ -51,11 +51,13 @@ export class Past {
   /** The line that was driven, as x and y (m) one after the other, up to a position. */
   line(position: number): number[] {
     const line: number[] = [];
+    const [x0, y0, x1, y1] = page.state?.bounds ?? [0, 0, 8, 8];
+    const longest = Math.max(x1 - x0, y1 - y0) / 4; // m that a step can be
     for (const row of this.rows.slice(0, Math.max(0, position - this.first + 1))) {
       if (!row) continue;
       const [x, y] = [scalar("x", row), scalar("y", row)];
       const [dx, dy] = [x - line[line.length - 2], y - line[line.length - 1]];
-      if (Math.hypot(dx, dy) > 2) line.length = 0; // the car was put elsewhere
+      if (Math.hypot(dx, dy) > longest) line.length = 0; // it was put elsewhere
       line.push(x, y);
     }
     return line;

@@ -210,7 +210,7 @@ export interface Hello extends Numbers<"protocol" | "history_seconds" | "control
   type: "hello";
   scalars: string[];
   statuses: string[];
-  symptoms: Texts<"name" | "explanation">[];
+  symptoms?: Texts<"name" | "explanation">[]; // recordings of earlier versions have none
   courses: string[];
   methods: string[];
   configurations: string[];

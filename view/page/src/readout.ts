@@ -42,7 +42,7 @@ export class Readout {
     const { statuses, symptoms, methods } = page.hello!;
     const label = get("label");
     const status = statuses[scalar("status")] ?? "";
-    const symptom = symptoms[scalar("symptom")];
+    const symptom = symptoms?.[scalar("symptom")];
     // A car that drives steadily has the sign of "no_progress".
     const isShown = !!symptom?.explanation && symptom.name !== "no_progress";
     const parts = [methods[scalar("method")] ?? ""];

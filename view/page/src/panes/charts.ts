@@ -173,12 +173,6 @@ export class Charts {
     return [this.times, ...p.columns] as uPlot.AlignedData;
   }
 
-  clear() {
-    this.times = [];
-    this.positions = [];
-    for (const p of this.plotted) p.columns = p.strip.lines.map(() => []);
-  }
-
   /** Collects the columns of the window: the newest seconds, or those around the tick that is shown. */
   private collect() {
     const { past } = this.setting;
@@ -186,7 +180,9 @@ export class Charts {
     const [from, to] = (this.window ?? []).map((time) => Math.round(time / period()));
     const last =
       to ?? (page.position >= past.newest - length ? past.newest : page.position + Math.round(length / 2));
-    this.clear();
+    this.times = [];
+    this.positions = [];
+    for (const p of this.plotted) p.columns = p.strip.lines.map(() => []);
     const index = this.plotted.map((p) => p.strip.lines.map((l) => page.hello!.scalars.indexOf(l.name)));
     for (let position = Math.max(past.oldest, from ?? last - length); position <= last; ++position) {
       const row = past.at(position);

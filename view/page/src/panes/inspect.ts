@@ -20,7 +20,8 @@ function ranked(c: Candidates): number[] {
 
 /** Says what the solver knows of a candidate that is chosen, and how costs and weights are spread. */
 export class InspectPane {
-  chosen = -1; // index of a candidate
+  chosen = -1; // index of a candidate of the frame
+  private choice = { index: -1, mark: "" as string | undefined }; // with its costs, to know it again
   private frame?: Frame; // the one that is shown
   private readonly rank = get<HTMLInputElement>("rank");
   private readonly horizon: Chart;
@@ -41,19 +42,24 @@ export class InspectPane {
 
   /** Chooses a candidate of the frame that is shown, and pauses there. */
   choose(index: number) {
+    this.choice = { index, mark: this.markOf(index) };
     this.chosen = index;
-    this.frame = page.frame;
-    if (index >= 0 && !page.state?.paused) send({ do: "pause" });
+    if (index >= 0 && !page.state?.paused) send({ do: "seek", tick: page.position });
     this.show();
     redraw();
   }
 
-  /** Shows a frame. Another one has other candidates. */
+  /** Shows a frame. Later ones may still come before the drive pauses at that of the choice. */
   update(frame: Frame) {
-    if (frame !== this.frame && scalar("tick", frame.scalars) !== scalar("tick", this.frame?.scalars))
-      this.chosen = -1;
     this.frame = frame;
+    const { index, mark } = this.choice;
+    this.chosen = this.markOf(index) === mark ? index : -1;
     this.show();
+  }
+
+  private markOf(i: number) {
+    const c = this.frame?.candidates;
+    return c?.terms.subarray(c.width * i, c.width * (i + 1)).join();
   }
 
   show() {

@@ -1,4 +1,4 @@
-import { isReplay as fixed, page, redraw, send } from "../page";
+import { isReplay, page, redraw, send } from "../page";
 import type { Body } from "../protocol";
 import type { SceneView } from "./scene";
 
@@ -7,6 +7,12 @@ export type Tool = "disc" | "box" | "car" | "pan";
 const slack = 5; // pixels that a click may move
 const gap = 40; // ms between two messages of a drag
 const longPress = 600; // ms that a finger rests on an obstacle to delete it
+
+/** Whether a body can be dragged: opponents drive themselves, and a problem says what of it can be moved. */
+function isMovable({ kind }: Body) {
+  const { can_place, can_move } = page.hello?.problem ?? { can_place: true, can_move: true };
+  return !isReplay && kind !== 4 && (kind === 0 ? can_place : can_move);
+}
 
 /**
  * Mouse, pen and fingers on the scene: pan, zoom, pinch, place, drag, delete. `clicked`: whether a click at a
@@ -38,10 +44,10 @@ export function attachPointer(
   /** Finds the thing to grasp at a point of the map frame. The driven car is not in the ghost's lane. */
   const bodyAt = (x: number, y: number) => {
     const body = scene.bodyAt(x, y);
-    return inGhostLane && body?.kind === 0 ? undefined : body;
+    return body && isMovable(body) && !(inGhostLane && body.kind === 0) ? body : undefined;
   };
   const remove = (body: Body | undefined) => {
-    if (!body || body.kind === 0 || body.kind === 4 || fixed) return false;
+    if (!body || body.kind === 0 || page.hello?.problem) return false;
     send({ do: "remove", body: body.id });
     return true;
   };
@@ -67,7 +73,6 @@ export function attachPointer(
     moved = false;
     const [x, y] = scene.camera.toMap(p.x, p.y);
     dragged = bodyAt(x, y);
-    if (fixed || dragged?.kind === 4) dragged = undefined; // opponents drive themselves
     scene.selected = dragged && dragged.kind !== 0 ? dragged.id : -1;
     drag = 1 + Math.floor(1e9 * Math.random()); // other pages drag too
     if (dragged) grip = { x: dragged.x - x, y: dragged.y - y };

@@ -52,6 +52,12 @@ export default async function (h) {
     await replay.click("#play");
     await wait(() => slalom.state.tick > 35);
     assert.equal(await replay.isVisible("[data-tool=disc]"), false);
+    // Recordings of earlier versions have no symptoms.
+    await replay.evaluate(() => {
+      delete slalom.hello.symptoms;
+      slalom.send({ do: "seek", tick: 20 });
+    });
+    await wait(() => slalom.state.tick === 20);
     await replay.close();
   }
 
