@@ -1,0 +1,146 @@
+// Four tasks of hydrax (Kurtz, github.com/vincekurtz/hydrax) with its models and costs, solved by methods
+// that get horizon and bounds alone. Prints a row for each task and method.
+//   slalom_mujoco_hydrax CLONE_OF_HYDRAX [seeds]
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+
+#include <slalom/core/read_file.hpp>
+
+#include "closed_loop.hpp"
+
+/// Two minus two cosines: the squared distance of a unit vector from the upright one.
+inline double from_upright(double angle) {
+  return 2 + 2 * std::cos(angle);
+}
+
+struct Pendulum {
+  static constexpr const char* file = "pendulum/pendulum.xml";
+  static constexpr int positions = 1, velocities = 1, inputs = 1;
+  static constexpr int physics_steps = 1, horizon = 50, samples = 32;
+  static constexpr double spread = 0.1;  ///< standard deviation of the joints at the start
+
+  double stage_cost(const mjModel& m, const mjData& d) const {
+    return 0.02 * (terminal_cost(m, d) + 0.001 * d.ctrl[0] * d.ctrl[0]);
+  }
+  double terminal_cost(const mjModel&, const mjData& d) const {
+    return from_upright(d.qpos[0]) + 0.01 * d.qvel[0] * d.qvel[0];
+  }
+  bool good(const mjData& d) const { return std::cos(d.qpos[0]) < -0.95; }
+};
+
+struct CartPole {
+  static constexpr const char* file = "cart_pole/cart_pole.xml";
+  static constexpr int positions = 2, velocities = 2, inputs = 1;
+  static constexpr int physics_steps = 2, horizon = 50, samples = 128;
+  static constexpr double spread = 0.1;
+
+  double stage_cost(const mjModel& m, const mjData& d) const {
+    const double rest = terminal_cost(m, d) - 9 * from_upright(d.qpos[1]);
+    return 0.02 * (rest + 0.01 * d.ctrl[0] * d.ctrl[0]);
+  }
+  double terminal_cost(const mjModel&, const mjData& d) const {
+    return 10 * from_upright(d.qpos[1]) + d.qpos[0] * d.qpos[0] +
+           0.01 * (d.qvel[0] * d.qvel[0] + d.qvel[1] * d.qvel[1]);
+  }
+  bool good(const mjData& d) const { return std::cos(d.qpos[1]) < -0.95; }
+};
+
+struct DoubleCartPole {
+  static constexpr const char* file = "double_cart_pole/double_cart_pole.xml";
+  static constexpr int positions = 3, velocities = 3, inputs = 1;
+  static constexpr int physics_steps = 2, horizon = 50, samples = 256;
+  static constexpr double spread = 0.1;
+
+  double stage_cost(const mjModel&, const mjData& d) const {
+    const double rates = d.qvel[1] * d.qvel[1] + d.qvel[2] * d.qvel[2];
+    return 0.02 * (from_top(d) + 0.1 * rates + 0.001 * d.ctrl[0] * d.ctrl[0]);
+  }
+  double terminal_cost(const mjModel&, const mjData& d) const {
+    const double speeds = d.qvel[0] * d.qvel[0] + d.qvel[1] * d.qvel[1] + d.qvel[2] * d.qvel[2];
+    return 10 * from_top(d) + 10 * d.qpos[0] * d.qpos[0] + speeds;
+  }
+  bool good(const mjData& d) const { return from_top(d) < 0.2; }
+  /// The squared distance of the tip, the only site, from the place above the cart at which both poles stand.
+  static double from_top(const mjData& d) {
+    const double up = d.site_xpos[2] - 4, aside = d.site_xpos[0] - d.qpos[0];
+    return up * up + aside * aside;
+  }
+};
+
+struct Walker {
+  static constexpr const char* file = "walker/walker.xml";
+  static constexpr int positions = 9, velocities = 9, inputs = 6;
+  static constexpr int physics_steps = 2, horizon = 30, samples = 128;
+  static constexpr double spread = 0.02;
+
+  double stage_cost(const mjModel& m, const mjData& d) const {
+    double efforts = 0;
+    for (int i = 0; i < inputs; ++i) efforts += d.ctrl[i] * d.ctrl[i];
+    return 0.02 * (terminal_cost(m, d) + 0.1 * efforts);
+  }
+  /// The sensors are the torso's position, the velocity of its subtree and its vertical axis.
+  double terminal_cost(const mjModel&, const mjData& d) const {
+    const double height = d.sensordata[2] - 1.2, speed = d.sensordata[3] - 1.5, tilt = d.sensordata[8] - 1;
+    return 10 * height * height + 3 * tilt * tilt + speed * speed;
+  }
+  bool good(const mjData& d) const { return d.sensordata[2] > 0.9 && d.sensordata[3] > 0.75; }
+};
+
+/// Loads a model without two attributes that MuJoCo 2 does not know, and with its number of iterations.
+slalom::mujoco::Model load(const std::filesystem::path& file) {
+  const std::string text = slalom::read_file(file.string(), 1 << 20);
+  const auto copy = std::filesystem::temp_directory_path() / ("slalom_" + file.filename().string());
+  std::ofstream(copy) << std::regex_replace(
+      text, std::regex(R"( (iterations|ls_iterations|eulerdamp)="[^"]*")"), "");
+  return slalom::mujoco::Model(copy.string());
+}
+
+/// Drives 5 s for each seed. A run succeeds if it is good in the whole last second.
+template <class Task, class Options>
+void solve(const char* name, const std::string& clone, std::uint64_t seeds) {
+  const slalom::mujoco::Model model = load(std::filesystem::path(clone) / "hydrax/models" / Task::file);
+  double cost = 0;
+  Summary summary;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    Options options;
+    options.horizon = Task::horizon;
+    options.samples = Task::samples;
+    options.seed = seed;
+    slalom::Controller controller{
+        slalom::mujoco::Evaluator{model, Task{}, {.physics_steps = Task::physics_steps}}, options};
+    World world(model);
+    slalom::RandomStream random({.seed = seed});
+    for (int i = 0; i < Task::positions; ++i) world.data().qpos[i] += Task::spread * random.normal();
+    bool good = true;
+    drive(controller, world, Task::physics_steps, 5, summary, [&](const mjData& data) {
+      cost += Task{}.stage_cost(model.get(), data) / static_cast<double>(seeds);
+      if (data.time > 4) good = good && Task{}.good(data);
+    });
+    summary.succeeded += good;
+  }
+  std::printf("%-16s %-9s %d of %d runs, mean cost %.2f, %.2f of real time\n", name, Options::method,
+              summary.succeeded, summary.runs, cost, summary.simulated / summary.processor_time);
+  std::fflush(stdout);
+}
+
+template <class Task>
+void compare(const char* name, const std::string& clone, std::uint64_t seeds) {
+  solve<Task, slalom::SvgMppiOptions>(name, clone, seeds);
+  solve<Task, slalom::IcemOptions>(name, clone, seeds);
+  solve<Task, slalom::MppiOptions>(name, clone, seeds);
+}
+
+int main(int argc, char** argv) try {
+  if (argc < 2) return std::puts("usage: slalom_mujoco_hydrax CLONE_OF_HYDRAX [seeds]"), 2;
+  const std::uint64_t seeds = seeds_of(argc, argv, "10");
+  compare<Pendulum>("pendulum", argv[1], seeds);
+  compare<CartPole>("cart_pole", argv[1], seeds);
+  compare<Walker>("walker", argv[1], seeds);
+  compare<DoubleCartPole>("double_cart_pole", argv[1], seeds);
+} catch (const std::exception& e) {
+  return std::fprintf(stderr, "slalom_mujoco_hydrax: %s\n", e.what()), 1;
+}
