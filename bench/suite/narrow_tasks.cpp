@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include "slalom/problems/arm.hpp"
 #include "task.hpp"
