@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include "slalom/problems/arm.hpp"
 #include "task.hpp"
