@@ -51,27 +51,6 @@ TEST_F(EvalCommand, KilledTenTimesAndResumedEqualsAnUninterruptedRun) {
   EXPECT_EQ(repeatable(folder_ / "torn/laps.csv"), whole);
 }
 
-TEST_F(EvalCommand, RepairsATruncatedJournalAndRejectsACorruptOne) {
-  ASSERT_EQ(run(small(1) + "--out whole").status, 0);
-  const std::string table = content(folder_ / "whole/laps.csv");
-  fs::create_directories(folder_ / "half");
-  fs::copy_file(folder_ / "whole/settings.json", folder_ / "half/settings.json");
-  const auto write = [&](const std::string& text) {
-    std::ofstream(folder_ / "half/laps.journal.csv") << text;
-  };
-
-  const std::size_t second = table.find('\n', table.find('\n') + 1) + 1;
-  write(table.substr(0, second + 25));
-  ASSERT_EQ(run(small(1) + "--resume --out half").status, 0);
-  EXPECT_EQ(repeatable(folder_ / "half/laps.csv"), repeatable(folder_ / "whole/laps.csv"));
-
-  fs::remove(folder_ / "half/laps.csv");
-  write(table.substr(0, second) + "mppi,oa,what,is,this\n");
-  const ProgramRun corrupt = run(small(1) + "--resume --out half");
-  EXPECT_EQ(corrupt.status, 1);
-  EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: checksum")) << corrupt.output;
-}
-
 TEST_F(EvalCommand, AFullDiskIsReportedAndNoLapIsLost) {
   fs::create_directories(folder_ / "full");
   fs::create_symlink("/dev/full", folder_ / "full/settings.json.new");

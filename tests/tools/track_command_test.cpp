@@ -86,12 +86,6 @@ TEST_F(TrackCommand, QuotesRecordedArguments) {
   EXPECT_EQ(vehicle::load_course(folder_ / "my course").name, "the driver's");
 }
 
-TEST_F(TrackCommand, WritesOnlyJsonToStandardOutput) {
-  const auto run = track("--length 40 --no-picture --out x --json - 2>/dev/null");
-  ASSERT_EQ(run.status, 0);
-  EXPECT_EQ(nlohmann::json::parse(run.output)["folder"], "x");
-}
-
 TEST_F(TrackCommand, RejectsInvalidOptions) {
   struct Bad {
     const char *arguments, *says;
