@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <memory>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "sim/lidar/scan.hpp"

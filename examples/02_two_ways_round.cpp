@@ -1,8 +1,6 @@
 // A robot with two driven wheels and a disc in its way. Left and right are equally good; their average
 // collides.
 
-#include <cmath>
-
 #include <slalom/problems/differential_drive.hpp>
 #include <slalom/slalom.hpp>
 

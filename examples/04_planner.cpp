@@ -1,8 +1,6 @@
 // A racing car on a course: LiDAR scan and odometry in, steering and speed out.
 // The argument is the folder of the course.
 
-#include <memory>
-
 #include <slalom/evaluation/environment.hpp>
 #include <slalom/solvers/registry.hpp>
 #include <slalom/solvers/svg_mppi_options.hpp>

@@ -9,7 +9,7 @@ namespace slalom::workload {
 
 /// Order statistics of measured times.
 struct TimeStatistics {
-  double min = 0, p50 = 0, p99 = 0, p999 = 0, max = 0;
+  double min = 0, p50 = 0, p99 = 0, max = 0;
 };
 
 inline TimeStatistics time_statistics(std::vector<double> times) {
@@ -18,7 +18,7 @@ inline TimeStatistics time_statistics(std::vector<double> times) {
   const auto at = [&](double share) {
     return times[static_cast<std::size_t>(std::round(share * static_cast<double>(times.size() - 1)))];
   };
-  return {times.front(), at(0.5), at(0.99), at(0.999), times.back()};
+  return {times.front(), at(0.5), at(0.99), times.back()};
 }
 
 }  // namespace slalom::workload

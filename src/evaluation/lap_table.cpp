@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <numeric>
 #include <set>
-#include <sstream>
 #include <type_traits>
 
 #include "slalom/core/error.hpp"

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <optional>
 #include <set>
-#include <stdexcept>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "navigation/base_model.hpp"
 #include "navigation/command_delay.hpp"

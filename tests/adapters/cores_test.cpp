@@ -1,7 +1,6 @@
 // The logic of planner and localiser nodes: refused options, paths and maps change nothing.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "logic/localiser_core.hpp"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "logic/path_follower.hpp"
 #include "support/thrown_words.hpp"

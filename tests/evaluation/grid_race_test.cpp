@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <thread>
 
 #include "evaluation/courses.hpp"

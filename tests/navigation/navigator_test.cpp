@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
-#include <vector>
 
 #include "navigation/grids.hpp"
 #include "slalom/core/random.hpp"

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "slalom/slalom.hpp"
 #include "solvers/problems.hpp"

@@ -38,7 +38,7 @@ class CommandLine : public testing::EvaluationFolder {
             "compare ev ev --json " + out,
             "course '" SLALOM_COURSES "/wren/map.yaml' --out " + out,
             "drive --course wren --method mppi --set samples=32 --json " + out,
-            "eval --check ev --again 0",
+            "replay ev --lap 0",
             "identify lap.mcap --json " + out,
             evaluation(out),
             "explain --method mppi --solves 1 --json " + out,

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "slalom/maps/ros_map.hpp"
 #include "tools/program_test.hpp"
 #include "view/recording/mcap_reader.hpp"
 
@@ -23,13 +22,6 @@ class DriveCommand : public testing::ProgramTest {
     return run_program("drive --course wren --set samples=256 " + arguments, folder_.string());
   }
   json result(const std::string& file) const { return json::parse(content(folder_ / file)); }
-  /// A copy of the course wren to be spoiled.
-  fs::path spoiled() const {
-    const fs::path copy = folder_ / "spoiled";
-    fs::remove_all(copy);
-    fs::copy(fs::path(SLALOM_COURSES) / "wren", copy);
-    return copy;
-  }
 };
 
 TEST_F(DriveCommand, ParksCarsAtGivenPlaces) {
@@ -158,9 +150,9 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
 
 TEST_F(DriveCommand, FailsWhereALapIsNotFinishedButWritesResults) {
   std::ofstream(folder_ / "slow.yaml") << "base: default\nplanner:\n  max_speed: 0.02\n";
-  const fs::path course = spoiled();
-  std::ofstream(course / "course.yaml") << "timeout: 0.5\n";
-  const auto run = run_program("drive --course spoiled --config slow.yaml --json out.json", folder_.string());
+  fs::copy(fs::path(SLALOM_COURSES) / "wren", folder_ / "short");
+  std::ofstream(folder_ / "short/course.yaml") << "timeout: 0.5\n";
+  const auto run = run_program("drive --course short --config slow.yaml --json out.json", folder_.string());
   EXPECT_EQ(run.status, 1) << run.output;
   EXPECT_EQ(result("out.json")["laps"][0]["finished"], false);
   EXPECT_EQ(result("out.json")["laps"][0]["timeout"], true);
@@ -206,34 +198,8 @@ TEST_F(DriveCommand, RejectsInvalidArguments) {
   expect_refused("drive --course wren --start 1e6,0,0", {"start", "on the map"});
   expect_refused("drive --obstacles 900", {"parked cars could be placed"});
   expect_refused("drive --evaluation published --latency-ms 5", {"latency", "published"});
-  expect_refused("drive --record /proc/none/x.mcap", {"/proc/none/x.mcap", "cannot be written"});
-}
-
-TEST_F(DriveCommand, RejectsAStartInAWall) {
-  const auto map = maps::load_ros_map(fs::path(SLALOM_COURSES) / "wren" / "map.yaml");
-  for (int row = 0; row < map.height; ++row)
-    for (int column = 0; column < map.width; ++column) {
-      if (map.at(column, row) != maps::Occupancy::occupied) continue;
-      const auto at =
-          maps::transform(map.origin, {(column + 0.5) * map.resolution, (row + 0.5) * map.resolution});
-      return expect_refused(
-          "drive --course wren --start " + std::to_string(at.x) + "," + std::to_string(at.y) + ",0",
-          {"start", "distance to every wall"});
-    }
-  FAIL() << "the map has no wall";
-}
-
-TEST_F(DriveCommand, RejectsCorruptFiles) {
-  const fs::path course = spoiled();
-  std::ofstream(course / "raceline.csv")
-      << "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n"
-         "0; 0; 0; 0; 0; 1; 0\n1; nan; 0; 0; 0; 1; 0\n2; 2; 0; 0; 0; 1; 0\n";
-  expect_refused("drive --course spoiled", {"raceline.csv:3", "finite"});
-  fs::remove(course / "map.yaml");
-  expect_refused("drive --course spoiled", {"holds no map"});
   write("wrong.yaml", "svg_mppi:\n  samples: many\n");
-  expect_refused("drive --config wrong.yaml",
-                 {"wrong.yaml:2", "svg_mppi.samples", "'many'", "must be an integer"});
+  expect_refused("drive --config wrong.yaml", {"wrong.yaml:2", "svg_mppi.samples", "must be an integer"});
 }
 
 TEST(OptionsCommand, ListsDeclarations) {

@@ -1,7 +1,6 @@
 // `slalom race` with several cars: standings, results, who races, and bad input named in words.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 

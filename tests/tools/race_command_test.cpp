@@ -1,7 +1,6 @@
 // `slalom race`: tables, results, pictures, the comparison of two runs, and bad input named in words.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tools/program_test.hpp"
@@ -73,29 +72,6 @@ TEST_F(RaceCommand, TyresSaturateUnlessTheirOptionSaysOtherwise) {
   };
   EXPECT_EQ(saturate(""), true);
   EXPECT_EQ(saturate("--set world.saturating_tyres=false"), false);
-}
-
-TEST_F(RaceCommand, LearnsTheGripFromLapToLap) {
-  const auto run = program(
-      "race --course wren --set samples=512 --set vehicle.usable_grip=0.6 --learn --laps 3 --json r.json");
-  EXPECT_EQ(run.status, 0) << run.output;
-  const auto learned = run.output.find("learned: ");
-  ASSERT_NE(learned, std::string::npos) << run.output;
-  std::string settings = run.output.substr(learned + 9);
-  settings = settings.substr(0, settings.find('\n'));
-  EXPECT_NE(settings.find("--set planner.grip_shares=["), std::string::npos) << settings;
-  const auto again = program("race --course wren --set samples=512 --laps 1 " + settings);
-  EXPECT_EQ(again.status, 0) << again.output;
-  const json r = result("r.json");
-  ASSERT_EQ(r["laps"].size(), 3u);
-  for (const json& lap : r["laps"]) EXPECT_EQ(lap["start"], "standing");
-  EXPECT_LT(r["laps"][2]["time_s"], r["laps"][0]["time_s"]);
-  EXPECT_GT(r["learned"]["usable_grip"], 0.6);
-  EXPECT_EQ(r["learned"]["grip_shares"].size(), static_cast<std::size_t>(r["length_m"].get<double>() / 6));
-  EXPECT_NE(race("--learn --laps 1").status, 0) << "the configuration default does not seek the lap time";
-  const auto careful = program("race --course wren --set vehicle.usable_grip=0.2 --learn --laps 1");
-  EXPECT_EQ(careful.status, 2);
-  EXPECT_TRUE(says(careful, "usable_grip of at least 0.3")) << careful.output;
 }
 
 TEST_F(RaceCommand, ComparesTwoRunsAlongTheLap) {

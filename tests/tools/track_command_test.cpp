@@ -2,7 +2,6 @@
 // JSON.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -85,12 +84,6 @@ TEST_F(TrackCommand, QuotesRecordedArguments) {
   ASSERT_GT(command.size(), ending.size());
   EXPECT_EQ(command.substr(command.size() - ending.size()), ending);
   EXPECT_EQ(vehicle::load_course(folder_ / "my course").name, "the driver's");
-}
-
-TEST_F(TrackCommand, WritesOnlyJsonToStandardOutput) {
-  const auto run = track("--length 40 --no-picture --out x --json - 2>/dev/null");
-  ASSERT_EQ(run.status, 0);
-  EXPECT_EQ(nlohmann::json::parse(run.output)["folder"], "x");
 }
 
 TEST_F(TrackCommand, RejectsInvalidOptions) {

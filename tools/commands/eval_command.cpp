@@ -1,12 +1,9 @@
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 
-#include "slalom/core/error.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
-#include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -25,41 +22,9 @@ struct EvalArguments {
   int obstacles = 5;
   bool report = false;
   std::string conditions = "ideal";
-  std::string check;
-  int again = 3;
 };
 
-/// Verifies an evaluation's folder: settings and rows are those that were written, every lap is there once
-/// and with its seed, and `again` of the laps, spread over the table, repeat bit for bit. Prints the
-/// findings. Returns the exit status: 0 only if all of it holds. Throws IoError that names what is damaged.
-int check_evaluation(const std::string& folder, int again) {
-  const StoredEvaluation stored = load_evaluation(folder);
-  std::size_t laps = 0;
-  for (const auto& e : stored.experiments) laps += static_cast<std::size_t>(e.laps);
-  std::printf("%zu of %zu laps: seeds as expected, checksums correct\n", stored.rows.size(), laps);
-  if (stored.rows.size() != laps)
-    throw IoError(folder, 0,
-                  std::to_string(laps - stored.rows.size()) + " laps are missing: continue it with --resume");
-  Scenario scenario;
-  const evaluation::Evaluation evaluation = rebuild_evaluation(stored, "", scenario);
-  const auto repeats = std::min(laps, static_cast<std::size_t>(again));
-  std::size_t same = 0;
-  for (std::size_t i = 0; i < repeats; ++i) {
-    const evaluation::LapRow& kept = stored.rows[repeats == 1 ? 0 : i * (laps - 1) / (repeats - 1)];
-    const auto result = run_lap(lap_setup(evaluation, kept.experiment), kept.seed);
-    const bool equal = same_lap(make_row(kept.experiment, kept.lap, result, 0), kept, stored.experiments);
-    same += equal;
-    if (!equal)
-      std::printf(
-          "lap %d of %s is NOT identical: it was changed, or another version or instruction set drove it\n",
-          kept.lap, stored.experiments[static_cast<std::size_t>(kept.experiment)].label().c_str());
-  }
-  std::printf("%zu of %zu laps driven again are identical, bit for bit\n", same, repeats);
-  return same == repeats ? 0 : 1;
-}
-
 int eval(const EvalArguments& arguments) {
-  if (!arguments.check.empty()) return check_evaluation(arguments.check, arguments.again);
   if (arguments.evaluation.out.empty()) throw CommandLineError("--out", "is required");
   std::vector<std::string> sweeps = arguments.sweeps;
   if (arguments.conditions == "car") {
@@ -112,14 +77,7 @@ void declare_eval(Subcommand& command) {
       "car: tyres that saturate, sensor noise, a localised pose, 20 ms of latency, and one experiment "
       "each for friction 0.5, 0.7 and 1.0, which the planner is not told; ideal: none of these");
   command.flag("--report", arguments->report, "Also write report.html and its figures");
-  Option out = add_evaluation_options(command, arguments->evaluation);
-  const Option check =
-      command.option("--check", arguments->check,
-                     "Verify this folder of an evaluation instead: checksums, seeds, and that laps repeat");
-  command
-      .option("--again", arguments->again, "With --check: number of laps that are driven again", {0, 1000000})
-      .needs(check);
-  out.excludes(check);
+  add_evaluation_options(command, arguments->evaluation);
   command.examples({"eval --course eel --methods svg_mppi,mppi --laps 20 --out OUT --report",
                     "eval --course eel --set temperature=1,3,10 --laps 5 --out OUT"});
   command.action([arguments] { return eval(*arguments); });

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "slalom/evaluation/statistics.hpp"
 #include "src/evaluation/json.hpp"

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/grip_learning.hpp"
 #include "slalom/evaluation/race.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
 #include "src/evaluation/json.hpp"
@@ -28,14 +27,9 @@ struct RaceArguments {
   ScenarioArguments scenario;
   GridRaceArguments race;  ///< laps, seed and JSON file of both kinds, and what only several cars have
   std::string method = "svg_mppi", compare, plot;
-  bool standing = false, learn = false;
+  bool standing = false;
   double friction = 0.9;
 };
-
-/// m, length of the parts of a course whose grip is learned.
-constexpr double part_length = 6;
-/// Laps in a row that gain nothing, after which learning ends.
-constexpr int patience = 5;
 
 /// The acceleration (m/s^2) of a friction coefficient.
 double acceleration_of(double friction) {
@@ -54,12 +48,10 @@ class RaceJob {
         setup_{scenario_.environment, {scenario_.configuration, arguments.method}, scenario_.lap},
         settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
     setup_.validate();
-    if (arguments.learn) check_learning();
     settings_["seed"] = arguments.race.seed;
     settings_["laps"] = arguments.race.laps;
     settings_["standing"] = arguments.standing;
     settings_["friction"] = arguments.friction;
-    settings_["learn"] = arguments.learn;
     settings_["timeout_s"] = setup_.timeout();
     settings_["control_period_s"] = setup_.control_period();
     race_.length = setup_.length();
@@ -84,8 +76,6 @@ class RaceJob {
     if (race_.laps.empty()) return 1;
     write_results();
     const auto flying = race_statistics(race_, false), standing = race_statistics(race_, true);
-    if (learned_)
-      return learned_->best().empty() ? 1 : 0;  // a lap that asks for too much is part of learning
     return flying.completed + standing.completed == arguments_.race.laps ? 0 : 1;
   }
 
@@ -103,51 +93,12 @@ class RaceJob {
       const std::string label = std::to_string(race_.laps.size()) + (lap.standing ? " standing" : " flying");
       print_lap(words_, label, lap, race_.grip);
     };
-    if (arguments_.learn) {
-      drive_and_learn(on_step, on_lap, interrupt.raised());
-    } else {
-      evaluation::drive_race(
-          setup_,
-          {.laps = arguments_.race.laps, .seed = arguments_.race.seed, .standing = arguments_.standing},
-          {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
-    }
+    evaluation::drive_race(
+        setup_, {.laps = arguments_.race.laps, .seed = arguments_.race.seed, .standing = arguments_.standing},
+        {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
     if (!interrupt.raised()) return;
     progress.clear();
     std::fprintf(words_, "interrupted after %zu of %d laps\n", race_.laps.size(), arguments_.race.laps);
-  }
-
-  /// Throws CommandLineError where this configuration cannot learn.
-  void check_learning() const {
-    const vehicle::VehicleOptions& options = scenario_.configuration.vehicle;
-    if (!vehicle::make_vehicle_model(options)->traits().seeks_lap_time)
-      throw CommandLineError("--learn", "needs a configuration with vehicle.objective: lap_time");
-    if (options.own_of<vehicle::SingleTrackOptions>().usable_grip < evaluation::GripLearning::least)
-      throw CommandLineError("--learn", "needs a vehicle.usable_grip of at least 0.3, where it starts");
-  }
-
-  /// Standing starts, each with the grip that the laps before have shown, until `patience` of them in a row
-  /// have gained nothing.
-  template <class OnStep, class OnLap>
-  void drive_and_learn(const OnStep& on_step, const OnLap& on_lap, const std::atomic<bool>& cancel) {
-    const auto& own = scenario_.configuration.vehicle.own_of<vehicle::SingleTrackOptions>();
-    const maps::Pose start = setup_.start();
-    learned_.emplace(race_.length, scenario_.environment->track->lap_path()->project({start.x, start.y}).arc,
-                     std::max(static_cast<int>(race_.length / part_length), 1), own.usable_grip, race_.grip);
-    for (int lap = 0; lap < arguments_.race.laps && learned_->without_gain() < patience; ++lap) {
-      evaluation::LapSetup setup = setup_;
-      setup.driver.configuration = evaluation::with_belief(scenario_.configuration, learned_->next());
-      const auto seed = evaluation::lap_seed(arguments_.race.seed, lap, scenario_.lap.obstacles);
-      const auto on_step_of_lap = [&](int, const evaluation::ControlStep& step) { on_step(lap, step); };
-      const auto driven = evaluation::drive_race(setup, {.laps = 1, .seed = seed, .standing = true},
-                                                 {.on_step = on_step_of_lap, .on_lap = on_lap}, &cancel);
-      if (driven.empty()) return;
-      learned_->learn(driven[0]);
-    }
-  }
-
-  /// The options with which the fastest lap was driven.
-  vehicle::Configuration learned_configuration() const {
-    return evaluation::with_belief(scenario_.configuration, learned_->best());
   }
 
   /// The lap of the other run with which a lap is compared: one with the same kind of start.
@@ -165,7 +116,6 @@ class RaceJob {
       std::fprintf(words_, "note: %s has no completed %s to compare with\n", other_->file.c_str(),
                    best->standing ? "standing start" : "flying lap");
     if (best) print_along(words_, race_, *best, theirs, arguments_.compare);
-    if (learned_ && !learned_->best().empty()) print_learned();
     if (!arguments_.race.json.empty()) write_json(results(best, theirs), arguments_.race.json);
     if (arguments_.plot.empty()) return;
     if (!best) {
@@ -174,16 +124,6 @@ class RaceJob {
     }
     plot(*best, theirs);
     std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
-  }
-
-  /// The options that drive as the fastest lap did.
-  void print_learned() const {
-    const vehicle::Configuration learned = learned_configuration();
-    std::string shares;
-    for (const double share : learned.planner.grip_shares.values())
-      shares += formatted("%s%.3f", shares.empty() ? "" : ",", share);
-    std::fprintf(words_, "learned: --set vehicle.usable_grip=%.3f --set planner.grip_shares=[%s]\n",
-                 learned.vehicle.own_of<vehicle::SingleTrackOptions>().usable_grip, shares.c_str());
   }
 
   Json results(const RacingLap* best, const RacingLap* theirs) const {
@@ -195,11 +135,6 @@ class RaceJob {
                           {"other_lap_s", theirs->time()},
                           {"difference_s", best->time() - theirs->time()}};
     json["solve_ms"] = times_json(solve_ms_);
-    if (learned_ && !learned_->best().empty()) {
-      const vehicle::Configuration learned = learned_configuration();
-      json["learned"] = {{"usable_grip", learned.vehicle.own_of<vehicle::SingleTrackOptions>().usable_grip},
-                         {"grip_shares", learned.planner.grip_shares.values()}};
-    }
     return json;
   }
 
@@ -229,7 +164,6 @@ class RaceJob {
   Json settings_;
   RaceResult race_;
   std::optional<OtherRun> other_;
-  std::optional<evaluation::GripLearning> learned_;
   std::vector<float> solve_ms_;
 };
 
@@ -238,7 +172,7 @@ int run_race(const Subcommand& command, const RaceArguments& arguments) {
   const bool grid = command.given("--cars") || command.given("--against");
   for (const char* name : {"--races", "--jobs"})
     if (!grid && command.given(name)) throw CommandLineError(name, "needs --cars or --against");
-  for (const char* name : {"--standing", "--learn", "--friction", "--compare", "--plot"})
+  for (const char* name : {"--standing", "--friction", "--compare", "--plot"})
     if (grid && command.given(name))
       throw CommandLineError(name, "is for laps against the clock, without --cars and --against");
   if (!grid) return RaceJob(arguments).run();
@@ -285,9 +219,6 @@ void declare_race(Subcommand& command) {
       {1, 100000});
   add_grid_options(command, arguments->race);
   command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
-  command.flag("--learn", arguments->learn,
-               "After each lap, a standing start, use more grip where the lap stayed inside the friction "
-               "circle, and less where it left it, until nothing is gained");
   command.option("--friction", arguments->friction,
                  "Radius of the friction circle with which accelerations are compared, in g", {0.01, 10.0});
   command.option(

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "slalom/sim/shapes.hpp"
 #include "tools/command_line/words.hpp"

@@ -1,8 +1,6 @@
 #include "tools/evaluation/evaluation_job.hpp"
 
-#include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <thread>
 
 #include "slalom/core/error.hpp"
@@ -119,7 +117,7 @@ std::string course_hash(const Environment& environment) {
   return formatted("%016llx", static_cast<unsigned long long>(hash));
 }
 
-Option add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
+void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
   add_world_options(command, a.scenario);
   command.option("--seed", a.seed0, "Seed of lap 0; lap k has SEED + k (obstacles + 5)");
   command.option("--jobs", a.jobs, "Number of laps driven in parallel; 0: one per processor core", {0, 1024});
@@ -127,7 +125,7 @@ Option add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
   command.flag("--any-build", a.any_build,
                "With --resume: continue even if another build of the program drove the earlier laps");
   command.json(a.json, "the summary");
-  return command.option("--out", a.out, "Output folder for laps.csv and summary.json");
+  command.option("--out", a.out, "Output folder for laps.csv and summary.json");
 }
 
 std::vector<int> Evaluated::laps_begun_in_contact(int experiment) const {

@@ -22,9 +22,8 @@ struct EvaluationArguments {
   std::string json;  ///< a copy of the summary: a file, or - for standard output
 };
 
-/// Adds the options of add_world_options, and --seed, --jobs, --resume, --any-build, --json and --out, which
-/// it returns.
-Option add_evaluation_options(Subcommand& command, EvaluationArguments& arguments);
+/// Adds the options of add_world_options, and --seed, --jobs, --resume, --any-build, --json and --out.
+void add_evaluation_options(Subcommand& command, EvaluationArguments& arguments);
 
 /// Hash (FNV-1a) of everything in a course that affects a lap.
 std::string course_hash(const evaluation::Environment& environment);

@@ -1,7 +1,6 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"

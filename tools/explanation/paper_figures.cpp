@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"

@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/sim/shapes.hpp"

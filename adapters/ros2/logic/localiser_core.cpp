@@ -1,7 +1,6 @@
 #include "logic/localiser_core.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 

@@ -12,9 +12,6 @@ namespace slalom::sim {
 /// Counts the collisions of a car, for instance over a lap.
 class CollisionLog {
  public:
-  /// Forgets all collisions.
-  void reset() noexcept;
-
   /// Records the collisions of a step. Call it after each step of the world.
   void update(const World& world, std::size_t car);
 

@@ -1,6 +1,5 @@
 #include "evaluation/driver/car_driver.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/evaluation/race.hpp"

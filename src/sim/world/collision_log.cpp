@@ -4,12 +4,6 @@
 
 namespace slalom::sim {
 
-void CollisionLog::reset() noexcept {
-  bodies_.clear();
-  patterns_.clear();
-  wall_ = false;
-}
-
 void CollisionLog::update(const World& world, std::size_t car) {
   const Observation seen = world.observe(car);
   if (!seen.collides()) return;

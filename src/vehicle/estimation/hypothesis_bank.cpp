@@ -1,7 +1,5 @@
 #include "vehicle/estimation/hypothesis_bank.hpp"
 
-#include <cmath>
-
 #include "slalom/core/dispatch.hpp"
 
 namespace slalom::vehicle::detail {

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <functional>
-#include <sstream>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/network/mlp.hpp"
