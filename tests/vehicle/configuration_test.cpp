@@ -109,7 +109,7 @@ TEST_F(ConfigurationFile, IsWrittenAsItIsRead) {
   EXPECT_EQ(back.planner.max_speed, c.planner.max_speed);
 }
 
-// Values as `slalom race --learn` prints them: shares of the grip for parts of the path, however many inputs
+// Shares of the grip for parts of the path, however many inputs
 // the model has.
 TEST_F(ConfigurationFile, HasAnyNumberOfGripShares) {
   const std::vector<double> shares{0.9, 0.8, 0.7, 1};
