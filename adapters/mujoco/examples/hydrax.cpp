@@ -18,7 +18,7 @@ inline double from_upright(double angle) {
 }
 
 struct Pendulum {
-  static constexpr const char* file = "pendulum/pendulum.xml";
+  static constexpr const char* folder = "pendulum";
   static constexpr int positions = 1, velocities = 1, inputs = 1;
   static constexpr int physics_steps = 1, horizon = 50, samples = 32;
   static constexpr double spread = 0.1;  ///< standard deviation of the joints at the start
@@ -33,7 +33,7 @@ struct Pendulum {
 };
 
 struct CartPole {
-  static constexpr const char* file = "cart_pole/cart_pole.xml";
+  static constexpr const char* folder = "cart_pole";
   static constexpr int positions = 2, velocities = 2, inputs = 1;
   static constexpr int physics_steps = 2, horizon = 50, samples = 128;
   static constexpr double spread = 0.1;
@@ -50,7 +50,7 @@ struct CartPole {
 };
 
 struct DoubleCartPole {
-  static constexpr const char* file = "double_cart_pole/double_cart_pole.xml";
+  static constexpr const char* folder = "double_cart_pole";
   static constexpr int positions = 3, velocities = 3, inputs = 1;
   static constexpr int physics_steps = 2, horizon = 50, samples = 256;
   static constexpr double spread = 0.1;
@@ -72,7 +72,7 @@ struct DoubleCartPole {
 };
 
 struct Walker {
-  static constexpr const char* file = "walker/walker.xml";
+  static constexpr const char* folder = "walker";
   static constexpr int positions = 9, velocities = 9, inputs = 6;
   static constexpr int physics_steps = 2, horizon = 30, samples = 128;
   static constexpr double spread = 0.02;
@@ -90,19 +90,25 @@ struct Walker {
   bool good(const mjData& d) const { return d.sensordata[2] > 0.9 && d.sensordata[3] > 0.75; }
 };
 
-/// Loads a model without two attributes that MuJoCo 2 does not know, and with its number of iterations.
-slalom::mujoco::Model load(const std::filesystem::path& file) {
-  const std::string text = slalom::read_file(file.string(), 1 << 20);
-  const auto copy = std::filesystem::temp_directory_path() / ("slalom_" + file.filename().string());
-  std::ofstream(copy) << std::regex_replace(
-      text, std::regex(R"( (iterations|ls_iterations|eulerdamp)="[^"]*")"), "");
-  return slalom::mujoco::Model(copy.string());
+/// Loads the scene of a task without two attributes that MuJoCo 2 does not know, and with its own number of
+/// iterations.
+slalom::mujoco::Model load(const std::filesystem::path& folder) {
+  const auto copies =
+      std::filesystem::temp_directory_path() / ("slalom_hydrax_" + folder.filename().string());
+  std::filesystem::create_directories(copies);
+  for (const auto& file : slalom::list_folder(folder)) {
+    if (file.extension() != ".xml") continue;
+    const std::regex unknown(R"( (iterations|ls_iterations|eulerdamp)="[^"]*")");
+    std::ofstream(copies / file.filename())
+        << std::regex_replace(slalom::read_file(file, 1 << 20), unknown, "");
+  }
+  return slalom::mujoco::Model((copies / "scene.xml").string());
 }
 
 /// Drives 5 s for each seed. A run succeeds if it is good in the whole last second.
 template <class Task, class Options>
-void solve(const char* name, const std::string& clone, std::uint64_t seeds) {
-  const slalom::mujoco::Model model = load(std::filesystem::path(clone) / "hydrax/models" / Task::file);
+void solve(const std::string& clone, std::uint64_t seeds) {
+  const slalom::mujoco::Model model = load(std::filesystem::path(clone) / "hydrax/models" / Task::folder);
   double cost = 0;
   Summary summary;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
@@ -122,25 +128,25 @@ void solve(const char* name, const std::string& clone, std::uint64_t seeds) {
     });
     summary.succeeded += good;
   }
-  std::printf("%-16s %-9s %d of %d runs, mean cost %.2f, %.2f of real time\n", name, Options::method,
+  std::printf("%-16s %-9s %d of %d runs, mean cost %.2f, %.2f of real time\n", Task::folder, Options::method,
               summary.succeeded, summary.runs, cost, summary.simulated / summary.processor_time);
   std::fflush(stdout);
 }
 
 template <class Task>
-void compare(const char* name, const std::string& clone, std::uint64_t seeds) {
-  solve<Task, slalom::SvgMppiOptions>(name, clone, seeds);
-  solve<Task, slalom::IcemOptions>(name, clone, seeds);
-  solve<Task, slalom::MppiOptions>(name, clone, seeds);
+void compare(const std::string& clone, std::uint64_t seeds) {
+  solve<Task, slalom::SvgMppiOptions>(clone, seeds);
+  solve<Task, slalom::IcemOptions>(clone, seeds);
+  solve<Task, slalom::MppiOptions>(clone, seeds);
 }
 
 int main(int argc, char** argv) try {
   if (argc < 2) return std::puts("usage: slalom_mujoco_hydrax CLONE_OF_HYDRAX [seeds]"), 2;
   const std::uint64_t seeds = seeds_of(argc, argv, "10");
-  compare<Pendulum>("pendulum", argv[1], seeds);
-  compare<CartPole>("cart_pole", argv[1], seeds);
-  compare<Walker>("walker", argv[1], seeds);
-  compare<DoubleCartPole>("double_cart_pole", argv[1], seeds);
+  compare<Pendulum>(argv[1], seeds);
+  compare<CartPole>(argv[1], seeds);
+  compare<Walker>(argv[1], seeds);
+  compare<DoubleCartPole>(argv[1], seeds);
 } catch (const std::exception& e) {
   return std::fprintf(stderr, "slalom_mujoco_hydrax: %s\n", e.what()), 1;
 }
