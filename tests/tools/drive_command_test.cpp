@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "slalom/evaluation/hardware.hpp"
 #include "tools/program_test.hpp"
 #include "view/recording/mcap_reader.hpp"
 
@@ -146,6 +147,15 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
   EXPECT_NEAR(ticks.back()["steering_offset_estimate"].get<double>(),
               result("out.json")["laps"][0]["estimation"]["steering_offset_rad"], 1e-6);
   EXPECT_EQ(content(folder_ / "out.png").substr(1, 3), "PNG");
+}
+
+TEST_F(DriveCommand, LearnsTheOffsetOfTheSteeringOfARealCar) {
+  const auto offset = [&](const std::string& arguments) {
+    EXPECT_EQ(drive("--hardware --json out.json " + arguments).status, 0);
+    return result("out.json")["laps"][0]["estimation"]["steering_offset_rad"].get<double>();
+  };
+  EXPECT_NEAR(offset(""), evaluation::HardwareConditions{}.steering_offset, 0.006);
+  EXPECT_EQ(offset("--set planner.identify=false"), 0);
 }
 
 TEST_F(DriveCommand, FailsWhereALapIsNotFinishedButWritesResults) {
