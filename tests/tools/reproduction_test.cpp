@@ -129,9 +129,9 @@ LapLog laps_of(int count, double ms) {
   for (int i = 0; i < count; ++i) log.ms.push_back(ms * (1 + 0.01 * (i % 7 - 3)));
   return log;
 }
-LogComparison compared(double measured, const LapLog& log) {
-  std::vector<LapRow> rows(30);
-  const LapLog ours = laps_of(30, measured);
+LogComparison compared(double measured, const LapLog& log, int count = 30) {
+  std::vector<LapRow> rows(static_cast<std::size_t>(count));
+  const LapLog ours = laps_of(count, measured);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].state_cost = ours.ms[i];
   return compare_with_log(rows, 0, log);
 }
@@ -164,6 +164,18 @@ TEST(Verdict, FewLapsDecideNothing) {
   r.log = laps_of(3, 1);
   r.published = compared(1, *r.log);
   EXPECT_EQ(verdict_of(r, 0).rfind("too few laps to decide: MS", 0), 0u) << verdict_of(r, 0);
+}
+
+TEST(Verdict, LapsOfTheProgramThatCannotDifferDecideNothing) {
+  Reference r;
+  r.log = laps_of(30, 2);
+  r.published = compared(1, *r.log, 3);
+  for (const auto& [count, decides] : {std::pair(1, false), {3, false}, {4, true}}) {
+    r.released_log = laps_of(count, 1);
+    r.released = compared(1, *r.released_log, 3);
+    const std::string text = verdict_of(r, 0);
+    EXPECT_EQ(text.rfind(decides ? verdicts::released : verdicts::undecided, 0), 0u) << text;
+  }
 }
 
 }  // namespace

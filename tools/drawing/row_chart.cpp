@@ -147,8 +147,12 @@ Drawing draw_chart(const RowChart& chart) {
   Drawing drawing;
   drawing.width = 2 * margin + names_width + static_cast<double>(panels) * panel_width +
                   static_cast<double>(panels - 1) * panel_gap;
-  drawing.height = top + row_height * static_cast<double>(rows) + bottom;
-  drawing.draw = [chart, rows, panels, width = drawing.width](Pen& pen) {
+  const double heading = chart.title.empty() ? 0 : 44;
+  drawing.height = heading + top + row_height * static_cast<double>(rows) + bottom;
+  drawing.draw = [chart, rows, panels, heading, width = drawing.width](Pen& pen) {
+    pen.text(margin, 30, 17, chart.title, ink, 0, true);
+    pen.text(width - margin, 30, 12, chart.note, faint_ink, 1);
+    pen.shift(0, heading);
     for (std::size_t i = 0; i < rows; ++i) {
       const double y = top + row_height * static_cast<double>(i);
       if (i % 2 == 0) pen.box(margin / 2, y, width - margin, row_height, stripe, {}, 0, 4);

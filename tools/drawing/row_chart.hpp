@@ -38,6 +38,7 @@ struct RowChart {
   std::vector<std::string> names;
   std::vector<Panel> panels;
   std::string our_key = "Slalom", their_key;  ///< names of the two colours; no key without `their_key`
+  std::string title, note;                    ///< lines above the chart; none if there is no title
 };
 
 Drawing draw_chart(const RowChart& chart);

@@ -194,8 +194,8 @@ void draw_caption(Pen& pen, const Cell& cell) {
            faint_ink, 1);
 }
 
-/// The key of lines and colours, in rows of at most this width.
-void draw_key(Pen& pen, double left, double width) {
+/// The key of lines and colours, in rows of at most this width; with that of guides or without.
+void draw_key(Pen& pen, double left, double width, bool guides) {
   double x = left, y = 56;
   const auto entry = [&](const std::string& words, double symbol_width, auto symbol) {
     const double wide = symbol_width + 6 + pen.text_width(words, 12);
@@ -213,7 +213,7 @@ void draw_key(Pen& pen, double left, double width) {
     for (int i = 0; i < 44; ++i) pen.line(x + i, y, x + i + 1.2, y, cost_colour(i / 44.0, 1), 5);
   });
   entry("samples that hit", 22, [&] { pen.line(x, y, x + 22, y, bad_key, 2); });
-  entry("guide, pale where it came from", 22, [&] { pen.line(x, y, x + 22, y, guide, 2); });
+  if (guides) entry("guide, pale where it came from", 22, [&] { pen.line(x, y, x + 22, y, guide, 2); });
   entry("resulting distribution, 2 deviations", 22, [&] { box(ours_light, ours); });
   entry("optimal distribution q*", 22, [&] { box(optimum_light, optimum); });
 }
@@ -236,7 +236,9 @@ Drawing draw_explanations(const std::vector<Explanation>& explanations, const st
   drawing.draw = [explanations, title, columns, width, header](Pen& pen) {
     const Explanation& first = explanations.front();
     draw_title(pen, margin, width, title);
-    draw_key(pen, margin, width);
+    const bool guides = std::any_of(explanations.begin(), explanations.end(),
+                                    [](const Explanation& e) { return !e.guides.empty(); });
+    draw_key(pen, margin, width, guides);
     for (std::size_t i = 0; i < explanations.size(); ++i) {
       const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
       const Cell cell{explanations[i], margin + axis_left + column * (cell_width + between),

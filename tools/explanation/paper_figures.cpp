@@ -39,7 +39,11 @@ Drawing draw_plot(const std::string& title, const std::string& label, const std:
     draw_title(pen, left, plot_width, title);
     double y = 54;
     for (const Curve& curve : curves) {
-      pen.line(left, y - 4, left + 22, y - 4, curve.colour, 3);
+      if (curve.dots) {
+        pen.disc(left + 11, y - 4, 4, curve.colour);
+      } else {
+        pen.line(left, y - 4, left + 22, y - 4, curve.colour, 3);
+      }
       pen.text(left + 30, y, 12, curve.name, ink);
       y += 18;
     }
@@ -55,6 +59,7 @@ Drawing draw_plot(const std::string& title, const std::string& label, const std:
     }
     pen.box(left, top, plot_width, plot_height, {0, 0, 0, 0}, frame, 1, 0);
     pen.text(left + plot_width / 2, top + plot_height + 34, 12, label, faint_ink, 0.5);
+    pen.text(left, top - 6, 11, "density", faint_ink);
   };
   return drawing;
 }

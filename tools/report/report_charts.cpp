@@ -86,9 +86,19 @@ Panel collision_panel(const Report& report, const std::vector<NamedRow>& rows) {
   return panel;
 }
 
+const PaperTable* table_of(const std::string& section) {
+  const auto* const found = std::find_if(std::begin(paper_tables), std::end(paper_tables),
+                                         [&](const PaperTable& table) { return table.name == section; });
+  return found == std::end(paper_tables) ? nullptr : found;
+}
+
 RowChart section_chart(const Report& report, const std::string& section) {
   const auto rows = named_rows(report, section);
   RowChart chart;
+  if (const PaperTable* table = table_of(section)) {
+    chart.title = table->title;
+    chart.note = "box: quartiles and median; diamond: mean; points: laps beyond 1.5 boxes; bars: 95 %";
+  }
   for (const NamedRow& row : rows) chart.names.push_back(row.name);
   const auto any = [&](auto member) {
     return std::any_of(rows.begin(), rows.end(), [&](const NamedRow& r) { return r.*member != nullptr; });
@@ -132,12 +142,6 @@ RowChart time_chart(const Report& report, const std::string& section) {
   return chart;
 }
 
-std::string figure_name(const std::string& section) {
-  for (const PaperTable& table : paper_tables)
-    if (table.name == section) return table.figure;
-  return section;
-}
-
 }  // namespace
 
 std::vector<ReportFigure> report_charts(const Report& report, const std::filesystem::path& folder) {
@@ -149,7 +153,7 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
   for (const std::string& section : sections) {
     figures.push_back(saved(
         draw_chart(section_chart(report, section)),
-        {figure_name(section), section, "",
+        {table_of(section) ? table_of(section)->figure : section, section, "",
          "Every lap counts. Boxes: quartiles and median, whiskers to 1.5 times the box, laps beyond them as "
          "points, the mean as a diamond; the axes of costs are logarithmic. Bars: collision rate with its "
          "95 % Wilson interval."},
