@@ -57,11 +57,11 @@ def ways(Kind):
         if PEER:
             yield f"pytorch_mppi {PEER}", lambda seed: PytorchMppi(Kind(torch), *common, seed).solve
     yield "slalom `mppi`, numpy callables", same_mppi(callables(p), p)
-    built_in = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive(),
-                "cart-pole": slalom.CartPole(dt=0.04), "quadrotor": slalom.Quadrotor()}.get(p.name, callables(p))
-    if p.name != "double integrator":
-        yield "slalom `mppi`, compiled problem", same_mppi(built_in, p)
-    yield "slalom `svg_mppi`, defaults", lambda seed: of_slalom(slalom.SvgMppi, built_in, p, seed)
+    compiled = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive(),
+                "cart-pole": slalom.CartPole(dt=0.04), "quadrotor": slalom.Quadrotor()}.get(p.name)
+    if compiled:
+        yield "slalom `mppi`, compiled problem", same_mppi(compiled, p)
+    yield "slalom `svg_mppi`, defaults", lambda seed: of_slalom(slalom.SvgMppi, compiled or callables(p), p, seed)
 
 
 def drive(p, solve):

@@ -69,8 +69,8 @@ void compare(const P& problem, const Options& options, typename P::template Stat
     for (int k = 0; k < options.horizon; ++k)
       for (int i = 0; i < P::inputs; ++i)
         difference = std::max(difference, std::abs(plan.inputs[k][i] - expected.inputs[k][i]) /
-                                              std::min(options.input_max[i] - options.input_min[i], 5.0));
-    EXPECT_LT(difference, 4e-4) << "of the range, or of 5; " << Options::method << ", " << options.samples
+                                              std::min(options.input_max[i] - options.input_min[i], 10.0));
+    EXPECT_LT(difference, 2e-4) << "of the range, or of 10; " << Options::method << ", " << options.samples
                                 << " samples, solve " << n;
     EXPECT_NEAR(plan.stats.effective_sample_size / expected.stats.effective_sample_size, 1, 1e-2);
     EXPECT_NEAR(plan.stats.collided_share, expected.stats.collided_share, 1e-2);

@@ -12,8 +12,10 @@
 
 #include "closed_loop.hpp"
 
-/// Two minus two cosines: the squared distance of a unit vector from the upright one.
-inline double from_upright(double angle) {
+constexpr double period = 0.02;  ///< s, of the inputs in all tasks
+
+/// The squared distance of the unit vector at an angle, 0 if it hangs, from the upright one.
+double from_upright(double angle) {
   return 2 + 2 * std::cos(angle);
 }
 
@@ -24,7 +26,7 @@ struct Pendulum {
   static constexpr double spread = 0.1;  ///< standard deviation of the joints at the start
 
   double stage_cost(const mjModel& m, const mjData& d) const {
-    return 0.02 * (terminal_cost(m, d) + 0.001 * d.ctrl[0] * d.ctrl[0]);
+    return period * (terminal_cost(m, d) + 0.001 * d.ctrl[0] * d.ctrl[0]);
   }
   double terminal_cost(const mjModel&, const mjData& d) const {
     return from_upright(d.qpos[0]) + 0.01 * d.qvel[0] * d.qvel[0];
@@ -40,7 +42,7 @@ struct CartPole {
 
   double stage_cost(const mjModel& m, const mjData& d) const {
     const double rest = terminal_cost(m, d) - 9 * from_upright(d.qpos[1]);
-    return 0.02 * (rest + 0.01 * d.ctrl[0] * d.ctrl[0]);
+    return period * (rest + 0.01 * d.ctrl[0] * d.ctrl[0]);
   }
   double terminal_cost(const mjModel&, const mjData& d) const {
     return 10 * from_upright(d.qpos[1]) + d.qpos[0] * d.qpos[0] +
@@ -57,7 +59,7 @@ struct DoubleCartPole {
 
   double stage_cost(const mjModel&, const mjData& d) const {
     const double rates = d.qvel[1] * d.qvel[1] + d.qvel[2] * d.qvel[2];
-    return 0.02 * (from_top(d) + 0.1 * rates + 0.001 * d.ctrl[0] * d.ctrl[0]);
+    return period * (from_top(d) + 0.1 * rates + 0.001 * d.ctrl[0] * d.ctrl[0]);
   }
   double terminal_cost(const mjModel&, const mjData& d) const {
     const double speeds = d.qvel[0] * d.qvel[0] + d.qvel[1] * d.qvel[1] + d.qvel[2] * d.qvel[2];
@@ -80,7 +82,7 @@ struct Walker {
   double stage_cost(const mjModel& m, const mjData& d) const {
     double efforts = 0;
     for (int i = 0; i < inputs; ++i) efforts += d.ctrl[i] * d.ctrl[i];
-    return 0.02 * (terminal_cost(m, d) + 0.1 * efforts);
+    return period * (terminal_cost(m, d) + 0.1 * efforts);
   }
   /// The sensors are the torso's position, the velocity of its subtree and its vertical axis.
   double terminal_cost(const mjModel&, const mjData& d) const {
