@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -31,8 +32,9 @@ struct Runs {
   std::uint64_t first = 0;  ///< seed of the first run; the others follow
   int count = 0;            ///< number
   int steps = 0;            ///< most steps of a run; 0: those of the task
-  /// Whether the plant differs from the model: in each run, each input acts with 80 to 120 %, and normal
-  /// noise of 5 % of its range is added to it in every step.
+  /// Whether the plant differs from the model: in each run, each input acts with 80 to 120 % and a fifth of a
+  /// step late, with normal noise of 5 % of its range; each state changes by 90 to 110 % of what the model
+  /// says in a step, as normal noise of 10 %.
   bool disturbed = false;
 };
 
@@ -69,6 +71,16 @@ inline SolverOptions default_options(const char* method, const Task& task) {
   return options;
 }
 
+/// Adds normal noise of 10 % of the change since `before` to each value of a state.
+template <class State>
+void disturb(const State& before, State& after, RandomStream& random) {
+  using Values = std::array<double, sizeof(State) / sizeof(double)>;
+  const auto old = std::bit_cast<Values>(before);
+  auto values = std::bit_cast<Values>(after);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] += 0.1 * (values[i] - old[i]) * random.normal();
+  after = std::bit_cast<State>(values);
+}
+
 /// Closed-loop runs of a controller of problem P from `start`. `judge(problem, x, k)` gives the verdict on
 /// the state after step k; a run of `steps` steps without a verdict has failed. `change(problem, x, k)`, if
 /// given, changes the problem before the solve of step k.
@@ -89,7 +101,7 @@ auto closed_loop(const P& problem, const typename P::template State<double>& sta
       controller.problem() = problem;
       auto x = start;
       RandomStream random({seed, 1});
-      Input<double, P::inputs> gain;
+      Input<double, P::inputs> gain, last{};
       for (int i = 0; i < P::inputs; ++i) gain[i] = runs.disturbed ? 0.8 + 0.4 * random.uniform() : 1;
       double cost = 0;
       Verdict verdict = Verdict::running;
@@ -101,10 +113,13 @@ auto closed_loop(const P& problem, const typename P::template State<double>& sta
         Input<double, P::inputs> u = plan.inputs[0];
         for (int i = 0; runs.disturbed && i < P::inputs; ++i) {
           const double range = controller.bounds().high[i] - controller.bounds().low[i];
-          u[i] = gain[i] * u[i] + 0.05 * range * random.normal();
+          const double delayed = k > 0 ? 0.8 * u[i] + 0.2 * last[i] : u[i];
+          last[i] = u[i];
+          u[i] = gain[i] * delayed + 0.05 * range * random.normal();
         }
         std::array<typename P::template State<double>, 2> states;
         cost += predict(controller.problem(), x, &u, 1, states.data()).value - end_cost(states[1]);
+        if (runs.disturbed) disturb(states[0], states[1], random);
         x = states[1];
         verdict = judge(controller.problem(), x, k);
       }

@@ -70,8 +70,10 @@ struct SvgMppiOptions {
   PerInput variance_min = 0;
   PerInput variance_max = 0;
 
-  NoiseOptions noise{.exponent = 2};  ///< shape of the noise; coloured and normal
-  WeightingOptions weighting{};       ///< how costs become weights
+  /// Shape of the noise; coloured and normal. Of several batches, the first and the last two have white
+  /// noise.
+  NoiseOptions noise{.exponent = 1.5};
+  WeightingOptions weighting{};  ///< how costs become weights
   double control_cost_discount = 0;
   double zero_mean_share = 0;
   bool shift_warm_start = true;  ///< the guides are shifted, too

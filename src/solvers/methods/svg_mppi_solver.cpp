@@ -17,9 +17,10 @@ namespace {
 /// guides lead the closed form of MPPI to one mode. If the samples are drawn around the nominal sequence, the
 /// control term of equation (8) is zero. They are then drawn in several batches, as in `icem` (Pinneri et al.
 /// 2020): each has the mean and the variance of the weighted samples of the last one, and contains that mean
-/// and the best sequence so far; the first batch contains the elites of the last solve. Every third batch has
-/// white noise instead of coloured noise: some problems need inputs that change slowly, others inputs that
-/// change from step to step. The best sequence or the last mean, whichever costs less, is the solution.
+/// and the best sequence so far; the first batch contains the elites of the last solve. The first and the
+/// last two batches have white noise, those between coloured noise: some problems need inputs that change
+/// slowly, others inputs that change from step to step. The best sequence or the last mean, whichever costs
+/// less, is the solution.
 class SvgMppiSolver final : public SolverBase {
  public:
   /// `options` has the size of the largest batch in place of the number of all samples, `total`.
@@ -29,7 +30,7 @@ class SvgMppiSolver final : public SolverBase {
         use_nominal_(options.use_nominal),
         around_nominal_(options.use_nominal && options.guides.sample_around == SampleCentre::nominal),
         adapt_covariance_(options.adapt_covariance),
-        white_batches_(options.noise.knots == 0 && !options.noise.pinned),
+        white_batches_(options.batches > 1 && options.noise.knots == 0 && !options.noise.pinned),
         total_(total),
         batches_(options.batches),
         guides_(options, inputs, low(), high()),
@@ -42,6 +43,7 @@ class SvgMppiSolver final : public SolverBase {
         squares_(size()),
         variance_(spread(options.variance)),
         fixed_variance_(variance_) {
+    update_.samples().set_white(white_batches_);
     reset(options.seed);
   }
 
@@ -174,7 +176,7 @@ class SvgMppiSolver final : public SolverBase {
         break;
       }
       set.set_samples(total_ / batches_ + (batch < total_ % batches_));
-      set.set_white(white_batches_ && batch % 3 == 2);
+      set.set_white(white_batches_ && (batch == 0 || batch >= batches_ - 2));
       if (batch > 0) elites_ = std::min(elites_, 1);  // more of them would narrow the samples too soon
       std::copy(mean_.begin(), mean_.end(), kept(elites_));
       const int count = std::min(elites_ + 1, set.samples() / 4);
@@ -186,7 +188,7 @@ class SvgMppiSolver final : public SolverBase {
       if (result_.status == Status::deadline) break;
       if (batch + 1 < batches_) narrow_variance(set);
     }
-    set.set_white(false);
+    set.set_white(white_batches_);  // the noise of the next first batch may be drawn before the next solve
     if (elites_ > 0 && !(guides_.cost(evaluator, mean_.data()) <= least))
       std::copy_n(kept(0), size(), mean_.data());
   }
