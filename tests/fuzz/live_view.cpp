@@ -104,12 +104,14 @@ const Target commands_target(
         bytes.remove_prefix(std::min(bytes.size(), line.size() + 1));
         if (!client.send_message(line)) break;
         await(server, ++sent, until);
-        for (int ticks = 0; ticks < max_ticks && (ticks == 0 || session.is_busy()); ++ticks) session.turn();
+        for (int ticks = 0; ticks < max_ticks && (ticks == 0 || (session.is_busy() && Clock::now() < until));
+             ++ticks)
+          session.turn();
       }
       require(session.refused() <= sent, "a command is refused once");
       return sent > 0 && session.refused() == 0;
     },
-    max_commands);
+    5 * max_commands);  // a tick with the most samples takes a second
 
 using testing::WebClient;
 constexpr std::size_t max_message = 1000;

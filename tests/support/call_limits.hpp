@@ -11,13 +11,13 @@ extern "C" [[gnu::weak]] void __tsan_init();
 
 namespace slalom::testing {
 
-/// The time and memory that a call takes beyond what docs/robustness.md says for its size: 0.5 s of processor
+/// The time and memory that a call takes beyond what docs/robustness.md says for its size: 0.1 s of processor
 /// time of its thread, and 200 MB; more under sanitizers.
 class CallLimits {
  public:
   /// Throws Finding where the calls since construction, one if not said, took more.
   void check(int calls = 1) const {
-    require(seconds() - before_ <= 0.5 * slowness() * calls, "a call takes at most 0.5 s");
+    require(seconds() - before_ <= 0.1 * slowness() * calls, "a call takes at most 0.1 s");
     require(megabytes() - held_ <= 200 * (slowness() > 1 ? 3 : 1) * calls, "a call takes at most 200 MB");
   }
 

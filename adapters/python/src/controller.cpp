@@ -1,9 +1,12 @@
 #include "controller.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <limits>
+#include <thread>
 
 #include "slalom/core/final_check.hpp"
 
@@ -92,6 +95,49 @@ void warn_of(Symptom symptom) {
                            " solves in a row: " + explanation(symptom);
   if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
 }
+
+/// Rollouts that end at once after a handler of a signal has raised an exception. Handlers run in the main
+/// thread, so the thread that solves lets them run, every 50 ms.
+class Interruptible final : public BatchEvaluator {
+ public:
+  explicit Interruptible(const BatchEvaluator& rollouts) : rollouts_(rollouts) {}
+
+  int inputs() const noexcept override { return rollouts_.inputs(); }
+  double time_step() const noexcept override { return rollouts_.time_step(); }
+  bool whole_batches() const noexcept override { return rollouts_.whole_batches(); }
+  const Sampler* sampler() const noexcept override { return rollouts_.sampler(); }
+  void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
+                std::uint8_t* collided) const noexcept override {
+    if (std::this_thread::get_id() == solving_ && !stopped_ && Clock::now() >= next_) let_handlers_run();
+    if (stopped_) {
+      std::fill_n(costs + first, count, std::numeric_limits<float>::infinity());
+    } else {
+      rollouts_.evaluate(batch, first, count, costs, collided);
+    }
+  }
+  /// The exception that a handler raised, or null.
+  const std::exception_ptr& raised() const noexcept { return raised_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void let_handlers_run() const noexcept {
+    try {
+      check_signals();
+    } catch (...) {
+      raised_ = std::current_exception();
+      stopped_ = true;
+    }
+    next_ = Clock::now() + period;
+  }
+
+  static constexpr std::chrono::milliseconds period{50};
+  const BatchEvaluator& rollouts_;
+  std::thread::id solving_ = std::this_thread::get_id();
+  mutable Clock::time_point next_ = Clock::now() + period;
+  mutable std::exception_ptr raised_;
+  mutable std::atomic<bool> stopped_ = false;
+};
 
 }  // namespace
 
@@ -193,11 +239,13 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
   std::vector<Controller*> started;
   for (std::size_t i = 0; i < owners.size(); ++i)
     if (all[i]->start(owners[i], std::move(states[i]), request.elapsed)) started.push_back(all[i]);
+  std::deque<Interruptible> rollouts;
+  for (Controller* each : started) rollouts.emplace_back(each->problem_->evaluator());
   {
     const py::gil_scoped_release unlock;
     pool.run(static_cast<int>(started.size()), [&](int i) {
-      Controller& each = *started[static_cast<std::size_t>(i)];
-      each.solver_->solve(each.problem_->evaluator(), request);
+      const auto at = static_cast<std::size_t>(i);
+      started[at]->solver_->solve(rollouts[at], request);
     });
   }
   std::exception_ptr first;
@@ -208,6 +256,8 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
       if (!first) first = std::current_exception();
     }
   }
+  for (const Interruptible& each : rollouts)
+    if (each.raised()) first = each.raised();
   if (first) std::rethrow_exception(first);
 }
 

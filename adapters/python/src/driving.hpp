@@ -16,13 +16,6 @@ using Folders = std::vector<std::filesystem::path>;
 Folders folders_of(Folders (*search)(const std::filesystem::path&), const char* what);
 Folders course_folders();
 
-/// Throws what a signal handler raised, such as KeyboardInterrupt. Long loops without the interpreter's lock
-/// call it.
-inline void check_signals() {
-  const py::gil_scoped_acquire lock;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
 /// Poses are tuples in Python.
 inline py::tuple to_tuple(const maps::Pose& pose) {
   return py::make_tuple(pose.x, pose.y, pose.yaw);

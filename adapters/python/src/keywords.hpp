@@ -14,6 +14,13 @@ namespace slalom::python {
 namespace py = pybind11;
 using namespace pybind11::literals;
 
+/// Throws what a signal handler raised, such as KeyboardInterrupt. Long loops without the interpreter's lock
+/// call it.
+inline void check_signals() {
+  const py::gil_scoped_acquire lock;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
 /// Returns a function that adds a property which cannot be set: name, help, getter.
 template <class Class>
 auto reader(Class& bound) {

@@ -1,4 +1,5 @@
 import signal
+import time
 
 import numpy as np
 import pytest
@@ -100,22 +101,26 @@ def test_errors_name_the_mistake():
     assert world.time == 0.0
 
 
-@pytest.mark.parametrize("call", ["step", "drive_lap"])
+@pytest.mark.parametrize("call", ["step", "drive_lap", "solve", "solve_batch"])
 def test_a_signal_ends_a_long_call(call):
     course = slalom.Course("wren")
     world = slalom.World(course)
     world.reset(0, [course.start])
+    slow = slalom.Cem(slalom.Quadrotor(), horizon=500, samples=20000, iterations=1000)
+    state = [0.0] * slow.problem.states
+    run = {"step": lambda: world.step([(0, 0)], steps=10**9),
+           "drive_lap": lambda: slalom.drive_lap(course, "mppi", options={"samples": 64, "world.rounds": 100}),
+           "solve": lambda: slow.solve(state), "solve_batch": lambda: slalom.solve_batch([slow], [state])}[call]
     before = signal.signal(signal.SIGALRM, signal.default_int_handler)
     signal.setitimer(signal.ITIMER_REAL, 0.2)
+    begin = time.process_time()
     try:
         with pytest.raises(KeyboardInterrupt):
-            if call == "step":
-                world.step([(0, 0)], steps=10**9)
-            else:
-                slalom.drive_lap(course, "mppi", options={"samples": 64, "world.rounds": 100})
+            run()
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+    assert time.process_time() - begin < 10
 
 
 def test_a_world_takes_the_options_of_the_simulator():

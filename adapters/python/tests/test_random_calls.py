@@ -20,7 +20,7 @@ NUMBERS = [0, 1, -1, 2, 3, 7, 40, 0.05, 0.1, -0.5, 1e-9, 1e9, 1e300, float("nan"
 WORDS = ["", "mppi", "svg_mppi", "wren", "default", "samples", "/dev/zero", "/tmp", "a\0b", "\udcff", "é" * 300, b"mppi", None, 3]
 OWN = (ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, OSError, ImportError)
 RAW = re.compile(r"std::|vector|basic_string|bad_alloc|_M_|map::at|Unable to cast")
-SECONDS, MEGABYTES = 0.5, 200  # a call is interrupted after this; limits of growth
+SECONDS, MEGABYTES = 0.1, 200  # a call is interrupted after this; limits of growth
 
 
 class Interrupted(BaseException):

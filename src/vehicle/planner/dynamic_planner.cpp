@@ -61,7 +61,7 @@ class DynamicPlanner final : public PlannerBase {
     if (must_stop(here)) return stop(PlannerStatus::off_course);
     model().set_conditions(conditions_);
     begin_rollouts(scan_pose, start, here.speed);
-    choice_.sees(obstacles_.clearance_map().view(), obstacles_.others(origin_));
+    choice_.sees(obstacles_.seen_from(scan_pose, followed(), origin_));
 
     // Solve.
     const SolveResult& result = solve();

@@ -33,6 +33,7 @@ class KinematicPlanner final : public PlannerBase {
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     if (must_stop(here)) return stop(PlannerStatus::off_course);
     begin_rollouts(odometry.pose, start, here.speed);
+    if (options_.verify_plan) choice_.sees(obstacles_.seen_from(odometry.pose, followed(), origin_));
 
     // Solve.
     const SolveResult& result = solve();

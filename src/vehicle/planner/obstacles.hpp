@@ -98,10 +98,6 @@ class Obstacles {
 
   const maps::LocalCostMap& cost_map() const noexcept { return cost_map_; }
   const maps::ClearanceMap& clearance_map() const noexcept { return clearance_map_; }
-  /// The moving obstacles, relative to `origin` (m, map frame).
-  maps::MovingObstaclesView others(const maps::Point& origin) const noexcept {
-    return others_.view().relative_to(origin);
-  }
 
  private:
   static constexpr double tracking_error = 0.12;  ///< m, between a reading of a car and its predicted box

@@ -16,9 +16,11 @@ constexpr double braking_share = 0.8, accelerating_share = 0.4;
 /// m, between a wall and the nearest of many noisy readings of it.
 constexpr double reading_error = 0.02;
 
-/// A body without margin.
-BodyOptions bare(BodyOptions body) {
-  body.margin = std::min(body.margin, -reading_error);
+/// The body without margin, or smaller by `less` (m), for look-ups in the map of these traits.
+BodyOptions bare(const VehicleTraits& traits, double less) {
+  BodyOptions body = traits.body;
+  body.model = traits.obstacle_map == ObstacleMap::clearance ? BodyModel::discs : BodyModel::box;
+  body.margin = std::min(body.margin, -less);
   body.soft_margin = 0;
   return body;
 }
@@ -54,35 +56,42 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
       slower_(candidate_.size()),
       states_(static_cast<std::size_t>(horizon) + 1),
       candidate_states_(states_.size()),
-      path_(states_.size()) {
-  if (traits.seeks_lap_time && traits.body.margin > 0 && traits.obstacle_map == ObstacleMap::clearance)
-    body_.emplace(bare(traits.body));
-}
+      path_(states_.size()),
+      margin_is_cost_(traits.seeks_lap_time && traits.body.margin > 0 &&
+                      traits.obstacle_map == ObstacleMap::clearance),
+      body_(bare(traits, margin_is_cost_ ? reading_error : 0)) {}
 
-void SequenceChoice::sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept {
-  if (body_) body_->set_map(clearances, {});
-  others_ = others;
+void SequenceChoice::sees(const VehicleMaps& maps) noexcept {
+  body_.set_map(maps.obstacles, maps.robot);
+  others_ = maps.others;
+  sees_ = true;
 }
 
 PredictedCost SequenceChoice::predict(const VehicleModel& model, std::span<const float> inputs,
                                       std::span<PredictedState> states) const noexcept {
   PredictedCost cost = model.predict(inputs, states);
-  if (!body_ || !cost.collided) return cost;
-  const std::span<const PredictedState> predicted = states.first(inputs.size() / inputs_ + 1);
-  cost.collided = body_collides(predicted) || others_collide(predicted);
+  cost.collided = collides(cost, states.first(inputs.size() / inputs_ + 1));
   return cost;
 }
 
-/// Whether the body collides after the first free state, as in VehicleModel::predict.
+/// Whether these states collide, or the body does between them. The cost is that of the model.
+bool SequenceChoice::collides(const PredictedCost& cost,
+                              std::span<const PredictedState> states) const noexcept {
+  if (!sees_ || (cost.collided && !margin_is_cost_)) return cost.collided;
+  return body_collides(states) || (cost.collided && others_collide(states));
+}
+
+/// Whether the body collides after the first free state, as in VehicleModel::predict, or on the way between
+/// two states.
 bool SequenceChoice::body_collides(std::span<const PredictedState> states) const noexcept {
-  bool was_free = false;
-  for (const PredictedState& s : states) {
-    const double value = body_->in_robot_frame(s.local.x, s.local.y, s.local.yaw);
-    const bool collides = value < 0 || value >= 100;
-    if (collides && was_free) return true;
-    was_free |= !collides;
-  }
-  return !was_free;
+  const auto touches = [&](std::size_t k, std::size_t next) {
+    return body_.collides_before(states[k].pose, states[next].pose);
+  };
+  std::size_t k = 0;
+  while (k < states.size() && touches(k, k)) ++k;
+  for (; k + 1 < states.size(); ++k)
+    if (touches(k, k + 1)) return true;
+  return k == states.size() || touches(k, k);
 }
 
 /// Whether the car collides with another one after the first state that is free of them.
@@ -112,7 +121,11 @@ void SequenceChoice::begin(const VehicleModel& model, const SolveResult& result)
 
 bool SequenceChoice::consider(std::span<const float> inputs) noexcept {
   if (inputs.size() != candidate_.size()) return false;
-  const PredictedCost cost = predict(*model_, inputs, candidate_states_);
+  const PredictedCost predicted = model_->predict(inputs, candidate_states_);
+  PredictedCost cost = predicted;
+  cost.collided = predicted.collided && !margin_is_cost_;
+  if (!cheaper(cost, best_.cost)) return false;  // nor would it be in a collision
+  cost.collided = collides(predicted, candidate_states_);
   if (!cheaper(cost, best_.cost)) return false;
   best_ = {inputs, cost};
   states_.swap(candidate_states_);
@@ -153,7 +166,7 @@ void SequenceChoice::consider_samples() noexcept {
 
 void SequenceChoice::stop(bool reversing) noexcept {
   const std::span<const PredictedState> start(states_.data(), 1);
-  const bool begins_free = body_ && !body_collides(start) && !others_collide(start);
+  const bool begins_free = margin_is_cost_ && !body_collides(start) && !others_collide(start);
   if (begins_free && !reversing) return least_harm();
   brake(reversing ? max_deceleration_ : -max_deceleration_);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,15 +23,16 @@ class SequenceChoice {
   /// Sequences have `horizon` steps of `inputs` inputs.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
 
-  /// Sets the map of clearances (m, robot's frame), and the moving obstacles (in the frame of the
-  /// predictions). Both are used until the next call.
-  void sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept;
+  /// Sets the maps with which predictions are checked, in the frame of the predictions. They are used until
+  /// the next call; before the first one nothing is checked.
+  void sees(const VehicleMaps& maps) noexcept;
 
-  /// Predicts a sequence; all choices compare these predictions. If plans seek the shortest time and the body
-  /// has a margin, only the body itself can collide with fixed obstacles, and the margin has a cost instead.
-  /// The reason is noise: near a wall, each scan decides anew whether a plan keeps the margin. A car that
-  /// braked for the margin at the limit of grip would turn in and hit the wall that it would otherwise have
-  /// passed.
+  /// Predicts a sequence; all choices compare these predictions. A sequence also collides if the body,
+  /// without its margin, meets a fixed obstacle between two states, after the first state in which it is
+  /// free. If plans seek the shortest time and the body has a margin, only the body itself can collide with
+  /// fixed obstacles in the states, too, and the margin has a cost instead. The reason is noise: near a wall,
+  /// each scan decides anew whether a plan keeps the margin. A car that braked for the margin at the limit of
+  /// grip would turn in and hit the wall that it would otherwise have passed.
   PredictedCost predict(const VehicleModel& model, std::span<const float> inputs,
                         std::span<PredictedState> states) const noexcept;
 
@@ -77,6 +77,7 @@ class SequenceChoice {
   void brake(float acceleration) noexcept;
   void least_harm() noexcept;
   double harm(std::span<const float> inputs) noexcept;
+  bool collides(const PredictedCost& cost, std::span<const PredictedState> states) const noexcept;
   bool body_collides(std::span<const PredictedState> states) const noexcept;
   bool others_collide(std::span<const PredictedState> states) const noexcept;
 
@@ -85,8 +86,10 @@ class SequenceChoice {
   float max_deceleration_;
   std::vector<float> candidate_, braking_, previous_, kept_, slower_;
   std::vector<PredictedState> states_, candidate_states_, path_;
-  std::optional<ObstacleCost> body_;  ///< body without margin, if it has one and plans seek the shortest time
+  bool margin_is_cost_;  ///< plans seek the shortest time, and the body has a margin
+  ObstacleCost body_;    ///< without margin
   maps::MovingObstaclesView others_;
+  bool sees_ = false;
   bool has_previous_ = false;
   const VehicleModel* model_ = nullptr;
   const SolveResult* result_ = nullptr;

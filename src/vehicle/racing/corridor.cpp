@@ -49,7 +49,7 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
 }
 
 void check_walls(const Corridor& corridor) {
-  constexpr double exact = 0.9, opposite = -0.5, beside = 0.8;
+  constexpr double exact = 0.9, opposite = -0.5, beside = 0.8, folded = 0.5;
   const auto& line = corridor.centre_line;
   double widest = 0;
   for (std::size_t i = 0; i < line.size(); ++i)
@@ -66,7 +66,12 @@ void check_walls(const Corridor& corridor) {
       if (here.x * there.x + here.y * there.y > opposite) continue;
       const double apart = std::hypot(way.x, way.y), side = here.x * way.x + here.y * way.y;
       const auto& widths = side > 0 ? corridor.left : corridor.right;
-      if (apart >= exact * (widths[i] + widths[k]) || std::abs(side) < beside * apart) continue;
+      // A line that turns back on itself has no side.
+      const double narrow =
+          std::min(corridor.left[i], corridor.right[i]) + std::min(corridor.left[k], corridor.right[k]);
+      if (apart >= folded * narrow &&
+          (apart >= exact * (widths[i] + widths[k]) || std::abs(side) < beside * apart))
+        continue;
       char text[300];
       std::snprintf(
           text, sizeof text,

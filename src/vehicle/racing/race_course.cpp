@@ -182,13 +182,37 @@ double drawn_resolution(double length_x, double length_y, double resolution) {
   return std::max({resolution, std::sqrt(length_x * length_y / most_cells), side});
 }
 
-/// Throws std::invalid_argument if a corridor is so wide for its length that a map of it takes too long.
-void check_work(const Corridor& corridor, double side, double wall, double resolution) {
+/// Throws std::invalid_argument if a corridor, whose line needs a map of this size (m), is so wide for its
+/// length that a map of it takes too long.
+void check_work(const Corridor& corridor, double length_x, double length_y, double reach, double wall,
+                double resolution) {
   const double points = static_cast<double>(corridor.centre_line.size());
-  const double cells = (length(corridor) / points + 2 * (side + wall)) / resolution;
-  if (points * cells * cells > most_drawn)
-    throw std::invalid_argument("corridor: walls " + to_text(std::round(side)) +
-                                " m from the centre line cannot be drawn; they must be nearer to it");
+  const auto takes_too_long = [&](double side) {
+    const double around = 2 * (side + wall),
+                 cell = drawn_resolution(length_x + around, length_y + around, resolution);
+    const double cells = length(corridor) / points / cell + 2 * (side / cell + std::max(wall / cell, 2.0));
+    return points * cells * cells > most_drawn;
+  };
+  if (!takes_too_long(reach)) return;
+  double most = 0, too_much = reach;
+  while (too_much - most > 0.01 * too_much) {
+    const double middle = 0.5 * (most + too_much);
+    (takes_too_long(middle) ? too_much : most) = middle;
+  }
+  throw std::invalid_argument("corridor: walls " + to_text(std::round(reach)) +
+                              " m from the centre line; must be at most " + to_text(std::floor(most)) +
+                              " m from it, to be drawn");
+}
+
+/// Throws std::invalid_argument if cells that became larger than `wanted` (m) cannot show a corridor.
+void check_cells(const Corridor& corridor, double wanted, double resolution) {
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < corridor.left.size(); ++i)
+    narrowest = std::min(narrowest, corridor.left[i] + corridor.right[i]);
+  if (resolution > wanted && narrowest < 2 * resolution)
+    throw std::invalid_argument("corridor: " + to_text(narrowest) + " m wide; must be at least " +
+                                to_text(std::ceil(2 * resolution)) +
+                                " m, two cells of a map of 25 million cells for its length");
 }
 
 /// The corridor of an open course with room to stop: straight on by `length` (m) beyond both ends.
@@ -273,11 +297,12 @@ maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, d
     high_y = std::max(high_y, line[i].y);
     reach = std::max({reach, corridor.left[i], corridor.right[i]});
   }
+  check_work(corridor, high_x - low_x, high_y - low_y, reach, wall, resolution);
   maps::OccupancyGrid map;
   map.resolution =
       drawn_resolution(high_x - low_x + 2 * (reach + wall), high_y - low_y + 2 * (reach + wall), resolution);
   wall = std::max(wall, 2 * map.resolution);
-  check_work(corridor, reach, wall, map.resolution);
+  check_cells(corridor, resolution, map.resolution);
   reach += wall;
   const auto below = [&](double value) {
     return map.resolution * std::floor((value - reach) / map.resolution - 2);

@@ -151,7 +151,7 @@ TEST(PlannerAmongOthers, KeepsMoreDistanceToThemThanToWalls) {
   obstacles.update({.scan = wide.view(), .odometry = {{4.5, 0, 0}, speed}, .others = {&other.obstacle, 1}},
                    true);
   const auto beside = [&](double gap) {
-    return obstacles.others({0, 0}).cost(5.1, car_width + deviation + gap, 0.0, 1.0, 0);
+    return obstacles.seen_from({}, {}, {0, 0}).others.cost(5.1, car_width + deviation + gap, 0.0, 1.0, 0);
   };
   EXPECT_TRUE(beside(0.04).collided);
   EXPECT_FALSE(beside(0.06).collided);

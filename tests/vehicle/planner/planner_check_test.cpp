@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "support/repetitions.hpp"
+#include "vehicle/planner/lane_scan.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
 /// Every command of a planner is one that a car may take, whatever its inputs.
@@ -85,6 +86,29 @@ TEST(PlannerCheck, APlanThatBrakesCommandsLessThanTheEstimatedSpeed) {
   ASSERT_EQ(out.inputs_per_step, 2);
   EXPECT_LT(out.inputs[1], 0) << "3 m/s towards a wall";
   EXPECT_LT(out.command.speed, out.speed_estimate);
+}
+
+// Obstacles are those of the scan, wherever the odometry has the car.
+TEST(PlannerCheck, AfterAJumpOfThePosePlansStayBetweenTheWallsOfTheScan) {
+  const testing::LaneScan lane(testing::beside_lane(0.8));
+  int planned = 0;
+  for (const maps::Pose& jump : {maps::Pose{0.3, 0.6, 0.2}, {-2, -1.2, 0.5}, {20, 0.3, -0.4}, {0, 40, 3}}) {
+    Planner planner = testing::sliding_planner();
+    for (int i = 0; i < 40; ++i) {
+      maps::Pose pose{5 + 0.05 * i, 0, 0};  // 2 m/s
+      if (i >= 20) pose = {pose.x + jump.x, jump.y, jump.yaw};
+      const PlannerOutput& out = planner.update({.scan = lane.view(), .odometry = {pose, 2}});
+      if (out.status != PlannerStatus::ok && out.status != PlannerStatus::fallback_plan) {
+        EXPECT_LT(out.command.speed, 2);
+        continue;
+      }
+      ++planned;
+      for (const PredictedState& state : out.predicted)
+        for (const maps::Point corner : {maps::Point{0.461, 0.155}, {0.461, -0.155}, {-0.119, 0.155}})
+          EXPECT_LT(std::abs(maps::transform(state.local, corner).y), 0.8) << jump.y << " update " << i;
+    }
+  }
+  EXPECT_GT(planned, 80);
 }
 
 TEST(PlannerCheck, EveryCommandIsValidForAnyInput) {

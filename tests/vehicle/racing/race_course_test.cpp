@@ -210,7 +210,10 @@ TEST(RaceCourse, MakesTheMapOfACorridor) {
 TEST(RaceCourse, SizesThatFollowFromLengthsHaveLimits) {
   const auto makes = [](const Corridor& corridor) { return message_of([&] { race_course(corridor, {}); }); };
   EXPECT_EQ(makes(testing::circle(5, 1000)),
-            "corridor: walls 1000 m from the centre line cannot be drawn; they must be nearer to it");
+            "corridor: walls 1000 m from the centre line; must be at most 33 m from it, to be drawn");
+  EXPECT_NO_THROW(draw_corridor(testing::circle(5, 33), 0.0496, 0.1984));
+  EXPECT_NE(makes(testing::circle(3000, 1)).find("corridor: 2 m wide; must be at least 3 m"),
+            std::string::npos);
   // 20 km around, 20 m wide: the cells of its map are larger.
   const auto map = draw_corridor(testing::circle(3000, 10), 0.05, 0.2);
   EXPECT_LT(map.cells.size(), 2.6e7);
@@ -306,6 +309,15 @@ TEST(RaceCourse, SaysWhereTheWallsOfACentreLineCross) {
   };
   EXPECT_NO_THROW(corridor(0.55));
   expect_error_with<std::invalid_argument>({"walls cross", "(0.", "1.2"}, [&] { corridor(1.1); });
+}
+
+TEST(RaceCourse, ALineThatTurnsBackOnItselfIsNoCourse) {
+  std::vector<maps::Point> line;
+  for (int i = 0; i < 200; ++i) line.push_back({0.1 * std::abs(i - 100), 0});
+  const std::vector<double> widths(line.size(), 1);
+  for (const bool closed : {false, true})
+    expect_error_with<std::invalid_argument>(
+        {"walls cross"}, [&] { check_walls(corridor_from_widths(line, widths, widths, closed, 0.15)); });
 }
 
 TEST_F(RaceCourseFile, SaysWhatIsWrongInACentreLine) {

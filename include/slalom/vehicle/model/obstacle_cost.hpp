@@ -76,7 +76,12 @@ class ObstacleCost {
     return slalom::look_up(obstacles_, x, y);
   }
 
+  /// Whether the body collides at `from`, or on a straight way from there to `to` (map frame) on which it
+  /// turns evenly, the shorter way round, but for its end.
+  bool collides_before(const maps::Pose& from, const maps::Pose& to) const noexcept;
+
  private:
+  double room(double x, double y, double yaw) const noexcept;
   /// The least clearance of the discs' centres, m.
   template <class T>
   SLALOM_INLINE T min_clearance(const T& x, const T& y, const T& heading_x, const T& heading_y) const {
