@@ -1,7 +1,9 @@
 #include "navigation/base_model.hpp"
 
+#include <algorithm>
 #include <vector>
 
+#include "navigation/navigation_evaluator.hpp"
 #include "slalom/solvers/controller.hpp"
 
 namespace slalom::navigation::detail {
@@ -13,20 +15,24 @@ class BaseModelOf final : public BaseModel {
  public:
   BaseModelOf(const NavigatorOptions& options, const Footprint& footprint, double resolution,
               const SolverOptions& solver)
-      : base_(options.base),
-        controller_(
-            NavigationProblem<Base>(options.base, options.costs, footprint, resolution, options.time_step),
-            solver),
+      : controller_(NavigationEvaluator<Base>(NavigationProblem<Base>(options.base, options.costs, footprint,
+                                                                      resolution, options.time_step)),
+                    solver),
         plan_(static_cast<std::size_t>(controller_.solver().horizon()) + 1) {}
   std::unique_ptr<BaseModel> clone() const override { return std::make_unique<BaseModelOf>(*this); }
 
   void solve(const NavigationMaps& maps, const maps::Pose& pose, const Velocity& velocity,
              double elapsed) noexcept override {
-    controller_.problem().set_maps(maps);
-    controller_.set_previous_input(Base::input(velocity));
-    const auto plan = controller_.solve(
-        {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress}, {.elapsed = elapsed});
-    const Motion<double> motion = base_.template motion<double>(plan.inputs[0]);
+    controller_.evaluator().set_maps(maps);
+    Input<double, Base::inputs> before = Base::input(velocity);
+    for (int i = 0; i < Base::inputs; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      before[i] = std::clamp(before[i], controller_.bounds().low[at], controller_.bounds().high[at]);
+    }
+    const auto plan =
+        controller_.solve({pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, before},
+                          {.elapsed = elapsed});
+    const Motion<double> motion = controller_.problem().motion(plan.states[1].before);
     command_ = {motion.forward, motion.left, motion.turn};
     for (std::size_t i = 0; i < plan_.size(); ++i)
       plan_[i] = {plan.states[i].x + maps.origin.x, plan.states[i].y + maps.origin.y, plan.states[i].yaw};
@@ -34,10 +40,10 @@ class BaseModelOf final : public BaseModel {
   const Velocity& command() const noexcept override { return command_; }
   std::span<const maps::Pose> plan() const noexcept override { return plan_; }
   void reset(std::uint64_t seed) noexcept override { controller_.reset(seed); }
+  void set_cost(StateCost cost) noexcept override { controller_.evaluator().set_cost(std::move(cost)); }
 
  private:
-  Base base_;
-  Controller<NavigationProblem<Base>> controller_;
+  Controller<NavigationEvaluator<Base>> controller_;
   Velocity command_;
   std::vector<maps::Pose> plan_;
 };

@@ -21,6 +21,7 @@ class BaseModel {
   virtual const Velocity& command() const noexcept = 0;
   virtual std::span<const maps::Pose> plan() const noexcept = 0;
   virtual void reset(std::uint64_t seed) noexcept = 0;
+  virtual void set_cost(StateCost cost) noexcept = 0;
 };
 
 /// For the base of the options. Throws std::invalid_argument as Controller does.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "navigation/base_model.hpp"
 #include "navigation/command_delay.hpp"
@@ -28,26 +29,31 @@ bool plausible(const Velocity& v) {
          std::abs(v.turn) <= Velocity::largest;
 }
 
+/// The time (s) in which a robot brakes to 0, on a straight line.
+double braking_time(const Velocity& v, const BaseOptions& base) {
+  const auto [forward, sideways, turning] = axis_limits(base);
+  return std::max(std::abs(v.forward) / forward.deceleration, std::abs(v.left) / sideways.deceleration);
+}
+
 /// The velocity after braking for a while (s).
 Velocity braked(const Velocity& v, const BaseOptions& base, double period) {
-  const double speed = std::hypot(v.forward, v.left);
-  const double kept = speed > 0 ? std::max(1 - base.max_acceleration * period / speed, 0.0) : 0;
-  const double turn = std::max(std::abs(v.turn) - base.max_turn_acceleration * period, 0.0);
+  const double time = braking_time(v, base), kept = time > 0 ? std::max(1 - period / time, 0.0) : 0;
+  const double turn = std::max(std::abs(v.turn) - axis_limits(base)[2].deceleration * period, 0.0);
   return {kept * v.forward, kept * v.left, std::copysign(turn, v.turn)};
 }
 
 /// The last step of an update: makes the command finite and moves it into the limits of the base. Counts the
-/// changed values in `corrections`.
+/// changed values in `corrections`. Commands in a dead band are 0.
 void check_result(NavigationResult& result, const BaseOptions& base) noexcept {
-  const auto check = [&](double& value, double least, double most) {
+  const auto check = [&](double& value, double least, double most, double dead_band) {
     const double valid = std::clamp(std::isfinite(value) ? value : 0.0, least, most);
     result.corrections += valid != value;
-    value = valid;
+    value = std::abs(valid) < dead_band ? 0 : valid;
   };
   const double sideways = base.kind == BaseKind::omnidirectional ? base.max_sideways : 0;
-  check(result.command.forward, -base.max_reverse, base.max_forward);
-  check(result.command.left, -sideways, sideways);
-  check(result.command.turn, -base.max_turn, base.max_turn);
+  check(result.command.forward, -base.max_reverse, base.max_forward, base.dead_band_forward);
+  check(result.command.left, -sideways, sideways, base.dead_band_sideways);
+  check(result.command.turn, -base.max_turn, base.max_turn, base.dead_band_turn);
 }
 
 }  // namespace
@@ -73,6 +79,7 @@ class Navigator::Implementation {
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                           double elapsed, std::span<const maps::PredictedObstacle> others) noexcept;
   void reset(std::uint64_t seed) noexcept;
+  void set_cost(StateCost cost) noexcept { model_->set_cost(std::move(cost)); }
   /// Takes a decision, and returns the command to send.
   Velocity send(const Velocity& decision) noexcept { return command_ = delay_.send(decision); }
   double delay() const noexcept { return delay_.longest(); }
@@ -142,8 +149,7 @@ double Navigator::Implementation::room_at(const Costmap& costmap, const maps::Po
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
-  const double speed = std::hypot(velocity.forward, velocity.left);
-  const double braking = speed / (options_.base.max_acceleration * options_.time_step);
+  const double braking = braking_time(velocity, options_.base) / options_.time_step;
   const std::size_t last = std::min(
       plan.size() - 1, saturate_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
   if (others_.meet(plan, last)) return true;
@@ -260,6 +266,10 @@ NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& veloc
   result.command = implementation_->send(result.command);
   result.delay = implementation_->delay();
   return result;
+}
+
+void Navigator::set_cost(StateCost cost) noexcept {
+  implementation_->set_cost(std::move(cost));
 }
 
 void Navigator::reset(std::uint64_t seed) noexcept {

@@ -182,7 +182,7 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
   }
   // A costmap that moves with the robot may show the end of the closed place once the robot is nearer.
   const BaseOptions& base = options_.base;
-  const double braking = base.max_forward * base.max_forward / (2 * base.max_acceleration);
+  const double braking = base.max_forward * base.max_forward / (2 * axis_limits(base)[0].deceleration);
   if (ahead(costmap).opens_off_the_map(closed, nearest_unseen + braking)) {
     without_way_ = least_period;
     return true;

@@ -99,7 +99,7 @@ TEST(MppiImport, TakesMotionModelsThatArePlugins) {
   expect_words(import("      motion_model: omni\n      omni: {plugin: \"mppi::OmniMotionModel\"}\n"
                       "      ax_max: 3.0\n      ay_max: 1.0\n")
                    .yaml,
-               {"\n  motion_model: Omni\n", "\n  ax_max: 1.0\n"});
+               {"\n  motion_model: Omni\n", "\n  ax_max: 3.0\n", "\n  ay_max: 1.0\n"});
   expect_error_with<std::runtime_error>({"params.yaml:7:", "m.plugin", "must be one of mppi::DiffDrive"}, [] {
     import("      motion_model: m\n      m: {plugin: \"my::Model\"}\n");
   });
@@ -114,15 +114,27 @@ TEST(MppiImport, KeepsARobotThatDoesNotTurn) {
   }
 }
 
-TEST(MppiImport, TakesTheLeastAcceleration) {
-  const MppiImport least = import("      ax_max: 3.0\n      ax_min: -2.0\n      ay_max: 1.0\n");
-  expect_words(least.report, {"ax_max: 3.0: dropped", "ax_min: -2.0: changed to ax_max: 2 (one limit",
-                              "ay_max: 1.0: dropped"});  // the base cannot drive sideways
-  expect_words(least.yaml, {"\n  ax_max: 2.0\n"});
-  expect_words(
-      import("      ax_max: 3.0\n      ay_max: 1.0\n      motion_model: Omni\n      ay_min: -4.0\n").yaml,
-      {"\n  ax_max: 1.0\n"});
-  expect_words(import("      ax_max: 3.0\n      ax_min: -3.0\n").report, {"ax_max: 3.0: taken"});
+TEST(MppiImport, TakesTheLimitsOfEachAxisAndDeadBands) {
+  const MppiImport imported = import(R"(
+      motion_model: Omni
+      ax_max: 3.0
+      ax_min: -2.5
+      ay_max: 1
+      ay_min: -1.5
+      VelocityDeadbandCritic:
+        deadband_velocities: [0.05, 0.06, 0.1]
+        cost_weight: 35.0
+)");
+  expect_words(imported.report, {"ax_max: 3.0: taken", "ay_max: 1: taken",
+                                 "ax_min: -2.5: changed to max_deceleration: 2.5 (the name here)",
+                                 "deadband_velocities: a list: changed to dead_band_forward, dead_band_sid",
+                                 "VelocityDeadbandCritic.cost_weight: 35.0: dropped"});
+  expect_words(imported.yaml, {"\n  ax_max: 3.0\n", "\n  max_deceleration: 2.5\n", "\n  ay_max: 1.0\n",
+                               "\n  max_sideways_deceleration: 1.5\n", "\n  dead_band_forward: 0.05\n",
+                               "\n  dead_band_sideways: 0.06\n", "\n  dead_band_turn: 0.1\n"});
+  expect_error_with<std::runtime_error>({"params.yaml:6:", "deadband_velocities", "a list of 3 numbers"}, [] {
+    import("      VelocityDeadbandCritic: {deadband_velocities: [0.1]}\n");
+  });
 }
 
 TEST(MppiImport, NamesWhatItDropsAndWhatItDoesNotKnow) {

@@ -1,80 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <deque>
-#include <numbers>
-#include <optional>
-#include <vector>
+#include "navigation/drive.hpp"
 
-#include "navigation/grids.hpp"
-#include "slalom/navigation/navigator.hpp"
-
-/// Goals, cusps and corners: whole drives of a robot that moves as it is told.
+/// Goals, cusps and corners.
 namespace slalom::navigation {
 namespace {
-
-constexpr double period = 0.05;  // s
-constexpr double pi = std::numbers::pi;
-
-/// A room of 10 x 6 m with its corner at the origin.
-struct Drive {
-  explicit Drive(BaseKind kind, double half_length = 0.35, double width = 0.5)
-      : body(Footprint::rectangle(half_length, half_length, width)) {
-    options.base.kind = kind;
-    options.base.min_turning_radius = 0.4;
-    costmap.update(grid);
-    navigator.emplace(body, options, costmap);
-  }
-  void start(const maps::Pose& from, const std::vector<maps::Pose>& to, std::uint64_t seed = 1) {
-    pose = from;
-    path = to;
-    navigator->reset(seed);
-    navigator->set_path(path);
-  }
-  NavigationStatus step() {
-    const NavigationResult result =
-        navigator->update(pose, told_zero ? Velocity{} : velocity, costmap, period);
-    turn_changes.push_back(result.command.turn - velocity.turn);
-    on_their_way.push_back(result.command);
-    if (static_cast<int>(on_their_way.size()) > delay_periods) {
-      velocity = on_their_way.front();
-      on_their_way.pop_front();
-    }
-    const double yaw = pose.yaw + 0.5 * period * velocity.turn, c = std::cos(yaw), s = std::sin(yaw);
-    pose = {pose.x + period * (c * velocity.forward - s * velocity.left),
-            pose.y + period * (s * velocity.forward + c * velocity.left), pose.yaw + period * velocity.turn};
-    collided = collided || costmap.collides(body, pose);
-    const int now = velocity.forward > 0.03 ? 1 : velocity.forward < -0.03 ? -1 : 0;
-    reversals += now != 0 && last_direction != 0 && now != last_direction;
-    if (now != 0) last_direction = now;
-    remaining = result.remaining;
-    delay = result.delay;
-    return result.status;
-  }
-  /// Drives until the goal is reached or for so long (s).
-  NavigationStatus drive(double duration) {
-    NavigationStatus status = NavigationStatus::following;
-    for (time = 0; time < duration && status != NavigationStatus::goal_reached; time += period)
-      status = step();
-    return status;
-  }
-  double goal_distance() const { return std::hypot(pose.x - path.back().x, pose.y - path.back().y); }
-
-  Footprint body;
-  NavigatorOptions options;
-  maps::OccupancyGrid grid = free_grid(0, 0, 10, 6);
-  Costmap costmap{grid.width, grid.height, grid.resolution};
-  std::optional<Navigator> navigator;
-  std::vector<maps::Pose> path;
-  maps::Pose pose;
-  Velocity velocity;
-  bool collided = false, told_zero = false;
-  int reversals = 0, last_direction = 0;
-  std::vector<double> turn_changes;
-  int delay_periods = 0;
-  std::deque<Velocity> on_their_way;  ///< commands that have not taken effect yet
-  double time = 0, remaining = 0, delay = 0;
-};
 
 TEST(LastMetre, EveryBaseReachesEveryHeading) {
   for (const BaseKind kind : {BaseKind::differential, BaseKind::omnidirectional, BaseKind::ackermann})
@@ -215,7 +145,7 @@ TEST(LastMetre, ADelayThatIsToldCostsItsDurationAndLittleMore) {
   for (const int periods : {0, 10}) {
     Drive drive(BaseKind::differential);
     drive.delay_periods = periods;
-    drive.options.base.delay_forward = drive.options.base.delay_turn = periods * period;
+    drive.options.base.delay_forward = drive.options.base.delay_turn = periods * drive_period;
     drive.navigator.emplace(drive.body, drive.options, drive.costmap);
     drive.start({1, 3, 0}, {{1, 3, 0}, {6, 3, 0}});
     EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached);
@@ -231,7 +161,7 @@ TEST(LastMetre, ADelayThatIsNotToldIsEstimated) {
     drive.delay_periods = periods;
     drive.start({1, 3, 0.3}, {{1, 3, 0}, {9, 3, 0}});
     EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached);
-    EXPECT_NEAR(drive.delay, periods * period, 0.051);
+    EXPECT_NEAR(drive.delay, periods * drive_period, 0.051);
     EXPECT_EQ(drive.reversals, 0) << periods;
   }
 }

@@ -1,4 +1,7 @@
+#include <exception>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "driving.hpp"
 #include "slalom/navigation/navigator.hpp"
@@ -90,35 +93,80 @@ void bind_costmap(py::module_& module) {
       "The cheapest path [n, 3] between two poses (x, y, yaw); no rows if there is none.");
 }
 
+/// A term of the cost that is a function in Python.
+struct PythonCost {
+  py::function function;
+  std::exception_ptr error{};  ///< of the last call
+
+  void add(const navigation::RolloutStates& states, std::span<double> costs) noexcept {
+    const py::gil_scoped_acquire lock;
+    if (error) return;
+    const auto array = [](std::span<const double> values) {
+      return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+    };
+    try {
+      const Numbers term =
+          function(array(states.x), array(states.y), array(states.yaw), array(states.forward),
+                   array(states.left), array(states.turn), states.step);
+      const auto count = static_cast<py::ssize_t>(costs.size());
+      if (term.size() != 1 && (term.ndim() != 1 || term.size() != count))
+        throw py::value_error("Navigator.set_cost: the function returned shape " + shape_text(term) +
+                              ", must return one number, or shape (" + std::to_string(count) + ",)");
+      for (py::ssize_t i = 0; i < count; ++i)
+        costs[static_cast<std::size_t>(i)] += term.data()[term.size() == 1 ? 0 : i];
+    } catch (...) {
+      error = std::current_exception();
+    }
+  }
+};
+
+/// A navigator that keeps its cost's errors.
+struct PythonNavigator : Navigator {
+  using Navigator::Navigator;
+  void set_term(const py::object& function) {
+    cost = function.is_none() ? nullptr : std::make_shared<PythonCost>(PythonCost{py::function(function)});
+    if (cost)
+      set_cost([term = cost](const auto& states, std::span<double> costs) { term->add(states, costs); });
+    else
+      set_cost({});
+  }
+  void check_term() const {
+    if (cost && cost->error) std::rethrow_exception(std::exchange(cost->error, nullptr));
+  }
+  std::shared_ptr<PythonCost> cost;
+};
+
 void bind_navigator(py::module_& module) {
   const std::string words =
       "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
       "with "
       "the options of `solver`. Other options:\n\n" +
       options_text(navigation::NavigatorOptions{});
-  py::class_<Navigator>(module, "Navigator", words.c_str())
+  py::class_<PythonNavigator>(module, "Navigator", words.c_str())
       .def(py::init([](const Footprint& footprint, const Costmap& costmap, const std::string& method,
                        const py::dict& solver, const py::kwargs& options) {
              navigation::NavigatorOptions set;
              set_from_keywords(set, options, "Navigator");
              SolverOptions of_solver = navigation::method_options(method, set.base);
              set_from_keywords(of_solver, py::reinterpret_borrow<py::kwargs>(solver), method);
-             return Navigator(footprint, set, of_solver, costmap);
+             return PythonNavigator(footprint, set, of_solver, costmap);
            }),
            py::arg("footprint"), py::arg("costmap"), py::kw_only(), py::arg("method") = "svg_mppi",
            py::arg("solver") = py::dict())
       .def(
-          "set_path", [](Navigator& self, const Numbers& path) { self.set_path(poses_of(path, "path", 3)); },
+          "set_path",
+          [](PythonNavigator& self, const Numbers& path) { self.set_path(poses_of(path, "path", 3)); },
           py::arg("path"), "Follows a path [n, 3] from near the robot to the goal (docs/navigation.md).")
       .def(
           "update",
-          [](Navigator& self, const std::array<double, 3>& pose, const std::array<double, 3>& velocity,
+          [](PythonNavigator& self, const std::array<double, 3>& pose, const std::array<double, 3>& velocity,
              const Costmap& costmap, double elapsed) {
             navigation::NavigationResult result;
             {
               const py::gil_scoped_release unlock;
               result = self.update(to_pose(pose), {velocity[0], velocity[1], velocity[2]}, costmap, elapsed);
             }
+            self.check_term();
             const navigation::Velocity& command = result.command;
             return py::dict("status"_a = navigation::name(result.status),
                             "command"_a = py::make_tuple(command.forward, command.left, command.turn),
@@ -129,8 +177,14 @@ void bind_navigator(py::module_& module) {
           "The command for the next control period, `elapsed` (s) after the last update. `velocity` is that "
           "of the robot: forward, left (m/s), turn (rad/s). Returns status, command (as velocity), remaining "
           "(m of path), delay (s), plan [n, 3] and path [n, 3].")
-      .def("reset", &Navigator::reset, py::arg("seed") = 0,
-           "Forgets the path, and starts the random numbers from `seed`.");
+      .def("set_cost", &PythonNavigator::set_term, py::arg("function"),
+           "Adds a term of your own to the cost of plans: function(x, y, yaw, forward, left, turn, step) "
+           "takes "
+           "arrays [n] of the states of rollouts at a step, and returns their costs per second [n]. None "
+           "removes it. `update` raises what the function raises.")
+      .def(
+          "reset", [](PythonNavigator& self, std::uint64_t seed) { self.reset(seed); }, py::arg("seed") = 0,
+          "Forgets the path, and starts the random numbers from `seed`.");
 }
 
 }  // namespace

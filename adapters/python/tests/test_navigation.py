@@ -11,9 +11,10 @@ def room():
     return slalom.OccupancyGrid(cells, 0.1)
 
 
-def drive(seed):
+def drive(seed, cost=None):
     costmap, body = slalom.Costmap(room()), slalom.Footprint.rectangle(0.3, 0.3, 0.4)
     navigator = slalom.Navigator(body, costmap, max_forward=0.8, solver={"samples": 500})
+    navigator.set_cost(cost)
     navigator.reset(seed)
     pose, velocity, trace = np.array([1.0, 3.0, 0.0]), (0.0, 0.0, 0.0), []
     path = slalom.plan_path(costmap, body, pose, (9, 3, 1))
@@ -35,6 +36,30 @@ def drive(seed):
 
 def test_a_robot_drives_round_a_block_to_its_goal_and_repeats():
     assert np.array_equal(drive(1), drive(1))
+
+
+def test_a_cost_of_ones_own_slows_the_robot():
+    steps = set()
+
+    def slow(x, y, yaw, forward, left, turn, step):
+        steps.add(step)
+        assert x.shape == y.shape == yaw.shape == left.shape == turn.shape
+        return np.where(x > 7, 30 * np.maximum(forward - 0.3, 0), 0)
+
+    def speed(trace):
+        steps = np.linalg.norm(np.diff(trace[:, :2], axis=0), axis=1)
+        return np.max(steps[(trace[1:, 0] > 7.2) & (trace[1:, 0] < 8)]) / 0.05
+
+    assert speed(drive(1)) > 0.7 and speed(drive(1, slow)) < 0.4
+    assert steps == set(range(56))
+
+
+def test_errors_of_a_cost_reach_the_caller():
+    for function, error, words in [(lambda *_: np.zeros(3), ValueError, "must return one number, or shape"),
+                                   (lambda *_: 1 / 0, ZeroDivisionError, "division")]:
+        with pytest.raises(error, match=words):
+            drive(1, function)
+    assert np.array_equal(drive(1), drive(1, lambda *_: 0))
 
 
 def test_paths_avoid_cells_with_a_price():

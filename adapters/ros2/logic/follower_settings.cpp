@@ -24,6 +24,7 @@ constexpr std::array renamed_options{Renamed{"base", nullptr},         // motion
                                      Renamed{"max_sideways", "vy_max"},
                                      Renamed{"max_turn", "wz_max"},
                                      Renamed{"max_acceleration", "ax_max"},
+                                     Renamed{"max_sideways_acceleration", "ay_max"},
                                      Renamed{"max_turn_acceleration", "az_max"},
                                      Renamed{"min_turning_radius", "AckermannConstraints.min_turning_r"},
                                      Renamed{"time_step", "model_dt"}};

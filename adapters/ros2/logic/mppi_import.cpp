@@ -30,6 +30,8 @@ constexpr std::array taken{"time_steps",
                            "vx_max",
                            "vx_min",
                            "vy_max",
+                           "ax_max",
+                           "ay_max",
                            "wz_max",
                            "az_max",
                            "vx_std",
@@ -54,16 +56,16 @@ constexpr std::array renamed{std::pair{"GoalAngleCritic.threshold_to_consider", 
                              std::pair{"model_delay_vy", "delay_sideways"},
                              std::pair{"model_delay_wz", "delay_turn"}};
 
+/// Limits of braking, which are negative there, and their names here.
+constexpr std::array braking{std::pair{"ax_min", "max_deceleration"},
+                             std::pair{"ay_min", "max_sideways_deceleration"}};
+
 /// A parameter that has no meaning here, and the reason; with a dot at its end, a section of such parameters.
 struct Dropped {
   const char* key;
   const char* why;
 };
 constexpr std::array dropped{
-    Dropped{"ax_max", "one limit holds in all directions: ax_max, the least of these"},
-    Dropped{"ax_min", "one limit holds in all directions: ax_max, the least of these"},
-    Dropped{"ay_max", "one limit holds in all directions: ax_max, the least of these for an Omni base"},
-    Dropped{"ay_min", "one limit holds in all directions: ax_max, the least of these for an Omni base"},
     Dropped{"iteration_count", "there is one solve in a period; svg_mppi.guide_iterations moves its guides"},
     Dropped{"gamma", "the weights have no control cost; svg_mppi.control_cost_discount would add it"},
     Dropped{"retry_attempt_limit", "patience is the time that there may be no way"},
@@ -97,8 +99,18 @@ constexpr std::array dropped{
     Dropped{"PathAngleCritic.", "the cost has another scale: costs.heading"},
     Dropped{"PreferForwardCritic.", "the cost has another scale: costs.reverse"},
     Dropped{"TwirlingCritic.", "the cost has another scale: costs.turning"},
-    Dropped{"VelocityDeadbandCritic.", "there is no term for slow motion"},
+    Dropped{"VelocityDeadbandCritic.", "commands keep out of the dead bands: dead_band_forward"},
 };
+
+constexpr const char* dead_bands = "VelocityDeadbandCritic.deadband_velocities";
+
+/// The name here of a key; null if the table has none.
+template <class Table>
+const char* other_name(const Table& table, const std::string& key) {
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const auto& each) { return key == each.first; });
+  return found == table.end() ? nullptr : found->second;
+}
 
 /// The fate of a key that is not taken.
 std::string fate_of(const std::string& key) {
@@ -132,13 +144,12 @@ class Section {
   }
 
   void import(MppiImport& to) {
-    const Given* const acceleration = least_acceleration();
     for (const Given& given : given_) {
       std::string fate;
-      if (&given == acceleration)
-        fate = take(given, "ax_max",
-                    given.key == "ax_max" ? text_of(given) : to_text(std::abs(number_of(given))),
-                    "one limit holds in all directions, the least");
+      if (const char* const limit = other_name(braking, given.key))
+        fate = take(given, limit, to_text(std::abs(number_of(given))), "the name here");
+      else if (given.key == dead_bands)
+        fate = take_dead_bands(given);
       else if (given.key == "plugin")
         fate = "changed to plugin: slalom_nav2::Controller";
       else if (given.key == "temperature")
@@ -154,10 +165,8 @@ class Section {
         fate = take(given, "wz_max", "0", "the robot does not turn");
       else if (given.key == "wz_max" && no_turn_sampled())
         fate = "dropped (wz_std: 0 counts)";
-      else if (const auto* const other = std::find_if(
-                   renamed.begin(), renamed.end(), [&](const auto& each) { return given.key == each.first; });
-               other != renamed.end())
-        fate = take(given, other->second, text_of(given), "the name here");
+      else if (const char* const other = other_name(renamed, given.key))
+        fate = take(given, other, text_of(given), "the name here");
       else if (std::find(taken.begin(), taken.end(), given.key) != taken.end())
         fate = take(given, given.key, text_of(given), "");
       else
@@ -243,16 +252,14 @@ class Section {
     return given && number_of(*given) == 0;
   }
 
-  /// The key with the limit of the acceleration; null if there is none. One limit holds in all directions, so
-  /// it is the least one.
-  const Given* least_acceleration() const {
-    const bool omni = model() == "Omni";
-    const Given* least = nullptr;
-    for (const char* key : {"ax_max", "ax_min", "ay_max", "ay_min"}) {
-      const Given* const given = key[1] == 'x' || omni ? find(key) : nullptr;
-      if (given && (!least || std::abs(number_of(*given)) < std::abs(number_of(*least)))) least = given;
-    }
-    return least;
+  /// Takes the dead bands of the speeds forward, to the left and turning.
+  std::string take_dead_bands(const Given& given) {
+    constexpr std::array names{"dead_band_forward", "dead_band_sideways", "dead_band_turn"};
+    if (!given.value.IsSequence() || given.value.size() != names.size())
+      refuse(given, "must be a list of 3 numbers");
+    for (std::size_t i = 0; i < names.size(); ++i)
+      take({given.key, given.line, given.value[i]}, names[i], given.value[i].Scalar(), "");
+    return "changed to dead_band_forward, dead_band_sideways and dead_band_turn";
   }
 
   /// The temperature here. Costs have another scale, so the ratio to the default is kept.

@@ -37,7 +37,14 @@ struct BaseOptions {
   double max_sideways = 0.5;
   double max_turn = 1.9;
   double max_acceleration = 2.5;
+  double max_deceleration = 0;
+  double max_sideways_acceleration = 0;
+  double max_sideways_deceleration = 0;
   double max_turn_acceleration = 3.2;
+  double max_turn_deceleration = 0;
+  double dead_band_forward = 0;
+  double dead_band_sideways = 0;
+  double dead_band_turn = 0;
   double min_turning_radius = 0.2;
   double delay_forward = 0;
   double delay_sideways = 0;
@@ -53,10 +60,23 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.max_sideways,
         {"max_sideways", "m/s", "largest speed to either side of an omnidirectional base", 0, 20});
   visit(o.max_turn, {"max_turn", "rad/s", "largest yaw rate; 0: the robot keeps its heading", 0, 20});
-  visit(o.max_acceleration, {"max_acceleration", "m/s^2",
-                             "largest change of a speed in each direction, also for braking", 0.01, 100});
+  visit(o.max_acceleration,
+        {"max_acceleration", "m/s^2", "largest acceleration forward, and in reverse", 0.01, 100});
+  visit(o.max_deceleration, {"max_deceleration", "m/s^2", "largest braking; 0: max_acceleration", 0, 100});
+  visit(o.max_sideways_acceleration, {"max_sideways_acceleration", "m/s^2",
+                                      "largest acceleration to either side; 0: max_acceleration", 0, 100});
+  visit(o.max_sideways_deceleration, {"max_sideways_deceleration", "m/s^2",
+                                      "largest braking of a speed to either side; 0: its acceleration, or "
+                                      "max_deceleration if that is 0, too",
+                                      0, 100});
   visit(o.max_turn_acceleration,
-        {"max_turn_acceleration", "rad/s^2", "largest change of the yaw rate", 0.01, 100});
+        {"max_turn_acceleration", "rad/s^2", "largest increase of the yaw rate, to either side", 0.01, 100});
+  visit(o.max_turn_deceleration,
+        {"max_turn_deceleration", "rad/s^2", "largest decrease of it; 0: max_turn_acceleration", 0, 100});
+  visit(o.dead_band_forward,
+        {"dead_band_forward", "m/s", "commands of a speed below which the robot stands", 0, 1});
+  visit(o.dead_band_sideways, {"dead_band_sideways", "m/s", "the same for a speed to either side", 0, 1});
+  visit(o.dead_band_turn, {"dead_band_turn", "rad/s", "the same for a yaw rate", 0, 1});
   visit(o.min_turning_radius,
         {"min_turning_radius", "m", "smallest radius of a circle that an Ackermann base drives", 0.01, 100});
   visit(o.delay_forward,
@@ -69,6 +89,25 @@ void visit_options(Options& o, Visit&& visit) {
 /// Whether a base can turn without driving.
 inline bool turns_on_the_spot(const BaseOptions& base) noexcept {
   return base.kind != BaseKind::ackermann && base.max_turn > 0;
+}
+
+/// The limits of an axis.
+struct AxisLimits {
+  double acceleration, deceleration;  ///< m/s^2 or rad/s^2: away from 0, and towards it
+  double dead_band;                   ///< m/s or rad/s
+};
+/// The limits of the axes forward, sideways and turning.
+inline std::array<AxisLimits, 3> axis_limits(const BaseOptions& base) noexcept {
+  const auto given = [](double value, double otherwise) { return value > 0 ? value : otherwise; };
+  const double braking = given(base.max_deceleration, base.max_acceleration);
+  const double sideways = given(base.max_sideways_acceleration, base.max_acceleration);
+  return {{{base.max_acceleration, braking, base.dead_band_forward},
+           {sideways,
+            given(base.max_sideways_deceleration,
+                  base.max_sideways_acceleration > 0 ? base.max_sideways_acceleration : braking),
+            base.dead_band_sideways},
+           {base.max_turn_acceleration, given(base.max_turn_deceleration, base.max_turn_acceleration),
+            base.dead_band_turn}}};
 }
 
 /// The motion of a step: speeds in the robot's frame.
@@ -89,8 +128,11 @@ struct DifferentialBase {
   }
   /// The input of a motion.
   static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
-  /// Selects the values of the inputs from those of the speeds forward, sideways and turning.
-  static std::array<double, 2> per_input(double forward, double, double turn) { return {forward, turn}; }
+  /// Selects the values of the inputs from those of the axes forward, sideways and turning.
+  template <class Value>
+  static std::array<Value, 2> per_input(const Value& forward, const Value&, const Value& turn) {
+    return {forward, turn};
+  }
 };
 
 /// The inputs of an omnidirectional base: speeds forward and to the left (m/s) and yaw rate (rad/s).
@@ -105,8 +147,9 @@ struct OmnidirectionalBase {
   }
   /// The input of a motion.
   static Input<double, 3> input(const Velocity& v) { return {{v.forward, v.left, v.turn}}; }
-  /// Selects the values of the inputs from those of the speeds forward, sideways and turning.
-  static std::array<double, 3> per_input(double forward, double left, double turn) {
+  /// Selects the values of the inputs from those of the axes forward, sideways and turning.
+  template <class Value>
+  static std::array<Value, 3> per_input(const Value& forward, const Value& left, const Value& turn) {
     return {forward, left, turn};
   }
 };
@@ -125,8 +168,11 @@ struct AckermannBase {
   }
   /// The input of a motion.
   static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
-  /// Selects the values of the inputs from those of the speeds forward, sideways and turning.
-  static std::array<double, 2> per_input(double forward, double, double turn) { return {forward, turn}; }
+  /// Selects the values of the inputs from those of the axes forward, sideways and turning.
+  template <class Value>
+  static std::array<Value, 2> per_input(const Value& forward, const Value&, const Value& turn) {
+    return {forward, turn};
+  }
 
  private:
   Coefficient largest_curvature_;  ///< 1/m

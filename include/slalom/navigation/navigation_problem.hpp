@@ -126,18 +126,18 @@ class NavigationProblem {
   /// State of the dynamics, relative to the origin of the maps.
   template <class T>
   struct State {
-    T x, y, yaw;  ///< m, m, rad
-    T progress;   ///< m along the path in the maps
+    T x, y, yaw;                    ///< m, m, rad
+    T progress;                     ///< m along the path in the maps
+    Input<T, Base::inputs> before;  ///< m/s, rad/s: the input that is driven
   };
   static constexpr int inputs = Base::inputs;  ///< inputs of a step
   /// Names of the terms of the cost of a step.
   static constexpr std::array cost_names{"progress", "path",         "heading",   "clearance",
                                          "motion",   "goal_heading", "collision", "others"};
 
-  double dt;                                  ///< s
-  std::array<double, inputs> input_min;       ///< m/s, rad/s
-  std::array<double, inputs> input_max;       ///< m/s, rad/s
-  std::array<double, inputs> input_rate_max;  ///< m/s^2, rad/s^2
+  double dt;                             ///< s
+  std::array<double, inputs> input_min;  ///< m/s, rad/s
+  std::array<double, inputs> input_max;  ///< m/s, rad/s
 
   /// For a base with these limits and steps of `step` seconds, on costmaps of this resolution (m).
   NavigationProblem(const BaseOptions& limits, const CostOptions& costs, const Footprint& footprint,
@@ -145,14 +145,38 @@ class NavigationProblem {
       : dt(step),
         input_min(Base::per_input(-limits.max_reverse, -limits.max_sideways, -limits.max_turn)),
         input_max(Base::per_input(limits.max_forward, limits.max_sideways, limits.max_turn)),
-        input_rate_max(
-            Base::per_input(limits.max_acceleration, limits.max_acceleration, limits.max_turn_acceleration)),
         base_(limits),
         bodies_{BodyCheck(footprint, resolution), BodyCheck(footprint.without_rim(resolution), resolution)},
         costs_(costs, step),
         step_(step),
         reach_(farthest_projection * step *
-               std::max({limits.max_forward, limits.max_reverse, limits.max_sideways})) {}
+               std::max({limits.max_forward, limits.max_reverse, limits.max_sideways})) {
+    const auto [forward, sideways, turning] = axis_limits(limits);
+    const auto axes = Base::per_input(forward, sideways, turning);
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      axes_[i] = {axes[i].acceleration * step, axes[i].deceleration * step, axes[i].dead_band};
+  }
+
+  /// The input that is driven after `before` if `u` is asked for: it changes within the limits, and what is
+  /// in the dead band is not driven. A robot in the dead band stands, and leaves it at once.
+  template <class T>
+  SLALOM_INLINE_CALLS Input<T, inputs> driven(const Input<T, inputs>& before, Input<T, inputs> u) const {
+    for (int i = 0; i < inputs; ++i) {
+      const Axis& axis = axes_[static_cast<std::size_t>(i)];
+      const T was = before[i], faster = T(axis.faster), slower = T(axis.slower), dead = T(axis.dead_band);
+      const T high = select(was < T(0), min(was + slower, dead + faster), max(was, dead) + faster);
+      const T low =
+          select(was > T(0), max(was - slower, T(0) - dead - faster), min(was, T(0) - dead) - faster);
+      u[i] = clamp(u[i], low, high);
+      u[i] = select(abs(u[i]) < dead, T(0), u[i]);
+    }
+    return u;
+  }
+  /// The motion of an input that is driven.
+  template <class T>
+  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, inputs>& u) const {
+    return base_.motion(u);
+  }
 
   /// Sets the maps of the next rollouts, which the maps and the data of their views must outlive.
   void set_maps(const NavigationMaps& maps) noexcept {
@@ -207,12 +231,14 @@ class NavigationProblem {
   /// State after one step. The progress is that of the projection on the path, found anew from the last one.
   template <class T>
   SLALOM_INLINE_CALLS State<T> step(const State<T>& x, const Seen<T>& seen, const Input<T, inputs>& u) const {
-    const Motion<T> motion = base_.motion(u);
+    const Input<T, inputs> now = driven(x.before, u);
+    const Motion<T> motion = base_.motion(now);
     const T forward = motion.forward * T(step_), left = motion.left * T(step_);
     const T dx = forward * seen.cosine - left * seen.sine, dy = forward * seen.sine + left * seen.cosine;
     const T projected = seen.foot.d + seen.along + dx * seen.path_cosine + dy * seen.path_sine;
     const T progress = clamp(projected, x.progress - T(reach_), x.progress + T(reach_));
-    return {x.x + dx, x.y + dy, x.yaw + motion.turn * T(step_), clamp(progress, T(0), T(window_length_))};
+    return {x.x + dx, x.y + dy, x.yaw + motion.turn * T(step_), clamp(progress, T(0), T(window_length_)),
+            now};
   }
 
   /// Cost of step `k`.
@@ -225,7 +251,7 @@ class NavigationProblem {
     const T heading_error =
         T(1) - T(direction_) * (seen.cosine * seen.path_cosine + seen.sine * seen.path_sine);
     const T turn_left = abs(x.yaw - T(end_yaw_));
-    const Motion<T> motion = base_.motion(u);
+    const Motion<T> motion = base_.motion(driven(x.before, u));
     const T drifting = T(drift_weight_) * (square(motion.forward) + square(motion.left));
     const T moving = drifting + T(costs_.reverse) * max(T(0) - T(direction_) * motion.forward, T(0)) +
                      T(costs_.sideways) * abs(motion.left) + T(turning_weight_) * square(motion.turn) +
@@ -281,7 +307,14 @@ class NavigationProblem {
     return sqrt(square(T(window_length_) - seen.foot.d - seen.along) + square(seen.aside));
   }
 
+  /// Limits of an input.
+  struct Axis {
+    Coefficient faster, slower;  ///< m/s or rad/s, largest change in a step: away from 0, and towards it
+    Coefficient dead_band;       ///< m/s or rad/s
+  };
+
   Base base_;
+  std::array<Axis, static_cast<std::size_t>(inputs)> axes_;
   std::array<BodyCheck, 2> bodies_;  ///< the body, and the one without a rim
   Weights costs_;
   std::size_t body_ = 0;  ///< the one in use

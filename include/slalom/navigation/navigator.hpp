@@ -8,6 +8,7 @@
 #include "slalom/navigation/base.hpp"
 #include "slalom/navigation/cost_options.hpp"
 #include "slalom/navigation/costmap.hpp"
+#include "slalom/navigation/state_cost.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/solver_options.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
@@ -155,6 +156,10 @@ class Navigator {
   /// plans avoid their place at each step, and the costmap should not show them.
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                           double elapsed, std::span<const maps::PredictedObstacle> others = {}) noexcept;
+
+  /// Adds a term of your own to the cost of plans; an empty function removes it. The search for detours and
+  /// the final check do not use it.
+  void set_cost(StateCost cost) noexcept;
 
   /// Forgets the path and all that was learned on it, and restarts the random numbers from `seed`.
   void reset(std::uint64_t seed) noexcept;
