@@ -60,7 +60,7 @@ class RoomWorld {
       : pose(start),
         room_(scenario.room),
         crowd_(room_, varied(scenario.walkers, seed)),
-        late_(static_cast<std::size_t>(std::lround(scenario.delay * parts / room_period))) {
+        late_(saturate_cast<std::size_t>(std::round(scenario.delay * parts / room_period))) {
     room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
   }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "slalom/core/numbers/count.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/ros_map.hpp"
@@ -143,7 +144,7 @@ double complete(std::vector<Waypoint>& points) {
 /// Adds waypoints on the straight way (m) from the last one to the first, at most `step` (m) apart.
 void close_gap(std::vector<Waypoint>& points, double gap, double step) {
   const Waypoint first = points.front(), last = points.back();
-  const int pieces = static_cast<int>(std::ceil(gap / step));
+  const int pieces = saturate_cast<int>(std::ceil(gap / step));
   for (int k = 1; k < pieces; ++k) {
     const double share = static_cast<double>(k) / pieces;
     Waypoint point;
@@ -242,7 +243,7 @@ maps::OccupancyGrid reachable_map(const Course& course) {
   std::vector<char> reached(free.regions().size(), 0);
   for (const Waypoint& point : course.waypoints) {
     const maps::Point cell = in_cells(map, {point.x, point.y});
-    const int column = static_cast<int>(std::floor(cell.x)), row = static_cast<int>(std::floor(cell.y));
+    const int column = saturate_cast<int>(std::floor(cell.x)), row = saturate_cast<int>(std::floor(cell.y));
     if (!map.contains(column, row)) continue;
     if (const int region = free.at(column, row); region >= 0) reached[static_cast<std::size_t>(region)] = 1;
   }
