@@ -92,6 +92,7 @@ std::vector<RoomScenario> barn_scenarios(const std::filesystem::path& folder, in
     made.base.delay_forward = made.base.delay_turn = made.lag = 0.15;
     made.robot_length = 0.508;
     made.robot_width = 0.43;
+    made.padding = 0.03;
     made.beams = 960;
     made.view = 1.5 * std::numbers::pi;
     made.goal_reach = 1;

@@ -52,7 +52,8 @@ struct RoomScenario {
   double lag = 0;                      ///< s, time constant with which the robot follows a command
   double robot_length = 0.7;           ///< m; the robot's origin is in its middle
   double robot_width = 0.5;            ///< m
-  int beams = 240;                     ///< of a scanner that looks all round
+  double padding = 0;                  ///< m by which the navigator's footprint is larger on each side
+  int beams = 240;                     ///< number of beams of a scanner that looks all round
   double view = 2 * std::numbers::pi;  ///< rad; beams outside of it, behind the robot, see nothing
   double goal_reach = 0;               ///< m from the goal at which a drive ends; 0: where the robot says so
   double optimal_time = 0;             ///< s, of BARN's metric; 0: none
