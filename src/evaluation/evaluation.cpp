@@ -74,7 +74,6 @@ LapSetup lap_setup(const Evaluation& evaluation, int index) {
   settings.obstacles = experiment.obstacles;
   settings.latency = evaluation.latency;
   if (evaluation.hardware) settings.hardware.emplace();
-  settings.additional_costs = evaluation.additional_costs;
   for (const auto& [key, value] : experiment.set)
     if (!set_world_option(settings, key, value))
       vehicle::set_option(setup.driver.configuration, key, value, experiment.method);

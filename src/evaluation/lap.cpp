@@ -127,10 +127,6 @@ void LapDrive::State::measure(const PlannerUpdate& update, const ControlStepCall
   const SequenceCostMeter::Cost cost = meter.planned(output);
   sums.state_cost += cost.state;
   sums.collision_cost += cost.collision;
-  if (setup.settings.additional_costs) {
-    sums.paper_model_cost += meter.paper_model(output).total();
-    sums.driven_cost += meter.present().total();
-  }
   sums.input_error += sum_of_steering(output);
   sums.mean_speed += seen.speed;
   const double path_distance = meter.path_distance();
@@ -192,8 +188,7 @@ void LapDrive::State::conclude() {
   const auto mean = [&](double LapFigures::*figure, int count) {
     if (count > 0) result.*figure = sums.*figure / count;
   };
-  for (const auto figure : {&LapFigures::state_cost, &LapFigures::collision_cost,
-                            &LapFigures::paper_model_cost, &LapFigures::driven_cost, &LapFigures::input_error,
+  for (const auto figure : {&LapFigures::state_cost, &LapFigures::collision_cost, &LapFigures::input_error,
                             &LapFigures::mean_speed, &LapFigures::mean_path_distance})
     mean(figure, result.steps);
   mean(&LapFigures::mean_variance, solves);

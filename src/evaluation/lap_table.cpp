@@ -41,8 +41,6 @@ void visit_columns(Row& r, const std::vector<Experiment>& experiments, Visit&& v
   visit("max_path_distance", r.max_path_distance);
   visit("mean_variance", r.mean_variance);
   visit("mean_effective_samples", r.mean_effective_samples);
-  visit("ms_published_model", r.paper_model_cost);
-  visit("ms_driven", r.driven_cost);
   visit("blocked_steps", r.blocked_steps);
   visit("degenerate_steps", r.degenerate_steps);
   visit("contact_points", r.contact_points);

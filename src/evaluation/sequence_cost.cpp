@@ -58,8 +58,8 @@ struct SequenceCostMeter::Implementation {
   Problem problem{vehicle::published::vehicle_options(), vehicle::published::ModelOptions::published()};
   maps::LocalCostMap cost_map{cost_map_options()};
   maps::ReferenceField field;
-  std::unique_ptr<VehicleModel> own, paper;
-  std::vector<PredictedState> states;
+  std::unique_ptr<VehicleModel> rollout;
+  std::vector<PredictedState> states;  ///< of as many steps as a cost needs
   std::vector<float> inputs;
   maps::Pose robot;
   GridView<1> obstacles;    ///< obstacles of this cost map or of the caller's
@@ -70,12 +70,9 @@ struct SequenceCostMeter::Implementation {
       : path(along.begin(), along.end()),
         model(m),
         field(along, maps::published_reference_field()),
-        own(make_vehicle_model(m)),
-        paper(make_vehicle_model(vehicle::published::vehicle_options())),
-        states(std::max<std::size_t>(
-                   saturate_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9)), steps) +
-               1),
-        inputs((states.size() - 1) * static_cast<std::size_t>(own->inputs())) {}
+        rollout(make_vehicle_model(m)),
+        states(saturate_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9)) + 1),
+        inputs((states.size() - 1) * static_cast<std::size_t>(rollout->inputs())) {}
 
   Cost cost_of(const PredictedState& predicted, bool last) const {
     const auto s = Problem::standing_at(predicted);
@@ -121,35 +118,22 @@ struct SequenceCostMeter::Implementation {
     return sum;
   }
 
-  /// The first `used` inputs of each step of the planner's sequence, at `count` steps `spacing` (s) apart;
-  /// the inputs of the last step are held.
-  std::span<const float> held(const vehicle::PlannerOutput& output, int used, std::size_t count,
-                              double spacing) {
-    const auto width = static_cast<std::size_t>(output.inputs_per_step),
-               taken = static_cast<std::size_t>(used);
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto i = saturate_cast<std::size_t>(static_cast<double>(k) * spacing / model.time_step + 1e-9);
-      const std::size_t step = std::min(i, output.inputs.size() / width - 1);
-      std::copy_n(&output.inputs[step * width], taken, &inputs[k * taken]);
-    }
-    return {inputs.data(), count * taken};
-  }
-
-  /// The states that `rollout` predicts for `sequence`, whose steps last `spacing` (s), from the first state
-  /// of the planner's own prediction.
-  MeasuredStates predict(VehicleModel& rollout, const vehicle::PlannerOutput& output,
-                         std::span<const float> sequence, double spacing) {
+  /// The states of the planner's sequence from the first state of its own prediction on. Its last input is
+  /// held until the sequence is long enough.
+  MeasuredStates predict(const vehicle::PlannerOutput& output) {
     const PredictedState& first = output.predicted.front();
-    const std::size_t count = sequence.size() / static_cast<std::size_t>(rollout.inputs());
-    const std::span<PredictedState> reached(states.data(), count + 1);
+    const auto width = static_cast<std::size_t>(rollout->inputs());
+    for (std::size_t k = 0; k + 1 < states.size(); ++k)
+      std::copy_n(&output.inputs[std::min(k, output.inputs.size() / width - 1) * width], width,
+                  &inputs[k * width]);
     // The states are not known in advance. They are usually close to the planner's own prediction; if not,
     // the prediction is repeated with the whole field.
     make_field(output.predicted, 0.5);
     while (true) {
-      rollout.set_maps({field.view(), obstacles, robot});
-      rollout.set_start({first.pose, first.speed, first.steer}, field.at(first.pose.x, first.pose.y).speed);
-      rollout.predict(sequence, reached);
-      if (covers(reached)) return resampled(reached, spacing);
+      rollout->set_maps({field.view(), obstacles, robot});
+      rollout->set_start({first.pose, first.speed, first.steer}, field.at(first.pose.x, first.pose.y).speed);
+      rollout->predict(inputs, states);
+      if (covers(states)) return resampled(states, model.time_step);
       make_field_everywhere();
     }
   }
@@ -185,17 +169,7 @@ SequenceCostMeter::Cost SequenceCostMeter::planned(const vehicle::PlannerOutput&
   if (output.predicted.empty()) return present();
   const double reached = static_cast<double>(output.predicted.size() - 1) * m.model.time_step;
   if (reached >= steps * time_step - 1e-9) return m.cost_of(resampled(output.predicted, m.model.time_step));
-  const auto count = m.states.size() - 1;
-  const auto needed = saturate_cast<std::size_t>(std::ceil(steps * time_step / m.model.time_step - 1e-9));
-  return m.cost_of(m.predict(*m.own, output,
-                             m.held(output, m.own->inputs(), std::min(needed, count), m.model.time_step),
-                             m.model.time_step));
-}
-
-SequenceCostMeter::Cost SequenceCostMeter::paper_model(const vehicle::PlannerOutput& output) noexcept {
-  Implementation& m = *implementation_;
-  if (output.predicted.empty()) return present();
-  return m.cost_of(m.predict(*m.paper, output, m.held(output, 1, steps, time_step), time_step));
+  return m.cost_of(m.predict(output));
 }
 
 SequenceCostMeter::Cost SequenceCostMeter::present() const noexcept {

@@ -97,10 +97,8 @@ TEST(Lap, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
     for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
       SCOPED_TRACE(std::string(name) + ", " + method);
       const bool whole = method == std::string("svg_mppi");
-      const LapResult lap = run_lap(
-          {whole ? course("wren") : begun, {configuration(name), method}, {.additional_costs = true}}, 0);
+      const LapResult lap = run_lap({whole ? course("wren") : begun, {configuration(name), method}, {}}, 0);
       EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost()));
-      EXPECT_TRUE(std::isfinite(lap.paper_model_cost));
       EXPECT_GT(lap.mean_speed, 0.3);
       if (!whole) continue;
       EXPECT_TRUE(lap.finished);
@@ -150,13 +148,6 @@ TEST(Lap, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluation) {
   EXPECT_TRUE(lap.finished);
   EXPECT_NEAR(gain, 1, 0.05) << "0.85 with a period of 0.025 s";
   EXPECT_LT(speed_error, 0.1);
-}
-
-TEST(Lap, AdditionalCostsAreComparable) {
-  const LapSetup setup{course("wren"), {configuration("published")}, {.additional_costs = true}};
-  const LapResult lap = run_lap(setup, 0);
-  EXPECT_NEAR(lap.paper_model_cost, lap.mean_sequence_cost(), 1e-9);
-  EXPECT_GT(lap.driven_cost, 0);
 }
 
 TEST(Lap, CanBeTimedOutAndCancelled) {

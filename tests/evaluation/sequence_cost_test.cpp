@@ -36,11 +36,11 @@ struct Straight {
 
 const std::vector<float> nothing_near(1080, 30.0f);
 
-SequenceCostMeter::Cost cost(const Straight& straight, bool by_paper_model = false) {
+SequenceCostMeter::Cost cost(const Straight& straight) {
   SequenceCostMeter meter(straight_path(), straight.model);
   meter.observe({.ranges = nothing_near, .angle_min = -2.35, .angle_increment = 4.7 / 1079, .range_max = 30},
                 {0.012, offset, 0});
-  return by_paper_model ? meter.paper_model(straight.output) : meter.planned(straight.output);
+  return meter.planned(straight.output);
 }
 
 TEST(SequenceCost, EqualsTheDistanceOfAStraightLine) {
@@ -57,7 +57,6 @@ TEST(SequenceCost, IsTheSameWhateverStepAndHorizon) {
   EXPECT_NEAR(cost(Straight(0.02, 40)).total(), usual, 1e-9) << "interpolated";
   EXPECT_NEAR(cost(Straight(0.05, 6)).total(), usual, 0.01) << "its last input is held";
   EXPECT_NEAR(cost(Straight(0.1, 3)).total(), usual, 0.01) << "both";
-  EXPECT_NEAR(cost(Straight(0.02, 10), true).total(), usual, 0.01) << "by the published model";
 }
 
 TEST(SequenceCost, WithoutASequenceEqualsTheCostOfThePresentState) {

@@ -134,7 +134,6 @@ void open_evaluation(const std::string& folder, view::SessionOptions& options) {
     loaded.scenario = {.environment = evaluation->environment,
                        .configuration = setup.driver.configuration,
                        .lap = setup.settings};
-    loaded.scenario.lap.additional_costs = false;  // the page does not show them
     return loaded;
   };
   const view::LoadedLap first = options.load_lap(0, 0);

@@ -23,7 +23,6 @@ struct Evaluation {
   std::uint64_t seed0 = 0;              ///< seed of lap 0
   double latency = 0;                   ///< s
   bool hardware = false;                ///< the conditions of a real car, HardwareConditions
-  bool additional_costs = true;         ///< compute the costs of LapSettings::additional_costs
   /// All that determines the results, as JSON text. Laps of evaluations with other settings are not mixed.
   std::string settings;
   std::string build;       ///< identifies the program that drives; laps of other builds may differ

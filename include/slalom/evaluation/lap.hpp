@@ -68,20 +68,17 @@ struct EstimationRecord {
 
 /// The figures of a lap that a results table has, too. Means are over its control steps.
 struct LapFigures {
-  std::uint64_t seed = 0;     ///< seed of the random numbers
-  bool finished = false;      ///< whether the car reached the finish in time
-  bool timeout = false;       ///< whether the lap was stopped at its timeout
-  int collisions = 0;         ///< collisions as the protocol counts them
-  int collided_bodies = 0;    ///< number of different bodies hit, all walls as one
-  bool wall = false;          ///< whether the car hit a wall
-  int impassable = 0;         ///< number of obstacles that block the course (impassable_obstacles)
-  double time = 0;            ///< s, of the lap, or until it was stopped
-  int steps = 0;              ///< control steps
-  double state_cost = 0;      ///< mean cost of distance and yaw error
-  double collision_cost = 0;  ///< mean cost of collisions
-  /// MS (mean_sequence_cost) as predicted with the model of the paper's program; with `additional_costs`.
-  double paper_model_cost = 0;
-  double driven_cost = 0;         ///< MS of the states that the car reached; with `additional_costs`
+  std::uint64_t seed = 0;         ///< seed of the random numbers
+  bool finished = false;          ///< whether the car reached the finish in time
+  bool timeout = false;           ///< whether the lap was stopped at its timeout
+  int collisions = 0;             ///< collisions as the protocol counts them
+  int collided_bodies = 0;        ///< number of different bodies hit, all walls as one
+  bool wall = false;              ///< whether the car hit a wall
+  int impassable = 0;             ///< number of obstacles that block the course (impassable_obstacles)
+  double time = 0;                ///< s, of the lap, or until it was stopped
+  int steps = 0;                  ///< control steps
+  double state_cost = 0;          ///< mean cost of distance and yaw error
+  double collision_cost = 0;      ///< mean cost of collisions
   double input_error = 0;         ///< mean of the sum of |steering| over the control sequence, rad
   double mean_speed = 0;          ///< m/s
   double mean_path_distance = 0;  ///< m, of the rear axle

@@ -51,7 +51,6 @@ struct LapSettings {
   std::optional<std::uint64_t> layout{};  ///< seed of the obstacle placement; default: the lap's
   /// Driver of the `planning_opponents`, with the control period of the car. Null: the driver of the car.
   std::shared_ptr<const Driver> opponent_planner{};
-  bool additional_costs = false;  ///< also compute `paper_model_cost` and `driven_cost` (slower)
 
   // Changes of the world, for Protocol::true_physics only. visit_options declares them, so that evaluations
   // can vary them by name.

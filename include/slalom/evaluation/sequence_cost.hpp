@@ -51,10 +51,6 @@ class SequenceCostMeter {
   /// Only after `observe`.
   Cost planned(const vehicle::PlannerOutput& output) noexcept;
 
-  /// The cost of the states that the model of the paper's program predicts for the steering of that sequence,
-  /// resampled to 0.05 s. Without a sequence: present(). Only after `observe`.
-  Cost paper_model(const vehicle::PlannerOutput& output) noexcept;
-
   /// 15 times the stage cost of the pose given to `observe`. Its mean over a lap is the cost of the driven
   /// trajectory. Only after `observe`.
   Cost present() const noexcept;

@@ -8,19 +8,6 @@
 
 namespace slalom::sim {
 
-/// The meaning of `Command::steer`: an angle, rad, or the rate of the angle, rad/s.
-enum class SteeringInput { angle, rate };
-inline const char* const* enum_names(SteeringInput) {
-  static constexpr const char* names[] = {"angle", "rate", nullptr};
-  return names;
-}
-/// The meaning of `Command::speed`: a speed, m/s, or an acceleration, m/s^2.
-enum class SpeedInput { speed, acceleration };
-inline const char* const* enum_names(SpeedInput) {
-  static constexpr const char* names[] = {"speed", "acceleration", nullptr};
-  return names;
-}
-
 /// The behaviour of a car in a step without a usable command.
 enum class Coast {
   roll,    ///< the wheels keep their angle, no drive and no brake
@@ -54,10 +41,8 @@ double acceleration_towards(const CarParameters& car, const ActuationOptions& op
 
 /// Options of a car with its actuators. `visit_options` below describes the fields.
 struct PlantOptions {
-  DynamicsOptions dynamics;    ///< car dynamics
-  ActuationOptions actuation;  ///< conversion of commands to steering and acceleration
-  SteeringInput steering_input = SteeringInput::angle;
-  SpeedInput speed_input = SpeedInput::speed;
+  DynamicsOptions dynamics;          ///< car dynamics
+  ActuationOptions actuation;        ///< conversion of commands to steering and acceleration
   double steering_dead_time = 0.02;  ///< rounded to whole time steps
   Coast coast = Coast::roll;
   bool gym = false;  ///< as f1tenth_gym: the yaw is brought to [0, 2 pi] by at most one turn per step
@@ -72,8 +57,6 @@ void visit_options(Options& o, Visit&& visit) {
         {"substeps", "", "parts of a step; 0: as many as keep the tyres stable", 0, 1000});
   visit(o.steering_dead_time,
         {"steering_dead_time", "s", "time from a steering command to its effect", 0, 1});
-  visit(o.steering_input, {"steering_input", "", "meaning of the steering command"});
-  visit(o.speed_input, {"speed_input", "", "meaning of the speed command"});
   visit(o.actuation.speed_gain, {"speed_gain", "1/s", "acceleration per error of speed", 1e-9, 1e9});
   visit(o.actuation.brake_gain,
         {"brake_gain", "1/s", "acceleration per error of speed when braking", 1e-9, 1e9});

@@ -79,22 +79,15 @@ void Plant::step(const Command& command) noexcept {
   if (!std::isfinite(command.steer) || !std::isfinite(command.speed)) return coast();
   last_ = command;
   applied_ = delayed(command.steer);
-  DriveInput input{applied_, command.speed};
-  if (options_.steering_input == SteeringInput::angle)
-    input.steer_rate = steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_);
-  if (options_.speed_input == SpeedInput::speed)
-    input.acceleration = acceleration_towards(car_, options_.actuation, state_.speed, command.speed);
-  move(input);
+  move({steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_),
+        acceleration_towards(car_, options_.actuation, state_.speed, command.speed)});
 }
 
 void Plant::coast() noexcept {
   if (options_.coast == Coast::repeat) return step(last_);
   // Commands under way still arrive; after them the wheels stay as they are.
-  const double hold = options_.steering_input == SteeringInput::angle ? state_.steer : 0.0;
-  applied_ = delayed(hold);
-  DriveInput input{applied_, 0};
-  if (options_.steering_input == SteeringInput::angle)
-    input.steer_rate = steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_);
+  applied_ = delayed(state_.steer);
+  DriveInput input{steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_), 0};
   if (options_.coast == Coast::brake)
     input.acceleration =
         std::clamp(-state_.speed / time_step_, -car_.acceleration_max, car_.acceleration_max);
