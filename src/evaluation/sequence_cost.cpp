@@ -59,7 +59,7 @@ struct SequenceCostMeter::Implementation {
   maps::LocalCostMap cost_map{cost_map_options()};
   maps::ReferenceField field;
   std::unique_ptr<VehicleModel> rollout;
-  std::vector<PredictedState> states;  ///< of as many steps as a cost needs
+  std::vector<PredictedState> states;  ///< predicted states, as many as a cost needs
   std::vector<float> inputs;
   maps::Pose robot;
   GridView<1> obstacles;    ///< obstacles of this cost map or of the caller's
