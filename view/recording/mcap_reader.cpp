@@ -103,9 +103,7 @@ class RecordReader {
     if (compression == "zstd") {
       if (size > most_chunk) throw IoError(file_, 0, "has a chunk of more than 1 GiB");
       if (size > most_small_chunk && size / most_ratio > records.size())
-        throw IoError(file_, 0,
-                      "has a chunk of " + std::to_string(size) + " bytes; must be at most " +
-                          std::to_string(most_ratio) + " times its compressed size, or 64 MiB");
+        throw IoError(file_, 0, "has a chunk of more than 64 MiB and 1000 times its compressed size");
       unpacked.resize(size);
       if (ZSTD_decompress(unpacked.data(), size, records.data(), records.size()) != size)
         throw IoError(file_, 0, "is damaged: a chunk cannot be decompressed");
