@@ -39,7 +39,7 @@ MeasuredStates resampled(std::span<const PredictedState> predicted, double spaci
   for (int k = 0; k <= steps; ++k) {
     const double at = k * SequenceCostMeter::time_step / spacing, whole = std::floor(at + 1e-9);
     const double part = std::max(at - whole, 0.0);
-    const auto i = std::min(static_cast<std::size_t>(whole), predicted.size() - 1);
+    const auto i = std::min(saturate_cast<std::size_t>(whole), predicted.size() - 1);
     PredictedState& state = result[static_cast<std::size_t>(k)];
     state = predicted[i];
     if (part < 1e-9 || i + 1 >= predicted.size()) continue;

@@ -25,7 +25,7 @@ Interval percentile_interval(std::vector<double>& values) {
   std::sort(values.begin(), values.end());
   const auto at = [&](double share) {
     const double position = share * static_cast<double>(values.size() - 1);
-    const auto i = static_cast<std::size_t>(position);
+    const auto i = saturate_cast<std::size_t>(position);
     const double fraction = position - static_cast<double>(i);
     return i + 1 < values.size() ? values[i] * (1 - fraction) + values[i + 1] * fraction : values[i];
   };
@@ -265,13 +265,13 @@ double wilcoxon_p(std::span<const double> differences) {
                few = std::min(positive, total - positive);
   if (!ties && n <= 50) {
     // The number of the 2^n choices of signs that give each rank sum.
-    std::vector<double> ways(static_cast<std::size_t>(total) + 1);
+    std::vector<double> ways(saturate_cast<std::size_t>(total) + 1);
     ways[0] = 1;
     for (std::size_t rank = 1; rank <= n; ++rank) {
       for (std::size_t sum = ways.size() - 1; sum >= rank; --sum) ways[sum] += ways[sum - rank];
     }
     double tail = 0;
-    for (std::size_t sum = 0; sum <= static_cast<std::size_t>(few); ++sum) tail += ways[sum];
+    for (std::size_t sum = 0; sum <= saturate_cast<std::size_t>(few); ++sum) tail += ways[sum];
     return std::min(1.0, 2 * std::ldexp(tail, -static_cast<int>(n)));
   }
   const double variance = nd * (nd + 1) * (2 * nd + 1) / 24 - tie_correction / 48;

@@ -14,7 +14,9 @@ namespace {
 
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 32;  // size of a file
 constexpr std::uint64_t most_chunk = std::uint64_t{1} << 30;  // bytes, decompressed
-constexpr std::size_t record_head = 1 + 8;                    // bytes before the content of a record
+/// Bytes of a chunk that may be of any ratio, and the largest ratio of others to their compressed size.
+constexpr std::uint64_t most_small_chunk = std::uint64_t{1} << 26, most_ratio = 1000;
+constexpr std::size_t record_head = 1 + 8;  // bytes before the content of a record
 
 std::string_view text(PayloadReader& from) {
   return from.take(from.get<std::uint32_t>());
@@ -100,6 +102,8 @@ class RecordReader {
     std::string unpacked;
     if (compression == "zstd") {
       if (size > most_chunk) throw IoError(file_, 0, "has a chunk of more than 1 GiB");
+      if (size > most_small_chunk && size / most_ratio > records.size())
+        throw IoError(file_, 0, "has a chunk of more than 64 MiB and 1000 times its compressed size");
       unpacked.resize(size);
       if (ZSTD_decompress(unpacked.data(), size, records.data(), records.size()) != size)
         throw IoError(file_, 0, "is damaged: a chunk cannot be decompressed");

@@ -24,7 +24,8 @@ struct Receivers {
 
 /// Reads a file, and returns the number of bytes after the last record that is whole: 0 unless it was cut.
 /// Throws IoError if it is not an MCAP file, is damaged, has a chunk that is compressed with neither nothing
-/// nor zstd or larger than 1 GiB, or is a cut one without `may_be_cut`.
+/// nor zstd or larger than 1 GiB or, beyond 64 MiB, 1000 times its compressed size, or is a cut one without
+/// `may_be_cut`.
 std::uint64_t read_records(const std::string& file, bool may_be_cut, const Receivers& receivers);
 
 }  // namespace slalom::view::mcap
