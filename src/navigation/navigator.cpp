@@ -64,7 +64,7 @@ class Navigator::Implementation {
                  const Costmap& costmap)
       : options_((validate_options(options, "navigator"), options)),
         footprint_(footprint),
-        core_(footprint.without_rim(costmap.geometry().resolution)),
+        core_(footprint.without_rim(0.5 * costmap.geometry().resolution)),
         geometry_(costmap.geometry()),
         model_(detail::make_base_model(options, footprint, geometry_.resolution, solver)),
         way_(options, footprint, geometry_,
@@ -144,8 +144,8 @@ double Navigator::Implementation::room_at(const Costmap& costmap, const maps::Po
 }
 
 /// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that
-/// overlaps an obstacle already may leave it, but not go deeper into it: where it does so by less than a
-/// cell, as scans may err, the body without a rim of a cell must stay free.
+/// overlaps an obstacle already may leave it, but not go deeper into it: where it does so by less than half a
+/// cell, as scans may err, the body without such a rim must stay free.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
@@ -154,7 +154,7 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
       plan.size() - 1, saturate_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
   if (others_.meet(plan, last)) return true;
   if (maps_.overlaps && costmap.collides(core_, plan.front())) {
-    const double begin = room_at(costmap, plan.front()) - 0.5 * costmap.geometry().resolution;
+    const double begin = room_at(costmap, plan.front());
     return std::any_of(plan.begin() + 1, plan.begin() + static_cast<std::ptrdiff_t>(last) + 1,
                        [&](const maps::Pose& pose) { return room_at(costmap, pose) < begin; });
   }

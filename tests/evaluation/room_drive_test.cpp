@@ -34,7 +34,7 @@ RoomDriver quick_driver() {
 }
 
 TEST(RoomScenarios, StartsAndGoalsAreFreeAndThereIsAWayWhereTheySay) {
-  constexpr double length = RoomScenario::robot_length, width = RoomScenario::robot_width;
+  const double length = RoomScenario{}.robot_length, width = RoomScenario{}.robot_width;
   const navigation::Footprint body = navigation::Footprint::rectangle(0.5 * length, 0.5 * length, width);
   EXPECT_EQ(room_scenarios().size(), 20u);
   for (const RoomScenario& scenario : room_scenarios()) {

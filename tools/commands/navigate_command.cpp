@@ -19,7 +19,8 @@ using evaluation::RoomDriver;
 using evaluation::RoomScenario;
 
 struct NavigateArguments {
-  std::string scenario = "rooms", json, table, pictures;
+  std::string scenario = "rooms", json, table, pictures, barn;
+  int barn_step = 1;
   std::vector<std::string> methods{"svg_mppi", "mppi"};
   int seeds = 5, jobs = 1;
   std::uint64_t first_seed = 1;
@@ -29,12 +30,13 @@ struct NavigateArguments {
 /// A driver by its method, and what the tables call it.
 struct NamedDriver {
   std::string name, method;
-  bool detours;
+  bool detours, predict_movers;
 };
 
 RoomDriver driver_of(const NamedDriver& named, const RoomScenario& scenario) {
   RoomDriver driver;
   driver.navigator.find_detours = named.detours;
+  driver.predict_movers = named.predict_movers;
   driver.solver = navigation::method_options(named.method, scenario.base);
   return driver;
 }
@@ -46,8 +48,9 @@ std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
     for_option("--methods", [&] { return solver_options(method); });
     if (std::count(methods.begin(), methods.end(), method) > 1)
       throw CommandLineError("--methods", method, "is given twice");
-    drivers.push_back({method, method, true});
-    if (arguments.without_detours) drivers.push_back({method + " alone", method, false});
+    const bool predict = arguments.barn.empty();  // nothing moves there
+    drivers.push_back({method, method, true, predict});
+    if (arguments.without_detours) drivers.push_back({method + " alone", method, false, predict});
   }
   return drivers;
 }
@@ -69,14 +72,19 @@ void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver
   evaluation::for_each_in_threads(arguments.jobs, static_cast<int>(all.size()), [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     const RoomScenario& scenario = *all[k].scenario;
-    drives[k] = drive_room(scenario, driver_of(drivers[k % drivers.size()], scenario), seed);
+    const double timeout = arguments.barn.empty() ? 60 : 100;
+    drives[k] = drive_room(scenario, driver_of(drivers[k % drivers.size()], scenario), seed, timeout);
   });
   for (std::size_t k = 0; k < all.size(); ++k) all[k].drives.push_back(std::move(drives[k]));
 }
 
 int navigate(const NavigateArguments& arguments) {
   std::vector<const RoomScenario*> scenarios;
-  if (arguments.scenario == "rooms" || arguments.scenario == "manoeuvres") {
+  std::vector<RoomScenario> barn;
+  if (!arguments.barn.empty()) {
+    barn = evaluation::barn_scenarios(arguments.barn, arguments.barn_step);
+    for (const RoomScenario& each : barn) scenarios.push_back(&each);
+  } else if (arguments.scenario == "rooms" || arguments.scenario == "manoeuvres") {
     for (const RoomScenario& each :
          arguments.scenario == "rooms" ? evaluation::room_scenarios() : evaluation::manoeuvre_scenarios())
       scenarios.push_back(&each);
@@ -113,6 +121,10 @@ void declare_navigate(Subcommand& command) {
   const auto arguments = std::make_shared<NavigateArguments>();
   command.option("--scenario", arguments->scenario,
                  "Name of a scenario, or rooms or manoeuvres for all of these");
+  command.option("--barn", arguments->barn,
+                 "Drive through the worlds of the dataset BARN in this folder (docs/navigation.md)");
+  command.option("--barn-step", arguments->barn_step, "Take every N-th world; BARN's test takes every 6th",
+                 {1, 300});
   command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names())
       .comma_separated();
   command.flag("--without-detours", arguments->without_detours,
@@ -128,8 +140,7 @@ void declare_navigate(Subcommand& command) {
   std::string names;
   const auto add = [&](const char* kind, std::span<const RoomScenario> scenarios) {
     names += std::string(kind) + ":\n";
-    for (const RoomScenario& each : scenarios)
-      names += std::string("  ") + each.name + ": " + each.summary + "\n";
+    for (const RoomScenario& each : scenarios) names += "  " + each.name + ": " + each.summary + "\n";
   };
   add("Rooms", evaluation::room_scenarios());
   add("Manoeuvres", evaluation::manoeuvre_scenarios());

@@ -15,8 +15,8 @@ using evaluation::RoomScenario;
 constexpr int moment_interval = 3;  // s
 constexpr Colour person_fill = {0.93, 0.75, 0.25, 0.55}, person_rim = {0.55, 0.40, 0.05, 1};
 
-std::vector<maps::Point> outline(const maps::Pose& pose) {
-  const auto corners = sim::corners({pose, RoomScenario::robot_length, RoomScenario::robot_width});
+std::vector<maps::Point> outline(const maps::Pose& pose, const RoomScenario& scenario) {
+  const auto corners = sim::corners({pose, scenario.robot_length, scenario.robot_width});
   return {corners.begin(), corners.end()};
 }
 
@@ -38,7 +38,7 @@ void draw_moments(MapPicture& picture, const RoomDrive& drive, const RoomScenari
     picture.line(drive.people[k], person_rim, 2, false, true);
   if (drive.people.empty()) return;
   for (std::size_t i = 0; i < drive.trace.size(); i += periods) {
-    picture.line(outline(drive.trace[i]), colour, 1.5, true);
+    picture.line(outline(drive.trace[i], scenario), colour, 1.5, true);
     for (std::size_t k = 0; k < drive.people.size(); ++k)
       picture.polygon(circle(drive.people[k][i], scenario.walkers[k].radius), person_fill, person_rim);
   }
@@ -52,6 +52,8 @@ void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, cons
     const auto corners = sim::corners(box);
     picture.polygon({corners.begin(), corners.end()}, {0.55, 0.58, 0.63, 1}, {0.3, 0.33, 0.38, 1});
   }
+  for (const sim::Disc& post : scenario.room.posts)
+    picture.polygon(circle(post.middle, post.radius), {0.55, 0.58, 0.63, 1}, {0.3, 0.33, 0.38, 1});
   std::vector<std::pair<std::string, Colour>> key;
   std::size_t index = 0;
   for (const RoomSeries& series : all) {
@@ -65,15 +67,15 @@ void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, cons
       std::vector<maps::Point> points;
       for (const maps::Pose& pose : drive.trace) points.push_back({pose.x, pose.y});
       picture.line(points, colour, 3, false);
-      picture.line(outline(drive.trace.back()), colour, 2, true);
+      picture.line(outline(drive.trace.back(), scenario), colour, 2, true);
+      if (index == 1) picture.arrow(drive.goal, 20, {0.13, 0.16, 0.22, 1});
     }
   }
   if (!scenario.walkers.empty())
     key.emplace_back("people, every " + std::to_string(moment_interval) + " s", person_rim);
   picture.arrow(scenario.start, 20, {0.13, 0.16, 0.22, 1});
-  picture.arrow(scenario.goal, 20, {0.13, 0.16, 0.22, 1});
   picture.key(scenario.name, scenario.summary, key);
-  picture.save(std::filesystem::path(folder) / (std::string(scenario.name) + ".png"));
+  picture.save(std::filesystem::path(folder) / (scenario.name + ".png"));
 }
 
 }  // namespace slalom::tools

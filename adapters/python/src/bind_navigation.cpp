@@ -96,7 +96,7 @@ void bind_costmap(py::module_& module) {
 /// A term of the cost that is a function in Python.
 struct PythonCost {
   py::function function;
-  std::exception_ptr error{};  ///< of the last call
+  std::exception_ptr error{};  ///< raised by the last call
 
   void add(const navigation::RolloutStates& states, std::span<double> costs) noexcept {
     const py::gil_scoped_acquire lock;

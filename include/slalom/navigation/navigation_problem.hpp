@@ -114,8 +114,9 @@ struct NavigationMaps {
   bool ends_leg = false;      ///< whether that part ends where the leg does
   bool ends_at_goal = false;  ///< whether that part ends at the goal
   maps::Pose end;             ///< end of that part, map frame; a turn ends at exactly this yaw
-  bool overlaps = false;  ///< whether the body overlaps an obstacle now: rollouts then take it without a rim
-                          ///< of a cell, so that they tell an overlap by an error of a scan from a collision
+  bool overlaps =
+      false;  ///< whether the body overlaps an obstacle now: rollouts then take it without a rim
+              ///< of half a cell, so that they tell an overlap by an error of a scan from a collision
   maps::MovingObstaclesView others{};  ///< moving obstacles, map frame
 };
 
@@ -146,7 +147,8 @@ class NavigationProblem {
         input_min(Base::per_input(-limits.max_reverse, -limits.max_sideways, -limits.max_turn)),
         input_max(Base::per_input(limits.max_forward, limits.max_sideways, limits.max_turn)),
         base_(limits),
-        bodies_{BodyCheck(footprint, resolution), BodyCheck(footprint.without_rim(resolution), resolution)},
+        bodies_{BodyCheck(footprint, resolution),
+                BodyCheck(footprint.without_rim(0.5 * resolution), resolution)},
         costs_(costs, step),
         step_(step),
         reach_(farthest_projection * step *
@@ -167,7 +169,7 @@ class NavigationProblem {
       const T high = select(was < T(0), min(was + slower, dead + faster), max(was, dead) + faster);
       const T low =
           select(was > T(0), max(was - slower, T(0) - dead - faster), min(was, T(0) - dead) - faster);
-      u[i] = clamp(u[i], low, high);
+      u[i] = clamp(i + 1 < inputs ? u[i] * T(moves_) : u[i], low, high);
       u[i] = select(abs(u[i]) < dead, T(0), u[i]);
     }
     return u;
@@ -198,6 +200,7 @@ class NavigationProblem {
     const double pull = maps.turns ? on_the_spot : 1.0;
     progress_weight_ = pull * static_cast<double>(costs_.progress);
     final_weight_ = pull * static_cast<double>(costs_.final_progress);
+    moves_ = maps.turns && maps.ends_at_goal ? 0.0 : 1.0;
     drift_weight_ = maps.turns ? drift * static_cast<double>(step_) : 0.0;
     turn_weight_ = maps.turns ? costs_.goal_heading : Coefficient(0);
     near_goal_ = maps.ends_at_goal ? Coefficient(1) : Coefficient(0);
@@ -252,6 +255,7 @@ class NavigationProblem {
         T(1) - T(direction_) * (seen.cosine * seen.path_cosine + seen.sine * seen.path_sine);
     const T turn_left = abs(x.yaw - T(end_yaw_));
     const Motion<T> motion = base_.motion(driven(x.before, u));
+    const T hurry = max((abs(motion.forward) + abs(motion.left)) * T(per_usual_speed), T(1));
     const T drifting = T(drift_weight_) * (square(motion.forward) + square(motion.left));
     const T moving = drifting + T(costs_.reverse) * max(T(0) - T(direction_) * motion.forward, T(0)) +
                      T(costs_.sideways) * abs(motion.left) + T(turning_weight_) * square(motion.turn) +
@@ -260,7 +264,7 @@ class NavigationProblem {
     return {
         {T(progress_weight_) * left(seen), T(path_weight_) * min(square(seen.aside), T(costs_.max_squared)),
          T(heading_weight_) * (T(1) - facing) * heading_error,
-         T(costs_.clearance) * (T(1) - near) *
+         T(costs_.clearance) * (T(1) - near) * hurry *
              exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
          moving, (T(turn_weight_) + T(costs_.facing) * facing) * turn_left,
          select(seen.obstacle.collided, T(costs_.collision), T(0)), met.value},
@@ -276,8 +280,10 @@ class NavigationProblem {
  private:
   static constexpr double farthest = 5;  ///< m of clearance; keeps the exponential in range
   static constexpr double exact_path = 10, exact_heading = 5, on_the_spot = 0.1;  ///< factors of weights
-  static constexpr double drift = 20;  ///< s/m^2, cost of the squared speed in a turn on the spot
+  static constexpr double per_usual_speed = 2;      ///< s/m; faster robots keep more clearance
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
+
+  static constexpr double drift = 20;  ///< s/m^2, cost of the squared speed in a turn on the spot
 
   /// Weights times the duration of a step, as rollouts use them.
   struct Weights {
@@ -324,6 +330,7 @@ class NavigationProblem {
   maps::MovingObstaclesView others_;
   Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, progress_weight_, final_weight_,
       path_weight_, heading_weight_, turning_weight_, drift_weight_, turn_weight_, near_goal_;
+  Coefficient moves_ = 1;  ///< 0 in the turn at the goal, in which speeds are braked to 0
 };
 
 }  // namespace slalom::navigation

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,7 @@
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/drive.hpp"
+#include "slalom/maps/laser_scan.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "slalom/navigation/scan_map.hpp"
 
@@ -25,16 +27,16 @@ using maps::Pose;
 using navigation::NavigationStatus;
 using navigation::Velocity;
 
-constexpr double resolution = 0.05;  // m
-constexpr double max_range = 16;     // m
-constexpr int beams = 240;
+constexpr double resolution = 0.05;                      // m
+constexpr double max_range = 16;                         // m
 constexpr double range_noise = 0.01;                     // m, standard deviation
 constexpr double start_spread = 0.03, start_turn = 0.1;  // m along each axis, rad: largest changes
 constexpr double walker_spread = 0.1, walker_pause = 1;  // share of the speed, s: largest changes
 constexpr double standing = 1e-3;                        // m/s and rad/s
 constexpr double min_driving_speed = 0.03;               // m/s
 constexpr double min_turning_speed = 0.08;               // rad/s
-constexpr double least_share = 0.8;                      // share of its path that a robot drives to the goal
+constexpr double unseen = std::numeric_limits<double>::quiet_NaN();  // m
+constexpr double least_share = 0.8;  // share of its path that a robot drives to the goal
 
 /// Varies the walkers of a scenario with the seed.
 std::vector<sim::Walker> varied(std::vector<sim::Walker> walkers, std::uint64_t seed) {
@@ -60,6 +62,8 @@ class RoomWorld {
       : pose(start),
         room_(scenario.room),
         crowd_(room_, varied(scenario.walkers, seed)),
+        body_{{}, scenario.robot_length, scenario.robot_width},
+        lag_(scenario.lag),
         late_(static_cast<std::size_t>(std::lround(scenario.delay * parts / room_period))) {
     room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
   }
@@ -67,14 +71,18 @@ class RoomWorld {
   /// Moves robot and people. The robot has the velocity that the only command was a while ago.
   void step(std::span<const Velocity> commands) {
     late_.push_back(commands[0]);
-    velocity = late_.front();
+    const double dt = room_period / parts, share = lag_ > 0 ? 1 - std::exp(-dt / lag_) : 1;
+    const Velocity& asked = late_.front();
+    velocity = {velocity.forward + share * (asked.forward - velocity.forward),
+                velocity.left + share * (asked.left - velocity.left),
+                velocity.turn + share * (asked.turn - velocity.turn)};
     late_.pop_front();
-    const double dt = room_period / parts, yaw = pose.yaw + 0.5 * dt * velocity.turn;
+    const double yaw = pose.yaw + 0.5 * dt * velocity.turn;
     const double c = std::cos(yaw), s = std::sin(yaw);
     const maps::Point in_room{c * velocity.forward - s * velocity.left,
                               s * velocity.forward + c * velocity.left};
     pose = {pose.x + dt * in_room.x, pose.y + dt * in_room.y, pose.yaw + dt * velocity.turn};
-    const sim::Box body{pose, RoomScenario::robot_length, RoomScenario::robot_width};
+    const sim::Box body{pose, body_.length, body_.width};
     if (!room_.people.empty()) {
       crowd_.step(dt, body, in_room);
       room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
@@ -97,6 +105,8 @@ class RoomWorld {
  private:
   sim::Room room_;
   sim::Crowd crowd_;
+  sim::Box body_;
+  double lag_;                 ///< s
   std::deque<Velocity> late_;  ///< commands that have no effect yet, one for each step
 };
 
@@ -121,15 +131,19 @@ class RoomNavigator {
   RoomNavigator(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                 const RandomStream& random)
       : random_(random),
-        ranges_(beams),
+        ranges_(static_cast<std::size_t>(scenario.beams)),
+        half_view_(0.5 * scenario.view),
+        body_(navigation::Footprint::rectangle(0.5 * scenario.robot_length + scenario.padding,
+                                               0.5 * scenario.robot_length + scenario.padding,
+                                               scenario.robot_width + 2 * scenario.padding)),
         predicts_(driver.predict_movers),
         goal_(scenario.goal),
         given_(scenario.path),
         stands_(scenario.odometry_stands),
-        watch_(beams),
+        watch_(ranges_.size()),
         map_(sim::map_of(scenario.room, resolution)),
         costmap_(map_.grid().width, map_.grid().height, resolution),
-        navigator_((costmap_.update(map_.grid()), footprint()), with_base(driver.navigator, scenario.base),
+        navigator_((costmap_.update(map_.grid()), body_), with_base(driver.navigator, scenario.base),
                    with_seed(driver.solver, seed), costmap_) {}
 
   /// Follows the scenario's path, or one that it plans from a pose; false if the map shows none.
@@ -138,14 +152,15 @@ class RoomNavigator {
     if (!path.empty()) navigator_.set_path(path);
     return !path.empty();
   }
-  std::vector<Pose> path_from(const Pose& pose) const {
-    return plan_path(costmap_, footprint(), pose, goal_);
-  }
+  std::vector<Pose> path_from(const Pose& pose) const { return plan_path(costmap_, body_, pose, goal_); }
 
   navigation::NavigationResult decide(const RoomWorld& world) {
     sim::scan(world.room(), world.pose, max_range, ranges_);
-    for (double& range : ranges_)
+    for (std::size_t i = 0; i < ranges_.size(); ++i) {
+      double& range = ranges_[i];
       if (range < max_range) range = std::max(range + range_noise * random_.normal(), 0.0);
+      if (std::abs(maps::wrap_angle(maps::beam_angle(i, ranges_.size()))) > half_view_) range = unseen;
+    }
     const navigation::RangeScan scan{world.pose, ranges_, max_range};
     std::span<const maps::PredictedObstacle> others;
     if (predicts_) others = watch_.update(scan, world.time);
@@ -165,13 +180,10 @@ class RoomNavigator {
   std::vector<Pose> path;  ///< the path that was set
 
  private:
-  static navigation::Footprint footprint() {
-    constexpr double half_length = 0.5 * RoomScenario::robot_length;
-    return navigation::Footprint::rectangle(half_length, half_length, RoomScenario::robot_width);
-  }
-
   RandomStream random_;
   std::vector<double> ranges_;
+  double half_view_;  ///< rad
+  navigation::Footprint body_;
   bool predicts_;
   Pose goal_;
   std::vector<Pose> given_;
@@ -221,7 +233,7 @@ class RoomRun {
     loop_.drivers.emplace_back(scenario_, driver, seed, random_);
     drive_.people.resize(loop_.world.room().people.size());
     if (!robot().set_path(loop_.world.pose))
-      throw std::invalid_argument(std::string("scenario: ") + scenario.name + ": has no path");
+      throw std::invalid_argument("scenario: " + scenario.name + ": has no path");
   }
 
   /// Drives one control period; false if the drive has ended.
@@ -242,8 +254,12 @@ class RoomRun {
     drive_.reversals = std::max(reversals_.changes() - scenario_.cusps, 0);
     drive_.turn_changes = turns_.changes();
     drive_.command_change = std::sqrt(squared_changes_ / static_cast<double>(drive_.trace.size()));
+    drive_.goal = goal;
     drive_.goal_distance = std::hypot(goal.x - pose.x, goal.y - pose.y);
     drive_.goal_angle = std::abs(maps::wrap_angle(goal.yaw - pose.yaw));
+    const double optimal = scenario_.optimal_time;
+    if (drive_.success && optimal > 0)
+      drive_.metric = optimal / std::clamp(drive_.time, 2 * optimal, 8 * optimal);
     drive_.update_p50 = robot().stopwatch.percentile(0.5);
     drive_.update_max = robot().stopwatch.percentile(1);
     return drive_;
@@ -285,6 +301,9 @@ class RoomRun {
     if (world.collided) {
       const bool stood = stands(world.velocity, min_driving_speed);
       drive_.outcome = stood ? RoomOutcome::struck : RoomOutcome::collision;
+    } else if (std::hypot(world.pose.x - scenario_.goal.x, world.pose.y - scenario_.goal.y) <
+               scenario_.goal_reach) {
+      drive_.outcome = RoomOutcome::reached;
     } else if (const RoomOutcome said = outcome_of(status_);
                said == RoomOutcome::ignored || stands(world.velocity)) {
       if (said == scenario_.wanted || said == RoomOutcome::reached) drive_.outcome = said;

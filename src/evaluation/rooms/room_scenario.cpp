@@ -207,7 +207,7 @@ const RoomScenario& room_scenario(std::string_view name) {
   for (const auto& scenarios : {room_scenarios(), manoeuvre_scenarios()})
     for (const RoomScenario& each : scenarios) {
       if (name == each.name) return each;
-      names += (names.empty() ? "" : ", ") + std::string(each.name);
+      names += (names.empty() ? "" : ", ") + each.name;
     }
   throw std::invalid_argument("'" + std::string(name) + "' must be one of " + names);
 }

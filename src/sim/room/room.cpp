@@ -59,7 +59,8 @@ bool collides(const Room& room, const Box& body) noexcept {
   const auto hits = [&](const auto& other) { return signed_gap(body, other) <= 0; };
   return std::any_of(room.walls.begin(), room.walls.end(), hits) ||
          std::any_of(room.obstacles.begin(), room.obstacles.end(), hits) ||
-         std::any_of(room.people.begin(), room.people.end(), hits);
+         std::any_of(room.people.begin(), room.people.end(), hits) ||
+         std::any_of(room.posts.begin(), room.posts.end(), hits);
 }
 
 void scan(const Room& room, const maps::Pose& scanner, double max_range, std::span<double> ranges) noexcept {
@@ -73,6 +74,7 @@ void scan(const Room& room, const maps::Pose& scanner, double max_range, std::sp
     for (const Box& obstacle : room.obstacles)
       range = std::min(range, ray_distance(from, cosine, sine, obstacle));
     for (const Disc& person : room.people) range = std::min(range, ray_distance(from, cosine, sine, person));
+    for (const Disc& post : room.posts) range = std::min(range, ray_distance(from, cosine, sine, post));
     ranges[i] = range;
   }
 }

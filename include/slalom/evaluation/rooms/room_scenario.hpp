@@ -1,6 +1,9 @@
 #pragma once
 
+#include <filesystem>
+#include <numbers>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,11 +34,8 @@ constexpr const char* name(RoomOutcome outcome) noexcept {
 
 /// A task for a mobile robot in a room.
 struct RoomScenario {
-  static constexpr double robot_length = 0.7;  ///< m; the robot's origin is in its middle
-  static constexpr double robot_width = 0.5;   ///< m
-
-  const char* name = "";     ///< as the command line writes it
-  const char* summary = "";  ///< one line
+  std::string name{};     ///< as the command line writes it
+  std::string summary{};  ///< one line
   /// Its first obstacle is the one whose sides are counted, and if there is none the first walker. In a drive
   /// its `people` are those of `walkers`.
   sim::Room room;
@@ -46,15 +46,30 @@ struct RoomScenario {
   navigation::BaseOptions base{};             ///< limits of the robot
   std::vector<maps::Pose> path{};             ///< to follow; empty: planned on the map
   bool any_heading = false;                   ///< whether the seed draws the heading at the goal
-  int cusps = 0;                 ///< changes between driving forward and back that the path asks for
-  double delay = 0;              ///< s until a command takes effect
-  bool odometry_stands = false;  ///< whether the robot is told that it stands
+  int cusps = 0;                       ///< changes between driving forward and back that the path asks for
+  double delay = 0;                    ///< s until a command takes effect
+  bool odometry_stands = false;        ///< whether the robot is told that it stands
+  double lag = 0;                      ///< s, time constant with which the robot follows a command
+  double robot_length = 0.7;           ///< m; the robot's origin is in its middle
+  double robot_width = 0.5;            ///< m
+  double padding = 0;                  ///< m by which the navigator's footprint is larger on each side
+  int beams = 240;                     ///< number of beams of a scanner that looks all round
+  double view = 2 * std::numbers::pi;  ///< rad; beams outside of it, behind the robot, see nothing
+  double goal_reach = 0;               ///< m from the goal at which a drive ends; 0: where the robot says so
+  double optimal_time = 0;             ///< s, of BARN's metric; 0: none
 };
 
 /// Rooms with obstacles and people.
 std::span<const RoomScenario> room_scenarios();
 /// Drives along given paths, to headings and goals that need a manoeuvre, and with faults of the robot.
 std::span<const RoomScenario> manoeuvre_scenarios();
+
+/// The worlds 0, `every`, 2 `every` ... of the dataset BARN (D. Perille et al., "Benchmarking Metric Ground
+/// Navigation", SSRR 2020) in a folder with world_N.world and path_files/path_N.npy, as they are in
+/// https://github.com/Daffan/the-barn-challenge. The robot is a Jackal of 0.508 x 0.43 m that knows the world
+/// from a scanner of 270 degrees alone, and follows its commands with a lag of 0.15 s, as it is told. Throws
+/// IoError if the folder has no world, or a file does not have the format.
+std::vector<RoomScenario> barn_scenarios(const std::filesystem::path& folder, int every);
 
 /// The scenario of this name, of either kind. Throws std::invalid_argument that lists the names if there is
 /// none.

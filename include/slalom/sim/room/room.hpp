@@ -16,6 +16,7 @@ struct Room {
   std::vector<Box> walls;      ///< besides those around the floor
   std::vector<Box> obstacles;  ///< not on the map
   std::vector<Disc> people{};  ///< present places of people, who are not on the map
+  std::vector<Disc> posts{};   ///< round obstacles, not on the map
 };
 
 /// The map of a room: its walls, and one cell of wall around the floor. Throws std::invalid_argument unless
