@@ -34,19 +34,6 @@ TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
       << table;
 }
 
-TEST_F(NavigateCommand, DrivesEachMethodWithAndWithoutDetours) {
-  const auto run = program(
-      "navigate --scenario close-obstacle --methods mppi --without-detours --seeds 1 --json out.json --table "
-      "out.md");
-  EXPECT_EQ(run.status, 0) << run.output;
-  const auto results = nlohmann::json::parse(content(folder_ / "out.json"))["results"];
-  ASSERT_EQ(results.size(), 2u);
-  EXPECT_EQ(results[0]["driver"], "mppi");
-  EXPECT_EQ(results[1]["driver"], "mppi alone");
-  EXPECT_NE(results[0]["by_seed"][0]["length_m"], results[1]["by_seed"][0]["length_m"]);
-  EXPECT_NE(content(folder_ / "out.md").find("`mppi` minus `mppi alone`"), std::string::npos);
-}
-
 TEST_F(NavigateCommand, DrivesWithEveryMethod) {
   std::string methods;
   for (const char* name : solver_names()) {
@@ -67,6 +54,7 @@ TEST_F(NavigateCommand, DrivesWithEveryMethod) {
 TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
   expect_refused("navigate --scenario kitchen",
                  {"slalom: --scenario: 'kitchen' must be one of close-obstacle, pallet-on-path"});
+  expect_refused("navigate --barn /no/such/folder", {"/no/such/folder/world_0.world"});
   expect_refused("navigate --scenario no-way --methods dwa",
                  {"--methods", "'dwa'", "must be one of mppi, svg_mppi"});
   expect_refused("navigate --scenario no-way --methods mppi,svg_mppi,mppi",

@@ -24,35 +24,21 @@ struct NavigateArguments {
   std::vector<std::string> methods{"svg_mppi", "mppi"};
   int seeds = 5, jobs = 1;
   std::uint64_t first_seed = 1;
-  bool without_detours = false;
 };
 
-/// A driver by its method, and what the tables call it.
-struct NamedDriver {
-  std::string name, method;
-  bool detours, predict_movers;
-};
-
-RoomDriver driver_of(const NamedDriver& named, const RoomScenario& scenario) {
+RoomDriver driver_of(const std::string& method, const RoomScenario& scenario) {
   RoomDriver driver;
-  driver.navigator.find_detours = named.detours;
-  driver.predict_movers = named.predict_movers;
-  driver.solver = navigation::method_options(named.method, scenario.base);
+  driver.predict_movers = scenario.optimal_time == 0;  // nothing moves in BARN
+  driver.solver = navigation::method_options(method, scenario.base);
   return driver;
 }
 
-std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
-  std::vector<NamedDriver> drivers;
-  const auto& methods = arguments.methods;
+void check_methods(const std::vector<std::string>& methods) {
   for (const std::string& method : methods) {
     for_option("--methods", [&] { return solver_options(method); });
     if (std::count(methods.begin(), methods.end(), method) > 1)
       throw CommandLineError("--methods", method, "is given twice");
-    const bool predict = arguments.barn.empty();  // nothing moves there
-    drivers.push_back({method, method, true, predict});
-    if (arguments.without_detours) drivers.push_back({method + " alone", method, false, predict});
   }
-  return drivers;
 }
 
 /// Writes the results so far to the files, and at the end to standard output where that is wanted.
@@ -66,14 +52,13 @@ void write_results(const NavigateArguments& arguments, const std::vector<RoomSer
 }
 
 /// Adds the drive of a seed to each series. Drives do not depend on each other, so threads change no result.
-void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers,
-               std::uint64_t seed, std::vector<RoomSeries>& all) {
+void drive_all(const NavigateArguments& arguments, std::uint64_t seed, std::vector<RoomSeries>& all) {
   std::vector<evaluation::RoomDrive> drives(all.size());
   evaluation::for_each_in_threads(arguments.jobs, static_cast<int>(all.size()), [&](int i) {
     const auto k = static_cast<std::size_t>(i);
     const RoomScenario& scenario = *all[k].scenario;
     const double timeout = arguments.barn.empty() ? 60 : 100;
-    drives[k] = drive_room(scenario, driver_of(drivers[k % drivers.size()], scenario), seed, timeout);
+    drives[k] = drive_room(scenario, driver_of(all[k].driver, scenario), seed, timeout);
   });
   for (std::size_t k = 0; k < all.size(); ++k) all[k].drives.push_back(std::move(drives[k]));
 }
@@ -92,14 +77,14 @@ int navigate(const NavigateArguments& arguments) {
     scenarios.push_back(
         for_option("--scenario", [&] { return &evaluation::room_scenario(arguments.scenario); }));
   }
-  const std::vector<NamedDriver> drivers = drivers_of(arguments);
+  check_methods(arguments.methods);
   std::vector<RoomSeries> all;
   for (const RoomScenario* scenario : scenarios)
-    for (const NamedDriver& driver : drivers) all.push_back({scenario, driver.name, {}});
+    for (const std::string& method : arguments.methods) all.push_back({scenario, method, {}});
   // Seed by seed, so that what is written when a long run is stopped is complete up to a seed.
   for (int i = 0; i < arguments.seeds; ++i) {
     const std::uint64_t seed = arguments.first_seed + static_cast<std::uint64_t>(i);
-    drive_all(arguments, drivers, seed, all);
+    drive_all(arguments, seed, all);
     write_results(arguments, all, i + 1 == arguments.seeds);
   }
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
@@ -127,8 +112,6 @@ void declare_navigate(Subcommand& command) {
                  {1, 300});
   command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names())
       .comma_separated();
-  command.flag("--without-detours", arguments->without_detours,
-               "Also drive with each method without the search for detours");
   command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario",
                  {1, 100000});
   command.option("--seed", arguments->first_seed, "Seed of the first drive");

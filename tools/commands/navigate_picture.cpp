@@ -59,7 +59,7 @@ void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, cons
   for (const RoomSeries& series : all) {
     if (series.scenario != &scenario) continue;
     Colour colour = method_colour(series.driver);
-    colour.opacity = series.driver.find(' ') == std::string::npos ? 0.75 : 0.4;
+    colour.opacity = 0.75;
     ++index;
     key.emplace_back(series.driver, colour);
     for (const RoomDrive& drive : series.drives) {

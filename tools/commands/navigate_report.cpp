@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "slalom/evaluation/statistics.hpp"
 #include "src/evaluation/json.hpp"
@@ -42,6 +43,12 @@ constexpr Figure figures[] = {
     {"from its heading, rad", "goal_angle_rad", 3, [](const RoomDrive& d) { return d.goal_angle; }},
     {"BARN's metric", "barn_metric", 4, [](const RoomDrive& d) { return d.metric; }}};
 
+/// The figures of a table: BARN's metric only if the scenarios have one.
+std::span<const Figure> figures_of(const std::vector<RoomSeries>& all) {
+  const std::span<const Figure> every = figures;
+  return all.front().scenario->optimal_time > 0 ? every : every.first(every.size() - 1);
+}
+
 double success_of(const RoomDrive& drive) {
   return drive.success;
 }
@@ -75,19 +82,21 @@ std::string mean_text(const std::vector<double>& values, int digits = 1) {
 
 /// A row of a table: scenario, driver, "n of m (low to high %)" with the 95 % Wilson interval, collisions,
 /// and the means of the figures.
-std::string markdown_row(const std::string& scenario, const std::string& driver, const Drives& drives) {
+std::string markdown_row(const std::string& scenario, const std::string& driver, const Drives& drives,
+                         std::span<const Figure> shown) {
   const int successes = count_of(drives, success_of);
   const Interval rate = evaluation::wilson_interval(successes, static_cast<std::int64_t>(drives.size()));
   std::string row = "| " + scenario + " | " + driver + " | " + std::to_string(successes) + " of " +
                     std::to_string(drives.size()) + " (" + text_of(100 * rate.low, 0) + " to " +
                     text_of(100 * rate.high, 0) + " %) | " + std::to_string(count_of(drives, collision_of));
-  for (const Figure& figure : figures)
+  for (const Figure& figure : shown)
     row += " | " + mean_text(values_of(drives, figure.value), std::max(figure.digits - 1, 1));
   return row + " |\n";
 }
 
 /// The means of the first driver minus those of another, drive by drive.
-std::string difference_row(const std::string& driver, const Drives& first, const Drives& other) {
+std::string difference_row(const std::string& driver, const Drives& first, const Drives& other,
+                           std::span<const Figure> shown) {
   const auto difference = [&](double (*value)(const RoomDrive&), int digits) {
     std::vector<double> values;
     for (std::size_t i = 0; i < std::min(first.size(), other.size()); ++i)
@@ -95,7 +104,7 @@ std::string difference_row(const std::string& driver, const Drives& first, const
     return " | " + mean_text(values, digits);
   };
   std::string row = "| all | " + driver + difference(success_of, 3) + difference(collision_of, 3);
-  for (const Figure& figure : figures) row += difference(figure.value, figure.digits);
+  for (const Figure& figure : shown) row += difference(figure.value, figure.digits);
   return row + " |\n";
 }
 
@@ -139,25 +148,26 @@ Json summary_of(const RoomSeries& series) {
 }
 
 std::string markdown_table(const std::vector<RoomSeries>& all) {
+  const std::span<const Figure> shown = figures_of(all);
   std::string text = "| scenario | driver | success | collisions";
-  for (const Figure& figure : figures) text += std::string(" | ") + figure.heading;
+  for (const Figure& figure : shown) text += std::string(" | ") + figure.heading;
   text += " |\n|---|---|---|---";
-  for (std::size_t i = 0; i < std::size(figures); ++i) text += "|---";
+  for (std::size_t i = 0; i < shown.size(); ++i) text += "|---";
   text += "|\n";
   std::vector<std::pair<std::string, Drives>> drivers;
   for (const RoomSeries& series : all) {
     const Drives drives = drives_of(series);
     if (series.scenario->optimal_time == 0)  // the 300 worlds of BARN have one row together
-      text += markdown_row("`" + series.scenario->name + "`", "`" + series.driver + "`", drives);
+      text += markdown_row("`" + series.scenario->name + "`", "`" + series.driver + "`", drives, shown);
     auto found = std::find_if(drivers.begin(), drivers.end(),
                               [&](const auto& each) { return each.first == series.driver; });
     if (found == drivers.end()) found = drivers.insert(drivers.end(), {series.driver, {}});
     found->second.insert(found->second.end(), drives.begin(), drives.end());
   }
-  for (const auto& [name, drives] : drivers) text += markdown_row("all", "`" + name + "`", drives);
+  for (const auto& [name, drives] : drivers) text += markdown_row("all", "`" + name + "`", drives, shown);
   for (std::size_t i = 1; i < drivers.size(); ++i)
     text += difference_row("`" + drivers[0].first + "` minus `" + drivers[i].first + "`", drivers[0].second,
-                           drivers[i].second);
+                           drivers[i].second, shown);
   return text;
 }
 

@@ -108,13 +108,18 @@ class Listener final : public BatchEvaluator {
     std::fill_n(costs + first, count, 0.0f);
     std::fill_n(collided + first, count, std::uint8_t{0});
     if (count < 100) return;  // guides
+    const int end = std::min(first + count, batch.samples());
+    std::array<float, steps> value, mean{};
+    for (int k = first; k < end; ++k) {
+      batch.get_sample(k, value);
+      for (std::size_t t = 0; t < steps; ++t) mean[t] += value[t] / static_cast<float>(end - first);
+    }
     double product = 0, square = 0;
-    std::array<float, steps> value;
-    for (int k = first; k < std::min(first + count, batch.samples()); ++k) {
+    for (int k = first; k < end; ++k) {
       batch.get_sample(k, value);
       for (std::size_t t = 1; t < steps; ++t) {
-        product += value[t] * value[t - 1];
-        square += value[t] * value[t];
+        product += (value[t] - mean[t]) * (value[t - 1] - mean[t - 1]);
+        square += (value[t] - mean[t]) * (value[t] - mean[t]);
       }
     }
     correlations.push_back(product / square);
