@@ -87,7 +87,7 @@ struct Arm {
   }
   /// Whether a link collides with the ball, or the wrist or the hand with the ground.
   template <class T>
-  mask_t<T> collides(const Posture<T>& arm) const {
+  SLALOM_INLINE mask_t<T> collides(const Posture<T>& arm) const {
     const Point<T> shoulder{T(0), T(0), T(base)};
     const T reach(ball_radius + thickness), ground(thickness);
     const T nearest = min(min(square_distance(shoulder, arm.elbow), square_distance(arm.elbow, arm.wrist)),
@@ -111,7 +111,7 @@ struct Arm {
   }
   /// Squared distance from the ball's centre to the segment from a to b.
   template <class T>
-  T square_distance(const Point<T>& a, const Point<T>& b) const {
+  SLALOM_INLINE T square_distance(const Point<T>& a, const Point<T>& b) const {
     const Point<T> way{b.x - a.x, b.y - a.y, b.z - a.z},
         to{T(ball_x) - a.x, T(ball_y) - a.y, T(ball_z) - a.z};
     const T length = square(way.x) + square(way.y) + square(way.z);
