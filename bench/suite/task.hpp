@@ -33,8 +33,8 @@ struct Runs {
   int count = 0;            ///< number
   int steps = 0;            ///< most steps of a run; 0: those of the task
   /// Whether the plant differs from the model: in each run, each input acts with 80 to 120 % and a fifth of a
-  /// step late, with normal noise of 5 % of its range; each state changes by 90 to 110 % of what the model
-  /// says in a step, as normal noise of 10 %.
+  /// step late, with normal noise of 5 % of its range; normal noise of 10 % of its change in a step is
+  /// added to each state.
   bool disturbed = false;
 };
 
