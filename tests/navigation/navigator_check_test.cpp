@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "navigation/navigator_calls.hpp"
+#include "support/adversarial_tries.hpp"
 #include "support/allocation_failures.hpp"
-#include "support/repetitions.hpp"
 
 /// Every command of a navigator is a velocity that the base may have, whatever its inputs.
 namespace slalom::navigation {
@@ -37,17 +37,11 @@ TEST(NavigatorCheck, BrakesWithinTheLimitsOfTheBase) {
 }
 
 TEST(NavigatorCheck, EveryCommandIsValidForAnyInput) {
-  const long calls = testing::repetitions(1000);
   const Hall hall;
   NavigatorTally tally;
-  for (std::uint64_t seed = testing::first_seed(); tally.updates < calls; ++seed) {
-    testing::Adversary adversary(seed);
-    try {
-      call_navigator(adversary, hall, tally);
-    } catch (const testing::Finding& finding) {
-      FAIL() << "seed " << seed << ": " << finding.what();
-    }
-  }
+  testing::try_adversaries(
+      testing::repetitions(1000), tally.updates,
+      [&](testing::Adversary& adversary, std::uint64_t) { call_navigator(adversary, hall, tally); });
   std::printf("[ calls    ] %ld updates, %ld corrections;", tally.updates, tally.corrections);
   for (int i = 0; i < 10; ++i)
     std::printf(" %s %ld", name(static_cast<NavigationStatus>(i)), tally.statuses[i]);

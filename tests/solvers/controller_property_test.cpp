@@ -2,8 +2,7 @@
 
 #include "solvers/controller_calls.hpp"
 #include "solvers/solver_contract.hpp"
-#include "support/promise.hpp"
-#include "support/repetitions.hpp"
+#include "support/adversarial_tries.hpp"
 
 /// Random and adversarial calls of every method, option set and problem: every plan is valid.
 namespace slalom {
@@ -13,15 +12,10 @@ TEST(ControllerProperty, EveryPlanIsValidForAnyCall) {
   const long calls = testing::repetitions(200000);
   const auto sets = testing::option_sets();
   testing::ControllerTally tally;
-  for (std::uint64_t seed = testing::first_seed(); tally.calls < calls; ++seed) {
-    testing::Adversary adversary(seed);
+  testing::try_adversaries(calls, tally.calls, [&](testing::Adversary& adversary, std::uint64_t seed) {
     const auto& set = sets[seed % sets.size()];
-    try {
-      testing::call_any_controller(set.options, adversary, tally);
-    } catch (const testing::Finding& finding) {
-      FAIL() << "seed " << seed << ", options " << set.name << ": " << finding.what();
-    }
-  }
+    testing::call_any_controller(set.options, adversary, tally);
+  });
   std::printf("[ calls    ] %ld calls, %ld plans: %ld ok, %ld with another status; %ld corrections\n",
               tally.calls, tally.plans, tally.ok, tally.other, tally.corrections);
   EXPECT_GT(tally.ok, 0);

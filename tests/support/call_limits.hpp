@@ -15,9 +15,9 @@ namespace slalom::testing {
 /// time of its thread, and 200 MB; more under sanitizers.
 class CallLimits {
  public:
-  /// Throws Finding where the calls since construction, one if not said, took more.
+  /// Throws SlowCall or Finding where the calls since construction, one if not said, took more.
   void check(int calls = 1) const {
-    require(seconds() - before_ <= 0.1 * slowness() * calls, "a call takes at most 0.1 s");
+    if (seconds() - before_ > 0.1 * slowness() * calls) throw SlowCall("a call takes at most 0.1 s");
     require(megabytes() - held_ <= 200 * (slowness() > 1 ? 3 : 1) * calls, "a call takes at most 200 MB");
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "support/adversarial_tries.hpp"
 #include "support/allocation_failures.hpp"
 #include "support/repetitions.hpp"
 #include "tracking/tracker_calls.hpp"
@@ -33,16 +34,10 @@ TEST(TrackerCheck, BeamsThatAreNearlyOneEnd) {
 }
 
 TEST(TrackerCheck, OutputsAreFiniteForAnyInput) {
-  const long calls = testing::repetitions(5000);
   TrackerTally tally;
-  for (std::uint64_t seed = testing::first_seed(); tally.updates < calls; ++seed) {
-    testing::Adversary adversary(seed);
-    try {
-      call_tracker(adversary, tally);
-    } catch (const testing::Finding& finding) {
-      FAIL() << "seed " << seed << ": " << finding.what();
-    }
-  }
+  testing::try_adversaries(
+      testing::repetitions(5000), tally.updates,
+      [&](testing::Adversary& adversary, std::uint64_t) { call_tracker(adversary, tally); });
   std::printf("[ calls    ] %ld updates, %ld objects, %ld predictions\n", tally.updates, tally.objects,
               tally.predictions);
   EXPECT_GT(tally.objects, 0);

@@ -6,9 +6,9 @@
 
 #include "navigation/grids.hpp"
 #include "slalom/vehicle/localisation/localiser.hpp"
+#include "support/adversarial_tries.hpp"
 #include "support/adversary.hpp"
 #include "support/promise.hpp"
-#include "support/repetitions.hpp"
 
 /// The output of a localiser is finite, whatever enters it.
 namespace slalom::vehicle {
@@ -66,17 +66,11 @@ void call_localiser(testing::Adversary& adversary, const maps::OccupancyGrid& ma
 }
 
 TEST(LocaliserCheck, EstimatesAreFiniteForAnyInput) {
-  const long calls = testing::repetitions(600);
   const maps::OccupancyGrid map = room();
   Tally tally;
-  for (std::uint64_t seed = testing::first_seed(); tally.updates < calls; ++seed) {
-    testing::Adversary adversary(seed);
-    try {
-      call_localiser(adversary, map, tally);
-    } catch (const testing::Finding& finding) {
-      FAIL() << "seed " << seed << ": " << finding.what();
-    }
-  }
+  testing::try_adversaries(
+      testing::repetitions(600), tally.updates,
+      [&](testing::Adversary& adversary, std::uint64_t) { call_localiser(adversary, map, tally); });
   std::printf("[ calls    ] %ld updates;", tally.updates);
   for (int i = 0; i < 6; ++i)
     std::printf(" %s %ld", name(static_cast<LocaliserStatus>(i)), tally.statuses[i]);

@@ -25,8 +25,8 @@ namespace slalom::vehicle::detail {
 ///
 /// The search is Dijkstra's over cells of position and heading, each with the pose that reached it first
 /// (hybrid-state A* without a heuristic; Dolgov et al., "Path planning for autonomous vehicles in unknown
-/// semi-structured environments", IJRR 29(5), 2010). It takes some milliseconds, and only starts while the
-/// car stands. After construction nothing allocates.
+/// semi-structured environments", IJRR 29(5), 2010). It takes some milliseconds, 50 at most where there
+/// is no way, and only starts while the car stands. After construction nothing allocates.
 class Manoeuvre {
  public:
   /// Takes the path, whether it is closed, the body of the car, its wheelbase (m) and the largest angle of
@@ -40,9 +40,20 @@ class Manoeuvre {
         radius_(std::hypot((body.front + body.rear) / 6, body.width / 2)),
         keep_(radius_ + least_share * body.margin),
         nodes_(static_cast<std::size_t>(side) * side * headings),
+        costs_(nodes_.size()),
         nearest_(static_cast<std::size_t>(side) * side) {
     const double length = body.front + body.rear;
     for (int i = 0; i < 3; ++i) discs_[static_cast<std::size_t>(i)] = -body.rear + length * (2 * i + 1) / 6;
+    for (int i = 0; i < 6; ++i) {
+      const int gear = i < 3 ? 1 : -1, turn = (i + 1) % 3 - 1;
+      const double driven = gear * step, turned = turn * curvature_ * driven;
+      arcs_[static_cast<std::size_t>(i)] = {gear,
+                                            turn,
+                                            turned,
+                                            driven * std::cos(0.5 * turned),
+                                            driven * std::sin(0.5 * turned),
+                                            direction(turned)};
+    }
     queue_.reserve(4 * nodes_.size());
     way_.reserve(max_steps);
     window_.reserve(max_window);
@@ -61,19 +72,19 @@ class Manoeuvre {
               double sight) noexcept {
     active_ = false;
     find_window(pose, static_cast<std::size_t>(nearest));
-    std::fill(nodes_.begin(), nodes_.end(), Node{});
+    std::fill(costs_.begin(), costs_.end(), std::numeric_limits<float>::infinity());
     queue_.clear();
-    const double start_room = room(obstacles, 0, 0, 0);
-    push(index(0, 0, 0), {0, 0, 0, 0, -1, 0, 0});
+    const double start_room = room(obstacles, 0, 0, {1, 0});
+    push(index(0, 0, 0), 0, {0, 0, 0, -1, 0, 0});
     while (!queue_.empty() && queue_.size() + 6 <= queue_.capacity()) {
       std::pop_heap(queue_.begin(), queue_.end());
       const Reached here = queue_.back();
       queue_.pop_back();
-      const Node node = nodes_[static_cast<std::size_t>(here.node)];
-      if (here.cost > node.cost) continue;
+      if (here.cost > costs_[static_cast<std::size_t>(here.node)]) continue;
+      const Node& node = nodes_[static_cast<std::size_t>(here.node)];
       if (is_goal(obstacles, node, ahead)) return take(here.node, pose);
-      for (const int gear : {1, -1})
-        for (const int turn : {0, 1, -1}) expand(obstacles, here.node, gear, turn, start_room, sight);
+      const Direction heading = direction(node.yaw);
+      for (const Arc& arc : arcs_) expand(obstacles, here, heading, arc, start_room, sight);
     }
     return false;
   }
@@ -102,7 +113,8 @@ class Manoeuvre {
     for (; end < way_.size() && way_[end].gear == gear; ++end) {
       const maps::Pose& next = way_[end].pose;
       const maps::Point local = maps::inverse_transform(pose, {next.x, next.y});
-      if (room(obstacles, local.x, local.y, next.yaw - pose.yaw) < keep_ - tolerance) return std::nullopt;
+      if (room(obstacles, local.x, local.y, direction(next.yaw - pose.yaw)) < keep_ - tolerance)
+        return std::nullopt;
       if (left < look_ahead) aim = {next.x, next.y};
       left += std::hypot(next.x - before.x, next.y - before.y);
       before = {next.x, next.y};
@@ -117,7 +129,7 @@ class Manoeuvre {
     for (const double driven : {0.1, 0.2}) {  // the car may be beside the way
       const double turned = gear * driven * curvature;
       if (room(obstacles, gear * driven * std::cos(0.5 * turned), gear * driven * std::sin(0.5 * turned),
-               turned) >= std::min(room(obstacles, 0, 0, 0), keep_ - tolerance))
+               direction(turned)) >= std::min(room(obstacles, 0, 0, {1, 0}), keep_ - tolerance))
         continue;
       if (std::abs(speed) < standing) return std::nullopt;
       return Command{std::atan(curvature * wheelbase_), 0};
@@ -146,9 +158,19 @@ class Manoeuvre {
   static constexpr double look_ahead = 0.3, near = 0.1;                                     ///< m
   static constexpr double forwards = 0.8, backwards = 0.5, creep = 0.06, braking = 1.2;     ///< m/s, m/s^2
 
-  /// A pose in the frame of the search, and how it was reached.
+  struct Direction {
+    double cosine, sine;
+  };
+  static Direction direction(double angle) noexcept { return {std::cos(angle), std::sin(angle)}; }
+  /// A short drive; x and y (m) are its end in the frame of the rear axle at its start, `turned` is in rad.
+  struct Arc {
+    int gear = 0, turn = 0;
+    double turned = 0, x = 0, y = 0;
+    Direction turn_direction{};
+  };
+  /// A pose in the frame of the search, and how it was reached. The yaw is not wrapped.
   struct Node {
-    float x = 0, y = 0, yaw = 0, cost = std::numeric_limits<float>::infinity();
+    float x = 0, y = 0, yaw = 0;
     std::int32_t before = -1;
     std::int8_t gear = 0, turn = 0;
   };
@@ -178,11 +200,12 @@ class Manoeuvre {
   }
 
   /// The least clearance (m) of the discs of a body at a pose in the frame of the map.
-  double room(const maps::ClearanceMap& obstacles, double x, double y, double yaw) const noexcept {
-    const double c = std::cos(yaw), s = std::sin(yaw);
+  double room(const maps::ClearanceMap& obstacles, double x, double y,
+              const Direction& heading) const noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (const double disc : discs_)
-      least = std::min(least, static_cast<double>(obstacles.at(x + disc * c, y + disc * s)));
+      least = std::min(least,
+                       static_cast<double>(obstacles.at(x + disc * heading.cosine, y + disc * heading.sine)));
     return least;
   }
 
@@ -227,39 +250,48 @@ class Manoeuvre {
     const Place& place = window_[static_cast<std::size_t>(nearest_[at])];
     if (place.way < ahead || std::abs(maps::wrap_angle(node.yaw - place.pose.yaw)) > goal_yaw) return false;
     if (std::hypot(place.pose.x - node.x, place.pose.y - node.y) > goal_distance) return false;
+    const Direction heading = direction(node.yaw);
     for (const double further : {0.25, 0.5})
-      if (room(obstacles, node.x + further * std::cos(node.yaw), node.y + further * std::sin(node.yaw),
-               node.yaw) < keep_)
+      if (room(obstacles, node.x + further * heading.cosine, node.y + further * heading.sine, heading) <
+          keep_)
         return false;
     return true;
   }
 
-  void expand(const maps::ClearanceMap& obstacles, std::int32_t from, int gear, int turn, double start_room,
-              double sight) noexcept {
-    const Node node = nodes_[static_cast<std::size_t>(from)];
-    const double driven = gear * step, turned = turn * curvature_ * driven, middle = node.yaw + 0.5 * turned;
-    const double x = node.x + driven * std::cos(middle), y = node.y + driven * std::sin(middle),
-                 yaw = maps::wrap_angle(node.yaw + turned);
+  void expand(const maps::ClearanceMap& obstacles, const Reached& from, const Direction& heading,
+              const Arc& arc, double start_room, double sight) noexcept {
+    const Node& node = nodes_[static_cast<std::size_t>(from.node)];
+    const double x = node.x + arc.x * heading.cosine - arc.y * heading.sine,
+                 y = node.y + arc.x * heading.sine + arc.y * heading.cosine, yaw = node.yaw + arc.turned;
     const int to = index(x, y, yaw);
     if (to < 0) return;
-    const double clear = room(obstacles, x, y, yaw);
-    if (clear < keep_ && !(clear >= start_room && node.cost < way_out && clear > 0)) return;
+    const double shift = node.gear != 0 && node.gear != arc.gear ? shift_price : 0;
+    const auto cost_with = [&](double price) {
+      return static_cast<float>(from.cost + step * price + shift + 0.01 * std::abs(arc.turn - node.turn));
+    };
+    const float least_cost = costs_[static_cast<std::size_t>(to)];
+    if (cost_with(arc.gear < 0 ? reverse_price : 1) >= least_cost) return;
+    const Direction there = {
+        heading.cosine * arc.turn_direction.cosine - heading.sine * arc.turn_direction.sine,
+        heading.sine * arc.turn_direction.cosine + heading.cosine * arc.turn_direction.sine};
+    const double clear = room(obstacles, x, y, there);
+    if (clear < keep_ && !(clear >= start_room && from.cost < way_out && clear > 0)) return;
     double price = 1 + nearness_price * std::clamp(1 - (clear - keep_) / cautious, 0.0, 1.0);
-    if (gear < 0) {
-      const double back_x = x + discs_[0] * std::cos(yaw), back_y = y + discs_[0] * std::sin(yaw);
+    if (arc.gear < 0) {
+      const double back_x = x + discs_[0] * there.cosine, back_y = y + discs_[0] * there.sine;
       price *= std::abs(std::atan2(back_y, back_x)) > sight ? blind_price : reverse_price;
     }
-    const double shift = node.gear != 0 && node.gear != gear ? shift_price : 0;
-    const auto cost =
-        static_cast<float>(node.cost + step * price + shift + 0.01 * std::abs(turn - node.turn));
-    if (cost >= nodes_[static_cast<std::size_t>(to)].cost) return;
-    push(to, {static_cast<float>(x), static_cast<float>(y), static_cast<float>(yaw), cost, from,
-              static_cast<std::int8_t>(gear), static_cast<std::int8_t>(turn)});
+    const float cost = cost_with(price);
+    if (cost >= least_cost) return;
+    push(to, cost,
+         {static_cast<float>(x), static_cast<float>(y), static_cast<float>(yaw), from.node,
+          static_cast<std::int8_t>(arc.gear), static_cast<std::int8_t>(arc.turn)});
   }
 
-  void push(int to, const Node& node) noexcept {
+  void push(int to, float cost, const Node& node) noexcept {
     nodes_[static_cast<std::size_t>(to)] = node;
-    queue_.push_back({node.cost, to});
+    costs_[static_cast<std::size_t>(to)] = cost;
+    queue_.push_back({cost, to});
     std::push_heap(queue_.begin(), queue_.end());
   }
 
@@ -286,7 +318,9 @@ class Manoeuvre {
   double wheelbase_, curvature_;   ///< m, 1/m
   double radius_, keep_;           ///< m, of the discs that cover the body, and what their centres keep
   std::array<double, 3> discs_{};  ///< m, centres ahead of the rear axle
+  std::array<Arc, 6> arcs_{};
   std::vector<Node> nodes_;
+  std::vector<float> costs_;           ///< the least cost of each node so far; infinite before the first
   std::vector<std::int16_t> nearest_;  ///< the nearest place of `window_` for each cell of position
   ReservedVector<Reached> queue_;
   ReservedVector<Place> window_;

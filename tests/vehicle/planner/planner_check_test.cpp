@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "support/repetitions.hpp"
+#include "support/adversarial_tries.hpp"
 #include "vehicle/planner/lane_scan.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
@@ -112,16 +112,10 @@ TEST(PlannerCheck, AfterAJumpOfThePosePlansStayBetweenTheWallsOfTheScan) {
 }
 
 TEST(PlannerCheck, EveryCommandIsValidForAnyInput) {
-  const long calls = testing::repetitions(20000);
   testing::PlannerTally tally;
-  for (std::uint64_t seed = testing::first_seed(); tally.updates < calls; ++seed) {
-    testing::Adversary adversary(seed);
-    try {
-      testing::call_planner(adversary, 200, tally);
-    } catch (const testing::Finding& finding) {
-      FAIL() << "seed " << seed << ": " << finding.what();
-    }
-  }
+  testing::try_adversaries(
+      testing::repetitions(20000), tally.updates,
+      [&](testing::Adversary& adversary, std::uint64_t) { testing::call_planner(adversary, 200, tally); });
   std::printf("[ calls    ] %ld updates of %ld planners (%ld more refused), %ld corrections;", tally.updates,
               tally.planners - tally.refused, tally.refused, tally.corrections);
   for (int i = 0; i < 7; ++i) std::printf(" %s %ld", name(static_cast<PlannerStatus>(i)), tally.statuses[i]);
