@@ -114,9 +114,9 @@ struct NavigationMaps {
   bool ends_leg = false;      ///< whether that part ends where the leg does
   bool ends_at_goal = false;  ///< whether that part ends at the goal
   maps::Pose end;             ///< end of that part, map frame; a turn ends at exactly this yaw
-  bool overlaps =
-      false;  ///< whether the body overlaps an obstacle now: rollouts then take it without a rim
-              ///< of half a cell, so that they tell an overlap by an error of a scan from a collision
+  /// Whether the body overlaps an obstacle now. Rollouts then take it without a rim of half a cell, so that
+  /// they tell an overlap by an error of a scan from a collision.
+  bool overlaps = false;
   maps::MovingObstaclesView others{};  ///< moving obstacles, map frame
 };
 
