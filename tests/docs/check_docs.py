@@ -4,6 +4,7 @@ compiles and runs, its patches apply, its commands and their options exist.
 usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | patches ROOT | shell ROOT PROGRAM | site FOLDER
 """
 
+import json
 import os
 import re
 import shutil
@@ -19,13 +20,22 @@ LINK = re.compile(r"(?<!\\)\[[^\]]*\]\(([^)\s]+)[^)]*\)")
 
 def pages(root):
     return [root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md", root / "courses" / "README.md",
-            *sorted((root / "docs").rglob("*.md"))]
+            *sorted((root / "docs").rglob("*.md")), *sorted((root / "examples" / "notebooks").glob("*.ipynb"))]
+
+
+def markdown(path):
+    """The text of a page. The cells of a notebook become paragraphs and fenced blocks of Python."""
+    text = path.read_text()
+    if path.suffix != ".ipynb":
+        return text
+    return "\n\n".join(f"```python\n{source}\n```" if kind == "code" else source
+                       for kind, source in ((c["cell_type"], "".join(c["source"])) for c in json.loads(text)["cells"]))
 
 
 def blocks(path, language):
     """[(line, text)] of the fenced code blocks in a language."""
     found, start, kind, body = [], 0, None, []
-    for number, line in enumerate(path.read_text().split("\n"), 1):
+    for number, line in enumerate(markdown(path).split("\n"), 1):
         if line.startswith("```"):
             if kind is None:
                 start, kind, body = number, line[3:].strip(), []
@@ -40,7 +50,7 @@ def blocks(path, language):
 
 def anchors(path):
     """The anchors that code hosts generate for the headings of a page."""
-    text = re.sub(r"^```.*?^```", "", path.read_text(), flags=re.S | re.M)
+    text = re.sub(r"^```.*?^```", "", markdown(path), flags=re.S | re.M)
     headings = re.findall(r"^#+ (.*)$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
 
@@ -48,7 +58,7 @@ def anchors(path):
 def check_links(root):
     errors = []
     for page in pages(root):
-        text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.S | re.M)
+        text = re.sub(r"^```.*?^```", "", markdown(page), flags=re.S | re.M)
         for target in LINK.findall(text):
             if re.match(r"\w+:", target):
                 continue
@@ -58,7 +68,7 @@ def check_links(root):
                 errors.append(f"{page}: {target}: no such file")
             elif anchor and path.suffix == ".md" and anchor not in anchors(path):
                 errors.append(f"{page}: {target}: no such heading")
-        for target, excerpt in EXCERPT.findall(page.read_text()):
+        for target, excerpt in EXCERPT.findall(markdown(page)):
             whole, part = (re.sub(r"^ +", "", t, flags=re.M) for t in ((page.parent / target).read_text(), excerpt))
             if part not in whole:
                 errors.append(f"{page}: the code after the link to {target} is not in that file")
@@ -107,8 +117,9 @@ def check_cpp(root, *compiler):
 
 
 def check_python(root):
-    """The blocks run, one after the other for each page, in a folder for what they write."""
+    """The blocks run, one after the other for each page or notebook, in a folder for what they write."""
     errors = []
+    os.environ["MPLBACKEND"] = "agg"
     for page in pages(root):
         found = blocks(page, "python")
         names = {}
@@ -118,7 +129,7 @@ def check_python(root):
                 try:
                     exec(compile(text, f"{page}:{line}", "exec"), names)
                 except Exception as error:
-                    if isinstance(error, ModuleNotFoundError) and error.name == "torch":
+                    if isinstance(error, ModuleNotFoundError) and error.name in ("torch", "matplotlib"):
                         print(f"{page.relative_to(root)}:{line}: not run, since {error.name} is missing "
                               f"(Debian: python3-{error.name})")
                     else:
