@@ -4,6 +4,7 @@ SLALOM_DRIVING=1 also builds courses, planner and simulator of cars. CMAKE_ARGS 
 """
 
 import os
+import platform
 import re
 import shlex
 import shutil
@@ -35,10 +36,17 @@ class CMakeBuild(build_ext):
         subprocess.run([cmake, "--install", build, "--component", "python", "--prefix", prefix], check=True)
 
 
+def platform_of_wheel():
+    """PEP 600: a wheel that contains all libraries but those of every Linux runs where the C library is as new."""
+    name, version = platform.libc_ver()
+    return {"plat_name": f"manylinux_{version.replace('.', '_')}_{platform.machine()}"} if name == "glibc" else {}
+
+
 setup(
     version=re.search(r"project\(slalom VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1],
     packages=[],
     py_modules=[],
     ext_modules=[Extension("slalom._slalom", sources=[])],  # built by CMake; its name makes the wheel one of this platform
     cmdclass={"build_ext": CMakeBuild},
+    options={"bdist_wheel": platform_of_wheel()},
 )
