@@ -274,7 +274,7 @@ class Controller {
       return;
     }
     const double now = step > 0 && elapsed > step ? std::min(std::round(elapsed / step) - 1, last) : 0;
-    previous_ = inputs_[static_cast<std::size_t>(now)];
+    previous_ = inputs_[saturate_cast<std::size_t>(now)];
     if (!std::exchange(told_, false)) return;
     for (int i = 0; i < input_count; ++i) {
       const double value = bounds_.nearest(static_cast<std::size_t>(i), given_[i]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 
 namespace slalom::sim {
@@ -79,7 +80,7 @@ PurePursuit::Target PurePursuit::target(const maps::Point& position) const noexc
   if (target.nearest.distance < options_.lookahead) {
     // The sum may carry to the next row, as a start at (row + 1, 0).
     const double start = static_cast<double>(segment) + target.nearest.along;
-    const auto row = std::min(static_cast<std::size_t>(start), count - 1);
+    const auto row = std::min(saturate_cast<std::size_t>(start), count - 1);
     const auto crossing = cross_circle(position, row, start - std::floor(start));
     if (!crossing) return target;
     const auto at =

@@ -215,7 +215,7 @@ maps::Point RacingLine::Point::beside(double left) const noexcept {
 RacingLine::Point RacingLine::at(double arc) const noexcept {
   const double turns = arc / path_.length();
   const double place = (turns - std::floor(turns)) * static_cast<double>(points_.size());
-  const auto first = std::min(static_cast<std::size_t>(place), points_.size() - 1);
+  const auto first = std::min(saturate_cast<std::size_t>(place), points_.size() - 1);
   const double share = std::clamp(place - static_cast<double>(first), 0.0, 1.0);
   const Point &a = points_[first], &b = points_[(first + 1) % points_.size()];
   const auto mix = [share](double from, double to) { return from + share * (to - from); };

@@ -71,7 +71,7 @@ void Lidar::gym_scan(const Track& track, const maps::Pose& sensor, std::span<dou
   while (index < 0) index += table_size;
   for (double& range : ranges) {
     // A tiny negative angle plus a turn may round to the table's size.
-    const auto entry = std::min(static_cast<std::size_t>(index), std::size_t{table_size - 1});
+    const auto entry = std::min(saturate_cast<std::size_t>(index), std::size_t{table_size - 1});
     double x = sensor.x, y = sensor.y, step = from_start, total = from_start;
     while (step > close_enough && total <= options_.range_max) {
       x += step * table.cosine[entry];
