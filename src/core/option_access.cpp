@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -28,8 +30,16 @@ std::string number_text(double value) {
   if (std::isnan(value)) return ".nan";
   if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
   char buffer[32];
+#if defined(__cpp_lib_to_chars)
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
   return {buffer, end};
+#else  // libc++ 14: the fewest digits that give the value again
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
+    if (std::strtod(buffer, nullptr) == value) break;
+  }
+  return buffer;
+#endif
 }
 
 /// A value as people write it: 100000000, not 1e+08.
@@ -80,9 +90,17 @@ double number_of(std::string_view text) {
   if (text == "-.inf" || text == "-inf") return -std::numeric_limits<double>::infinity();
   const std::string_view digits = !text.empty() && text.front() == '+' ? text.substr(1) : text;
   double value = 0;
+#if defined(__cpp_lib_to_chars)
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-    refuse(text, "must be a number");
+  const bool is_number = error == std::errc{} && end == digits.data() + digits.size();
+#else
+  const std::string copy(digits);
+  char* end = nullptr;
+  value = std::strtod(copy.c_str(), &end);
+  const bool is_number = copy.find_first_not_of("0123456789+-.eE") == std::string::npos && !copy.empty() &&
+                         end == copy.c_str() + copy.size();
+#endif
+  if (!is_number || !std::isfinite(value)) refuse(text, "must be a number");
   return value;
 }
 

@@ -182,9 +182,9 @@ def check_shell(root, program):
 def check_site(folder):
     """The local links of the generated pages."""
     errors, seen = [], 0
-    files = {p.name for p in folder.iterdir()}
+    files = {str(p): p for p in folder.rglob("*")}
     ids = {}
-    for page in sorted(folder.glob("*.html")):
+    for page in sorted(p for p in files.values() if p.suffix == ".html"):
         text = page.read_text(errors="replace")
         for target in re.findall(r'(?:href|src)="([^"]+)"', text):
             # Doxygen writes the last two also where it shows no nested classes or concepts.
@@ -192,15 +192,15 @@ def check_site(folder):
                 continue
             seen += 1
             file, _, anchor = urllib.parse.unquote(target).partition("#")
-            file = file or page.name
-            if file not in files and not (folder / file).exists():
-                errors.append(f"{page.name}: {target}: no such file")
+            file = os.path.normpath(page.parent / file) if file else str(page)
+            if file not in files and file != str(folder):
+                errors.append(f"{page.relative_to(folder)}: {target}: no such file")
             elif anchor and file.endswith(".html"):
                 if file not in ids:
-                    ids[file] = set(re.findall(r'(?:id|name)="([^"]+)"', (folder / file).read_text(errors="replace")))
+                    ids[file] = set(re.findall(r'(?:id|name)="([^"]+)"', files[file].read_text(errors="replace")))
                 if anchor not in ids[file]:
-                    errors.append(f"{page.name}: {target}: no such anchor")
-    print(f"{seen} links on {len(list(folder.glob('*.html')))} pages")
+                    errors.append(f"{page.relative_to(folder)}: {target}: no such anchor")
+    print(f"{seen} links on {sum(p.suffix == '.html' for p in files.values())} pages")
     return sorted(set(errors))
 
 

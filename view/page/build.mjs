@@ -31,6 +31,7 @@ const policy = [
   "img-src data: blob:",
   "media-src blob:",
   "connect-src 'self' ws: wss:",
+  "worker-src 'self'",
   "base-uri 'none'",
 ].join("; ");
 const declared = `<meta http-equiv="Content-Security-Policy" content="${policy}" />`;

@@ -77,7 +77,8 @@ void put_scene(FrameWriter& to, const SubjectFacts& facts, const std::vector<Sha
                const maps::Pose& pose, bool collides) {
   std::vector<Line> polygons;
   to.begin(Block::bodies);
-  const auto count = std::ranges::count_if(shapes, [](const Shape& s) { return s.corners.empty(); });
+  const auto count =
+      std::count_if(shapes.begin(), shapes.end(), [](const Shape& s) { return s.corners.empty(); });
   to.put(static_cast<std::uint32_t>(1 + count));
   to.put_body(0, 0, collides, pose, facts.length, facts.width);
   std::size_t id = 0;

@@ -104,8 +104,8 @@ Json ProblemSession::options() {
   if (const SolverOptions* now = subject.options()) {
     const auto before = list_options(loaded_.at(now->method()));
     add(now->method(), list_options(*now), [&](const std::string& option) {
-      const auto found =
-          std::ranges::find_if(before, [&](const OptionEntry& e) { return option == e.declaration.name; });
+      const auto found = std::find_if(before.begin(), before.end(),
+                                      [&](const OptionEntry& e) { return option == e.declaration.name; });
       return to_text(found->value);
     });
   }

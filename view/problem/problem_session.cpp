@@ -103,9 +103,9 @@ ProblemFrame ProblemSession::drive(Run& run) {
   const SolveResult& solve = run.decide();
   solve_time_ = std::chrono::duration<double>(Clock::now() - begin).count();
   copy_bytes_ = bytes_of(&solve);
-  const auto method =
-      std::ranges::find(methods_, run.subject->options() ? run.subject->options()->method() : "");
-  const auto earlier = std::ranges::lower_bound(collided_, run.steps) - collided_.begin();
+  const auto method = std::find(methods_.begin(), methods_.end(),
+                                run.subject->options() ? run.subject->options()->method() : "");
+  const auto earlier = std::lower_bound(collided_.begin(), collided_.end(), run.steps) - collided_.begin();
   ProblemFrame frame = encode_step(*run.subject, solve,
                                    {.tick = run.steps,
                                     .time = run.steps * run.period,
@@ -121,7 +121,7 @@ ProblemFrame ProblemSession::drive(Run& run) {
 /// Keeps and shows the last step of the present run.
 void ProblemSession::keep(ProblemFrame frame) {
   const int number = run_->steps - 1;
-  collided_.erase(std::ranges::lower_bound(collided_, number), collided_.end());
+  collided_.erase(std::lower_bound(collided_.begin(), collided_.end(), number), collided_.end());
   if (frame.collides) collided_.push_back(number);
   if (number == 0) bounds_ = frame.bounds;
   bounds_.include(frame.bounds.x0, frame.bounds.y0);

@@ -67,7 +67,8 @@ class TimelineOf {
   }
   /// Notes an action after `ticks` ticks, behind those that are noted there.
   void note(int ticks, Action action) {
-    const auto later = std::ranges::find_if(actions_, [&](const auto& each) { return each.first > ticks; });
+    const auto later =
+        std::find_if(actions_.begin(), actions_.end(), [&](const auto& each) { return each.first > ticks; });
     actions_.emplace(later, ticks, std::move(action));
   }
   /// Applies the actions that are noted for the ticks that drives have.
@@ -108,7 +109,8 @@ class TimelineOf {
 
   /// Returns the drives as they were when a stored tick began, with the actions before it: a copy, driven on.
   Drives before(int tick) const {
-    const auto later = std::ranges::find_if(copies_, [&](const Drives& each) { return each.ticks() > tick; });
+    const auto later =
+        std::find_if(copies_.begin(), copies_.end(), [&](const Drives& each) { return each.ticks() > tick; });
     Drives drives = *std::prev(later);
     for (; drives.ticks() < tick; act(drives)) drives.tick(at(drives.ticks()).delays);
     return drives;

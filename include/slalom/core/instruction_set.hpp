@@ -2,13 +2,19 @@
 
 #include <cstdint>
 
-/// The instruction sets that kernels are compiled for, as tags and as function attributes, and the one in
-/// use.
+/// The instruction sets of kernels, as tags and as function attributes, and the one in use.
 
 #if defined(__x86_64__) || defined(__i386__)
 #define SLALOM_X86 1
 #else
 #define SLALOM_X86 0
+#endif
+
+/// Whether the build's baseline rounds every product before it is added.
+#if SLALOM_X86 || defined(__wasm__)
+#define SLALOM_BASELINE_ROUNDS 1
+#else
+#define SLALOM_BASELINE_ROUNDS 0
 #endif
 
 #if SLALOM_X86
@@ -28,8 +34,7 @@
 #define SLALOM_ISA_AVX512
 #endif
 
-/// Attributes of a function into which everything that it calls is inlined, for one instruction set. Kernels
-/// get them from dispatch.hpp.
+/// Attributes of a function into which all that it calls is inlined. Kernels get them from dispatch.hpp.
 #define SLALOM_TARGET_GENERIC __attribute__((flatten))
 /// Attributes of a function that uses SSE4.
 #define SLALOM_TARGET_SSE4 SLALOM_ISA_SSE4 __attribute__((flatten))
@@ -38,24 +43,19 @@
 /// Attributes of a function that uses AVX-512.
 #define SLALOM_TARGET_AVX512 SLALOM_ISA_AVX512 __attribute__((flatten))
 
-/// Marks functions that a kernel calls. g++ applies `flatten` to calls at every depth, but only to functions
-/// that are not `always_inline`: those it rejects early, because their callers lack the instruction set.
-/// clang applies `flatten` to direct calls only, so every function of a kernel is marked; those that call a
-/// user's function, or an operation of one instruction set, are marked `SLALOM_INLINE_CALLS`.
+/// Marks functions that a kernel calls. g++ applies `flatten` to calls at every depth, but rejects functions
+/// that are `always_inline`. clang applies it to direct calls only, so every function of a kernel is marked;
+/// those that call a user's function, or an operation of one instruction set, are `SLALOM_INLINE_CALLS`.
 #if defined(__clang__)
 #define SLALOM_INLINE __attribute__((always_inline)) inline
 /// Like SLALOM_INLINE, and inlines all calls in the function.
 #define SLALOM_INLINE_CALLS __attribute__((always_inline, flatten)) inline
+/// Lets clang fuse a product and a sum that stand in different inline functions (g++ does by default).
+#define SLALOM_FUSE _Pragma("clang fp contract(fast)")
 #else
 #define SLALOM_INLINE inline
 /// Like SLALOM_INLINE, and inlines all calls in the function.
 #define SLALOM_INLINE_CALLS inline
-#endif
-
-#if defined(__clang__)
-/// Lets clang fuse a product and a sum that stand in different inline functions (g++ does by default).
-#define SLALOM_FUSE _Pragma("clang fp contract(fast)")
-#else
 /// Allows fused multiply-add.
 #define SLALOM_FUSE
 #endif
@@ -90,10 +90,10 @@ bool supported(Target target) noexcept;
 Target active_target();
 
 /// Tags of the instruction sets: the `lanes` of a pack, and whether products and sums are fused, that is,
-/// rounded once. `Generic` uses the build's baseline (SSE2 on x86-64, NEON on AArch64).
+/// rounded once. `Generic` uses the build's baseline: SSE2, NEON or the SIMD128 of WebAssembly.
 struct Generic {
-  static constexpr int lanes = 4;                 ///< number of float32 values
-  static constexpr bool fused = SLALOM_X86 == 0;  ///< whether it has fused multiply-add
+  static constexpr int lanes = 4;                             ///< number of float32 values
+  static constexpr bool fused = SLALOM_BASELINE_ROUNDS == 0;  ///< whether it has fused multiply-add
 };
 /// SSE 4.2.
 struct Sse4 {

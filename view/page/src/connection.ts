@@ -1,10 +1,11 @@
 import type { Handlers, Link } from "./link";
-import type { Command } from "./page";
+import { solver, type Command } from "./page";
 import { decode, type Frame, type Text } from "./protocol";
+import { WorkerSocket } from "./worker_socket";
 
-/** Keeps a WebSocket open: reconnects by itself, with a wait that grows to three seconds. */
+/** Keeps a WebSocket open, or a worker: reconnects by itself, with a wait that grows to three seconds. */
 export class Connection implements Link {
-  private socket?: WebSocket;
+  private socket?: WebSocket | WorkerSocket;
   private attempts = 0;
   private timer = 0;
   received = 0;
@@ -67,7 +68,7 @@ export class Connection implements Link {
     address.hash = "";
     const token = new URLSearchParams(location.search).get("token");
     address.search = "?acknowledge=1" + (token ? "&token=" + encodeURIComponent(token) : "");
-    const socket = new WebSocket(address);
+    const socket = solver ? new WorkerSocket(solver) : new WebSocket(address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.onopen = () => {
@@ -75,7 +76,7 @@ export class Connection implements Link {
       this.arrived = this.acknowledged = 0;
       this.handlers.status(true, 0);
     };
-    socket.onmessage = (event) => this.got(event.data);
+    socket.onmessage = (event: { data: string | ArrayBuffer }) => this.got(event.data);
     socket.onclose = () => {
       this.attempts += 1;
       for (const { fail } of this.questions.values()) fail(new Error("The connection was lost."));

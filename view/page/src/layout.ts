@@ -1,4 +1,5 @@
 import { get, make } from "./dom";
+import { solver } from "./page";
 import { costTerms, layers } from "./scene/layers";
 
 /** Icons of 16 x 16 for buttons whose text does not fit on narrow screens. */
@@ -40,6 +41,10 @@ export function fillTerms() {
 /** Gives the page the name of a problem of the user's own, and hides what only a car on a course has. */
 export function nameProblem({ title }: { title: string }) {
   document.body.classList.add("own");
+  if (solver && self !== top) {
+    document.body.classList.add("framed");
+    get("scenario-menu").before(get("primary"));
+  }
   document.title = title;
   document.querySelector('[data-follow="fit"]')!.textContent = "Fit";
   get("caption").hidden = false;

@@ -15,7 +15,7 @@ import { EvaluationPane } from "./panes/evaluation";
 import { InspectPane } from "./panes/inspect";
 import { ForkBox } from "./panes/fork";
 import { OptionsPane } from "./panes/options";
-import { isReplay, page, period, redraw, scalar, send } from "./page";
+import { ask, isReplay, page, period, redraw, scalar, send } from "./page";
 import { Gaps, Past } from "./past";
 import { Player } from "./player";
 import { Popover } from "./popover";
@@ -344,7 +344,7 @@ requestAnimationFrame(draw);
 const names = ["frame", "state", "hello"] as const;
 const getters = names.map((name) => [name, { get: () => page[name] }]);
 const counters = (["received", "waiting"] as const).map((name) => [name, { get: () => page.link[name] }]);
-const known = { replay: isReplay, scalar: (name: string) => scalar(name), scene, past, best, send };
+const known = { replay: isReplay, scalar: (name: string) => scalar(name), scene, past, best, send, ask };
 Object.assign(window, {
   slalom: Object.defineProperties(known, Object.fromEntries([...getters, ...counters])),
 });

@@ -18,6 +18,9 @@ export const page = {
 export const recordings = document.querySelectorAll('script[type="application/x-slalom-replay"]');
 export const isReplay = recordings.length > 0;
 
+/** The program inside this page's folder that takes the place of a server, if there is one. */
+export const solver = document.querySelector<HTMLMetaElement>('meta[name="solver"]')?.content;
+
 export const send = (command: Command) => page.link.send(command);
 /** Sends a command and waits until it was executed; fails with the reason why it could not be. */
 export const ask = (command: Command) => page.link.ask(command);

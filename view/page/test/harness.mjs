@@ -58,9 +58,13 @@ export class Harness {
 
   /** Opens a page that shows the drive of a scenario. */
   async openAll(scenario, options) {
-    this.browser = await launchChromium();
+    await this.launch();
     this.server = await this.start("view", ...scenario, "--port", "0");
     this.page = await this.open(this.server.address, options);
+  }
+
+  async launch() {
+    this.browser = await launchChromium();
   }
 
   start(...args) {
@@ -145,7 +149,7 @@ export class Harness {
 
   async close() {
     await this.browser.close();
-    await this.server.stop();
+    await this.server?.stop();
     rmSync(this.folder, { recursive: true });
   }
 }
