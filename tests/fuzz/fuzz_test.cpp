@@ -6,6 +6,7 @@
 #include <random>
 
 #include "fuzz/target.hpp"
+#include "support/promise.hpp"
 #include "support/repetitions.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -16,7 +17,7 @@ class Fuzz : public ::testing::TestWithParam<const Target*> {
  protected:
   bool run(const std::string& bytes, const std::string& which) const {
     try {
-      return GetParam()->run(bytes);
+      return testing::repeat_if_slow([&] { return GetParam()->run(bytes); });
     } catch (const std::exception& error) {
       ADD_FAILURE() << GetParam()->name << ", " << which << ": " << error.what();
       return false;
