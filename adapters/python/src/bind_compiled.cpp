@@ -1,5 +1,7 @@
 #include <dlfcn.h>
 
+#include <functional>
+
 #include "controller.hpp"
 #include "network_problem.hpp"
 #include "slalom/core/dispatch.hpp"
@@ -71,12 +73,28 @@ py::object from_numbers(const std::vector<double>& values) {
 struct Part {
   const char* name;
   const char* help;
-  void (*set)(Parts&, const py::object&);
-  py::object (*get)(const Parts&);
+  std::function<void(Parts&, const py::object&)> set;
+  std::function<py::object(const Parts&)> get;
 };
 
+Part number(const char* name, const char* help, double NetworkModel::*part) {
+  const std::string label = std::string("MlpProblem.") + name;
+  return {name, help,
+          [=](Parts& p, const py::object& value) { p.model.*part = value_as<double>(value, label); },
+          [=](const Parts& p) { return py::object(py::float_(p.model.*part)); }};
+}
+
+Part field(const char* name, const char* help, py::object Parts::*part) {
+  const std::string label = std::string("MlpProblem.") + name;
+  const auto set = [=](Parts& p, const py::object& value) {
+    if (!value.is_none()) value_as<maps::Field>(value, label);
+    p.*part = value;
+  };
+  return {name, help, set, [=](const Parts& p) { return p.*part; }};
+}
+
 template <std::vector<double> NetworkModel::*field>
-constexpr Part weights(const char* name, const char* help) {
+Part weights(const char* name, const char* help) {
   return {name, help, [](Parts& p, const py::object& value) { p.model.*field = numbers(value); },
           [](const Parts& p) { return from_numbers(p.model.*field); }};
 }
@@ -101,11 +119,12 @@ const Part network_parts[] = {
          all.append(py::make_tuple(disc.x, disc.y, disc.radius));
        return py::object(all);
      }},
-    {"disc_weight", "cost of a state within a disc",
-     [](Parts& p, const py::object& value) {
-       p.model.disc_weight = value_as<double>(value, "MlpProblem.disc_weight");
-     },
-     [](const Parts& p) { return py::object(py::float_(p.model.disc_weight)); }},
+    number("disc_weight", "cost of a state that collides, with a disc or a wall", &NetworkModel::disc_weight),
+    field("walls", "Field with the distance from the nearest wall (slalom.signed_distance), m, or None",
+          &Parts::walls),
+    number("clearance", "m: a state collides where `walls` is less", &NetworkModel::clearance),
+    field("field", "Field that is a part of the cost of a state, or None", &Parts::field),
+    number("field_weight", "factor of `field`", &NetworkModel::field_weight),
     {"dt", "s, duration of a step; 0: unknown",
      [](Parts& p, const py::object& value) { p.dt = value_as<double>(value, "MlpProblem.dt"); },
      [](const Parts& p) { return py::object(py::float_(p.dt)); }},

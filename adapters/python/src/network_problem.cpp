@@ -15,7 +15,7 @@ constexpr int most = slalom::detail::MlpNetwork::max_neurons;
 /// The parts of the cost of a state, and whether it collides.
 template <class T>
 struct StateCost {
-  T distance = T(0), discs = T(0);
+  T distance = T(0), obstacles = T(0), field = T(0);
   mask_t<T> collided = mask_t<T>(false);
 };
 
@@ -29,7 +29,9 @@ SLALOM_INLINE_CALLS StateCost<T> state_cost(const NetworkModel& m, const std::ve
     const auto inside = square(x[0] - T(disc.x)) + square(x[1] - T(disc.y)) < T(disc.radius * disc.radius);
     cost.collided = cost.collided || inside;
   }
-  cost.discs = select(cost.collided, T(m.disc_weight), T(0));
+  if (m.has_walls) cost.collided = cost.collided || m.walls.value(x[0], x[1]) < T(m.clearance);
+  cost.obstacles = select(cost.collided, T(m.disc_weight), T(0));
+  if (m.field_weight != 0) cost.field = T(m.field_weight) * m.field.value(x[0], x[1]);
   return cost;
 }
 
@@ -62,7 +64,7 @@ struct NetworkRollout {
       for (int k = 0; k <= batch.steps(); ++k) {
         const bool last = k == batch.steps();
         const StateCost<F> cost = state_cost(m, last ? m.terminal_weights : m.state_weights, x);
-        total = total + cost.distance + cost.discs;
+        total = total + cost.distance + cost.obstacles + cost.field;
         hit = hit || cost.collided;
         if (last) break;
         for (int i = 0; i < m.inputs; ++i) u[i] = F::load(batch.row(k, i) + s);
@@ -110,8 +112,12 @@ NetworkProblem::NetworkProblem(Parts parts) : parts_(std::move(parts)) {
   spread(m.state_weights, m.states, "state_weights");
   spread(m.terminal_weights, m.states, "terminal_weights");
   spread(m.input_weights, m.inputs, "input_weights");
-  if (!m.discs.empty() && m.states < 2)
-    throw std::invalid_argument("MlpProblem.discs: need a state of at least 2 values, x and y first");
+  m.has_walls = !parts_.walls.is_none();
+  if (m.has_walls) m.walls = parts_.walls.cast<maps::Field>();
+  m.field = parts_.field.is_none() ? maps::Field() : parts_.field.cast<maps::Field>();
+  if ((!m.discs.empty() || m.has_walls || m.field_weight != 0) && m.states < 2)
+    throw std::invalid_argument(
+        "MlpProblem: discs, walls and field need a state of at least 2 values, x and y first");
   for (std::vector<double>* bound : {&parts_.input_min, &parts_.input_max})
     if (bound->size() > 1) spread(*bound, m.inputs, "input_min, input_max");
   if (!(parts_.dt >= 0 && std::isfinite(parts_.dt)))
@@ -150,7 +156,8 @@ Prediction NetworkProblem::predict(std::span<const double> state, std::span<cons
     const bool last = inputs.empty();
     const auto cost = state_cost(m, last ? m.terminal_weights : m.state_weights, x.data());
     add(last ? "terminal" : "state", cost.distance);
-    add("discs", cost.discs);
+    add("obstacles", cost.obstacles);
+    add("field", cost.field);
     result.collided = result.collided || cost.collided;
     if (last) return result;
     add("input", input_cost(m, inputs.data()));

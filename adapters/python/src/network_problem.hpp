@@ -3,6 +3,7 @@
 #include "keywords.hpp"
 #include "problem.hpp"
 #include "slalom/core/network/mlp.hpp"
+#include "slalom/maps/field.hpp"
 
 namespace slalom::python {
 
@@ -18,7 +19,12 @@ struct NetworkModel {
   std::vector<double> goal, state_weights, terminal_weights;  ///< one for each state
   std::vector<double> input_weights;                          ///< one for each input
   std::vector<Disc> discs;
-  double disc_weight = 0;  ///< cost of a state within a disc
+  double disc_weight = 0;   ///< cost of a state that collides
+  bool has_walls = false;   ///< whether a state collides where `walls` is below `clearance`
+  maps::Field walls;        ///< distance from the nearest wall, m, at the first two states
+  double clearance = 0;     ///< m
+  maps::Field field;        ///< cost map, at the first two states
+  double field_weight = 0;  ///< factor of `field` in the cost of a state
 };
 
 /// A problem of an `NetworkModel`. Its rollouts run in SIMD lanes, though sizes are known only at run time.
@@ -28,8 +34,9 @@ class NetworkProblem final : public AnyProblem, public BatchEvaluator {
   struct Parts {
     py::object network;
     NetworkModel model;
-    double dt = 0;                             ///< s; 0: unknown
-    std::vector<double> input_min, input_max;  ///< one value, one for each input, or none
+    double dt = 0;                                      ///< s; 0: unknown
+    std::vector<double> input_min, input_max;           ///< one value, one for each input, or none
+    py::object walls = py::none(), field = py::none();  ///< a slalom.Field, or None
   };
 
   /// Throws std::invalid_argument with the rule that a part breaks.

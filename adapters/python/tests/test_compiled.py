@@ -141,7 +141,30 @@ def test_a_network_as_a_problem_goes_round_discs_and_is_changed_between_solves()
     assert again.discs == problem.discs and again.goal == [2, 0] and repr(again).startswith("slalom.MlpProblem(")
 
 
+def test_a_network_as_a_problem_looks_up_maps_as_callables_do():
+    mlp, occupied = network(), np.zeros((40, 40), bool)
+    occupied[:, 24] = True
+    walls = slalom.signed_distance(slalom.OccupancyGrid(occupied, 0.1, (-2, -2)))
+    slope = slalom.Field.from_function(lambda x, y: x * x + y, 20, 20, 0.2, (-2, -2))
+
+    def cost(x, u):
+        hit = walls.value(x[:, 0], x[:, 1]) < 0.2
+        return 3 * slope.value(x[:, 0], x[:, 1]) + np.where(hit, 50, 0), hit
+
+    callables = slalom.Problem(lambda x, u: mlp(np.concatenate([x, u], axis=1)), cost, lambda x: cost(x, None), states=2,
+                               inputs=1, input_min=-2, input_max=2)
+    compiled = slalom.MlpProblem(mlp, walls=walls, clearance=0.2, disc_weight=50, field=slope, field_weight=3,
+                                 input_min=-2, input_max=2)
+    plans = [slalom.Mppi(p, horizon=12, samples=200).solve([0.2, -0.3]) for p in (compiled, callables)]
+    assert np.allclose(plans[0].costs, plans[1].costs, rtol=1e-3) and plans[0].collided_share == plans[1].collided_share
+    assert plans[0].cost == pytest.approx(sum(plans[0].cost_terms.values()))
+    assert compiled.collides([0.3, 0]) and not compiled.collides([0, 0])
+    compiled.walls = None
+    assert not compiled.collides([0.3, 0])
+
+
 @pytest.mark.parametrize("make, error, text", [
+    (lambda: slalom.MlpProblem(network(), walls=3), TypeError, "MlpProblem.walls: .*int.* has the wrong form"),
     (lambda: slalom.MlpProblem(3), TypeError, "must be a slalom.mlp.Mlp"),
     (lambda: slalom.MlpProblem(Mlp([(np.zeros((2, 2)), np.zeros(2))])), ValueError, "maps 2 values to 2, must map"),
     (lambda: slalom.MlpProblem(network(), goal=[1, 2, 3]), ValueError, "goal: has 3 values, must have 1 or 2"),
