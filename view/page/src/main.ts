@@ -89,7 +89,7 @@ const gaps = new Gaps();
 const lanes = new Lanes(scene);
 const fields = new ScenarioFields();
 const controls = new Controls(scene);
-const introduction = new Introduction(() => setSplit(false));
+const introduction = new Introduction(scene, () => setSplit(false));
 const timeline = new Timeline(seek, (at) => hover(at && at * period()));
 const evaluation = new EvaluationPane(() => {
   scene.marks = evaluation.marks();
@@ -143,7 +143,7 @@ function showState(next: State) {
   if (page.state && next.generation !== page.state.generation) forgetPast();
   if (isNew && next.introduction && !isReplay) {
     setSplit(true);
-    introduction.open(scene.camera);
+    introduction.open();
   }
   isNew = false;
   if (!next.introduction) introduction.end();

@@ -24,6 +24,7 @@ export interface Mark {
   x: number;
   y: number;
   shown: boolean;
+  isGhost?: boolean; // in the world of the second controller
 }
 const opponent = 4; // kind of body
 
@@ -174,7 +175,7 @@ export class SceneView {
     if (visible.has("scan") && frame.scan && page.hello?.lidar)
       draw.drawScan(painter, theme, frame.scan, page.hello.lidar);
     this.drawBodies(frame);
-    this.drawMarks();
+    this.drawMarks(frame !== page.frame);
     if (this.preview) this.drawPreview(this.preview);
     if (this.chosen >= 0 && frame === page.frame && frame.candidates)
       drawChosen(painter, theme, frame, this.chosen, 7 / camera.zoom);
@@ -230,8 +231,8 @@ export class SceneView {
     this.painter.dot(at.x, at.y, 5, colour);
   }
 
-  private drawMarks() {
-    for (const m of this.marks) {
+  private drawMarks(isGhost: boolean) {
+    for (const m of this.marks.filter((each) => Boolean(each.isGhost) === isGhost)) {
       const r = (m.shown ? 9 : 5) / this.camera.zoom;
       const width = m.shown ? 3.5 : 2.2;
       const colour = m.shown ? this.theme.selected : this.theme.mark;

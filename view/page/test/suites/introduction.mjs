@@ -9,37 +9,51 @@ export default async function (h) {
     const page = await h.open(server.address);
     const wait = (what, arg) => h.until(what, arg, page);
     await wait(() => window.slalom?.frame?.ghostFrame && slalom.scene.isSideBySide);
-    await page.evaluate(() => ["restart", "pause"].forEach((each) => slalom.send({ do: each })));
-    await wait(() => slalom.state.paused);
-    // The drive may have taken no step before it was paused, or a few.
-    await page.evaluate(() =>
-      slalom.send(slalom.state.newest < 0 ? { do: "step" } : { do: "seek", tick: 0 }),
-    );
-    await wait(() => slalom.state.tick === 0 && slalom.scalar("tick") === 0);
-    await wait(() =>
-      /svg_mppi and mppi drive/.test(document.getElementById("introduction-text").textContent),
-    );
-    await page.evaluate(() => slalom.scene.visible.add("modes"));
-    await h.step(30, page);
-    // The drive differs between compilers, by rounding: svg_mppi may average for a moment.
-    const said = { modes: { averages: 0, commits: 0 }, "ghost-modes": { averages: 0, commits: 0 } };
-    const isTold = () => said["ghost-modes"].averages > 0 && said.modes.commits > 2 * said.modes.averages + 2;
-    for (let i = 0; i < 40 && !isTold(); ++i) {
-      await h.step(1, page);
-      for (const [id, verdicts] of Object.entries(said)) {
-        const text = await page.evaluate((i) => document.getElementById(i).textContent, id);
-        const [, method, what] = text.match(/^(svg_mppi|mppi) (averages|commits):/) ?? [];
-        if (!what) continue;
-        assert.equal(method, id === "modes" ? "svg_mppi" : "mppi");
-        verdicts[what] += 1;
-      }
-    }
-    assert.ok(isTold(), `svg_mppi commits, mppi averages before it does: ${JSON.stringify(said)}`);
+    const shows = (text) =>
+      wait((t) => document.getElementById("introduction-text").textContent.includes(t), text);
+    const layers = () =>
+      page.locator("#layer-list :checked").evaluateAll((all) => all.map((e) => e.dataset.layer));
+    const next = () => page.click("#introduction-next");
+    await shows("1 of 6. Samples: ");
+    await wait(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
     assert.equal((await h.state(page)).rate, 0.1, "in slow motion");
-    await h.drawn(page);
-    await page.click("#play");
-    await wait(() => slalom.state.rate === 1 && slalom.scalar("tick") > 160);
-    await wait(() => /^Passed: svg_mppi/.test(document.getElementById("introduction-text").textContent));
+    const [tick, plan] = await page.evaluate(() => [slalom.scalar("tick"), slalom.frame.plan.length]);
+    assert.ok(tick > 0 && plan > 0);
+    assert.deepEqual(
+      (await layers()).filter((each) => ["candidates", "plan", "guides"].includes(each)),
+      ["candidates"],
+    );
+    for (const text of ["2 of 6. Weights: ", "3 of 6. Plan: ", "4 of 6. Guides: "]) {
+      await next();
+      await shows(text);
+    }
+    for (const each of ["candidates", "plan", "guides"]) assert.ok((await layers()).includes(each), each);
+    assert.equal(
+      await page.evaluate(() => slalom.scalar("tick")),
+      tick,
+      "nothing moves until the viewer has read",
+    );
+    await next();
+    await shows("5 of 6. Two ways: mppi gives weight to both");
+    await wait(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
+    const texts = await page.locator(".caption").allTextContents();
+    assert.match(texts[0], /^svg_mppi commits: /);
+    assert.match(texts[1], /^mppi averages: /);
+    await next();
+    await shows("6 of 6. mppi has hit the parked car");
+    await wait(() => slalom.state.paused && slalom.scene.marks.length === 1);
+    const [mark, hit] = await page.evaluate(() => [slalom.scene.marks[0], slalom.frame.ghostFrame.bodies[0]]);
+    assert.ok(mark.isGhost && Math.hypot(mark.x - hit.x, mark.y - hit.y) < 0.1);
+    await next();
+    await shows("Passed: svg_mppi without a collision, mppi with ");
+    // Back at the decision, before the collision.
+    await page.click("#introduction-drag");
+    await wait(() => document.getElementById("introduction").hidden && slalom.scene.isSideBySide);
+    await wait(
+      () =>
+        slalom.state.paused &&
+        slalom.frame.ghostFrame.scalars[slalom.hello.scalars.indexOf("contacts")] === 0,
+    );
     // After a reload the address holds the scenario, and the view is the ordinary one.
     await page.reload();
     await wait(() => window.slalom?.frame?.ghost && slalom.state);
