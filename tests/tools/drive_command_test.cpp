@@ -117,7 +117,7 @@ TEST_F(DriveCommand, OpponentsWithPlannersHaveTheOptionsOfTheFileAndAreRecorded)
   EXPECT_EQ(settings["options"]["world"]["planning_opponents"], 1);
   EXPECT_EQ(settings["options"]["svg_mppi"]["samples"], 256);
   EXPECT_EQ(settings["opponent_planner"]["method"], "svg_mppi");
-  EXPECT_EQ(settings["opponent_planner"]["options"]["svg_mppi"]["samples"], 4000) << "that of default.yaml";
+  EXPECT_EQ(settings["opponent_planner"]["options"]["svg_mppi"]["samples"], 2560) << "that of default.yaml";
   EXPECT_FALSE(result("out.json")["laps"][0]["overtaking"]["encounters"].empty());
   expect_refused("drive --set world.planning_opponents=1", {"world.planning_opponents", "world.opponents"});
   expect_refused("drive --opponents 5 --set world.planning_opponents=5", {"planning_opponents", "[0, 4]"});
