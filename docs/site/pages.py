@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Copies the pages and pictures of the repository to a folder for MkDocs: README.md becomes the first page, with the
-demonstration in the browser if there is one, and links to headers lead to the reference.
+demonstration in the browser if there is one; links to headers lead to the reference, and those to notebooks to their pages.
 
 usage: pages.py TO SITE
 """
@@ -20,7 +20,7 @@ paused: the plan follows. Then choose `mppi`. <a href="demo/index.html">The demo
 """
 
 
-def page(path, reference, is_demo):
+def page(path, reference, site):
     """The text of a page. Links to what the site does not have become plain text."""
     up = "../" * (len(path.parts) - 1)
 
@@ -34,6 +34,8 @@ def page(path, reference, is_demo):
             return f"[{words}]({up}index.md{'#' * bool(anchor)}{anchor})"
         if at.suffix == ".md":
             return match[0]
+        if at.suffix == ".ipynb" and (site / "notebooks" / f"{at.stem}.html").exists():
+            return f'<a href="{up}notebooks/{at.stem}.html">{words}</a>'
         if at in reference:
             return f'<a href="{up}reference/{reference[at]}">{words.replace("`", "")}</a>'
         return words
@@ -41,7 +43,7 @@ def page(path, reference, is_demo):
     fenced = re.split(r"(^```.*?^```$)", path.read_text(), flags=re.S | re.M)
     fenced[::2] = [re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link, part) for part in fenced[::2]]
     text = "".join(fenced)
-    if path == Path("README.md") and is_demo:
+    if path == Path("README.md") and (site / "demo").exists():
         text = re.sub(r"^!\[.*\)$", lambda _: DEMO, text, count=1, flags=re.M)
     return text
 
@@ -58,7 +60,7 @@ def main(to, site):
         target = to / ("index.md" if path == Path("README.md") else path)
         target.parent.mkdir(parents=True, exist_ok=True)
         if path.suffix == ".md":
-            target.write_text(page(path, reference, (site / "demo").exists()))
+            target.write_text(page(path, reference, site))
         else:
             shutil.copy(path, target)
 

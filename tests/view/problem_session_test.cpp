@@ -126,6 +126,8 @@ TEST_F(OwnProblem, OptionsAreThoseOfTheStepThatIsShown) {
   EXPECT_EQ(last("state")["method"], "svg_mppi");
   tell({R"({"do": "seek", "tick": 1})"});
   EXPECT_EQ(option("svg_mppi", "samples"), "128");
+  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "4194304"})"});
+  EXPECT_NE(last("error")["message"].get<std::string>().find("in the live view"), std::string::npos);
 }
 
 TEST_F(OwnProblem, TheNumberOfCollisionsIsThatOfTheStep) {

@@ -99,6 +99,8 @@ TEST_F(ViewSession, SetsUndoesAndForks) {
   EXPECT_EQ(scalar(forked, "method"), 1);
   tell({{"do", "set"}, {"key", "mppi.samples"}, {"value", "0"}});
   EXPECT_NE(next("error")["message"].get<std::string>().find("must be in"), std::string::npos);
+  tell({{"do", "set"}, {"key", "mppi.samples"}, {"value", "4000000"}});
+  EXPECT_NE(next("error")["message"].get<std::string>().find("in the live view"), std::string::npos);
 }
 
 TEST_F(ViewSession, UndoesChangesOfBodies) {

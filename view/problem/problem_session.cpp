@@ -5,6 +5,7 @@
 
 #include "slalom/solvers/registry.hpp"
 #include "src/evaluation/json.hpp"
+#include "view/session/sample_limit.hpp"
 
 namespace slalom::view {
 namespace {
@@ -268,6 +269,7 @@ void ProblemSession::set(const std::string& key, const std::string& value) {
     require(present_options && section == present_options->method());
     SolverOptions changed = *present_options;
     require(set_option(changed, name, value));
+    check_samples(changed);
     perform([changed](Run& run) { run.subject->set_options(changed); });
   }
 }

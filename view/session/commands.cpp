@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/evaluation/json.hpp"
+#include "view/session/sample_limit.hpp"
 
 namespace slalom::view {
 namespace {
@@ -49,6 +50,13 @@ Action edit_of(const std::string& what, const Json& command, const sim::CarState
   return move_car({car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn});
 }
 
+void set_page_option(vehicle::Configuration& configuration, const std::string& key, const std::string& value,
+                     const std::string& method) {
+  vehicle::set_option(configuration, key, value, method);
+  if (!key.ends_with("samples") && !key.ends_with("horizon")) return;
+  for (const SolverOptions& each : configuration.methods) check_samples(each);
+}
+
 bool apply_settings(vehicle::Configuration& configuration, const Json& command, const std::string& method) {
   const Json set = command.contains("set") ? command.at("set") : Json::array();
   field::require(set.is_array() && set.size() <= 200, "set", "a list of at most 200 key=value");
@@ -56,7 +64,7 @@ bool apply_settings(vehicle::Configuration& configuration, const Json& command, 
     const std::string assignment = each.is_string() ? each.get<std::string>() : "";
     const auto equals = assignment.find('=');
     field::require(equals != std::string::npos, "set", "a list of key=value");
-    vehicle::set_option(configuration, assignment.substr(0, equals), assignment.substr(equals + 1), method);
+    set_page_option(configuration, assignment.substr(0, equals), assignment.substr(equals + 1), method);
   }
   return !set.empty();
 }

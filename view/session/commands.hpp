@@ -16,6 +16,11 @@ namespace slalom::view {
 /// present state of the car.
 Action edit_of(const std::string& what, const nlohmann::ordered_json& command, const sim::CarState& car);
 
+/// Sets an option as vehicle::set_option does. Throws std::invalid_argument, too, for more samples than a
+/// page can wait for.
+void set_page_option(vehicle::Configuration& configuration, const std::string& key, const std::string& value,
+                     const std::string& method);
+
 /// Applies the settings `set` of a command, a list of key=value. Returns false if there are none.
 bool apply_settings(vehicle::Configuration& configuration, const nlohmann::ordered_json& command,
                     const std::string& method);

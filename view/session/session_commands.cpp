@@ -96,7 +96,7 @@ bool Session::obey_options(const std::string& what, const Json& command) {
   };
   if (what == "set") {
     vehicle::Configuration changed = before;
-    vehicle::set_option(changed, field::text(command, "key"), field::text(command, "value"), method);
+    set_page_option(changed, field::text(command, "key"), field::text(command, "value"), method);
     change_options(changed);
   } else if (what == "reset_options") {
     change_options(loaded_);

@@ -31,7 +31,7 @@ SLALOM_INLINE_CALLS StateCost<T> state_cost(const NetworkModel& m, const std::ve
   }
   if (m.has_walls) cost.collided = cost.collided || m.walls.value(x[0], x[1]) < T(m.clearance);
   cost.obstacles = select(cost.collided, T(m.disc_weight), T(0));
-  if (m.field_weight != 0) cost.field = T(m.field_weight) * m.field.value(x[0], x[1]);
+  if (m.has_field) cost.field = T(m.field_weight) * m.field.value(x[0], x[1]);
   return cost;
 }
 
@@ -114,8 +114,9 @@ NetworkProblem::NetworkProblem(Parts parts) : parts_(std::move(parts)) {
   spread(m.input_weights, m.inputs, "input_weights");
   m.has_walls = !parts_.walls.is_none();
   if (m.has_walls) m.walls = parts_.walls.cast<maps::Field>();
-  m.field = parts_.field.is_none() ? maps::Field() : parts_.field.cast<maps::Field>();
-  if ((!m.discs.empty() || m.has_walls || m.field_weight != 0) && m.states < 2)
+  m.has_field = !parts_.field.is_none();
+  if (m.has_field) m.field = parts_.field.cast<maps::Field>();
+  if ((!m.discs.empty() || m.has_walls || m.has_field) && m.states < 2)
     throw std::invalid_argument(
         "MlpProblem: discs, walls and field need a state of at least 2 values, x and y first");
   for (std::vector<double>* bound : {&parts_.input_min, &parts_.input_max})

@@ -24,7 +24,8 @@ struct NetworkModel {
   maps::Field walls;        ///< distance from the nearest wall, m, at the first two states
   double clearance = 0;     ///< m
   maps::Field field;        ///< cost map, at the first two states
-  double field_weight = 0;  ///< factor of `field` in the cost of a state
+  bool has_field = false;   ///< whether `field` has a part in the cost
+  double field_weight = 1;  ///< factor of `field` in the cost of a state
 };
 
 /// A problem of an `NetworkModel`. Its rollouts run in SIMD lanes, though sizes are known only at run time.

@@ -161,6 +161,8 @@ def test_a_network_as_a_problem_looks_up_maps_as_callables_do():
     assert compiled.collides([0.3, 0]) and not compiled.collides([0, 0])
     compiled.walls = None
     assert not compiled.collides([0.3, 0])
+    alone = slalom.Mppi(slalom.MlpProblem(mlp, field=slope, input_min=-2, input_max=2), horizon=12).solve([0.2, -0.3])
+    assert alone.cost_terms["field"] != 0, "a field without a weight counts once"
 
 
 @pytest.mark.parametrize("make, error, text", [
