@@ -99,11 +99,11 @@ export class Harness {
   }
 
   /** Starts the drive again and waits until the page has the state of the new one. */
-  async restart() {
-    await this.until(() => window.slalom?.state);
-    const { generation } = await this.state();
-    await this.send({ do: "restart" });
-    await this.until((g) => slalom.state.generation > g, generation);
+  async restart(page = this.page) {
+    await this.until(() => window.slalom?.state, null, page);
+    const generation = await page.evaluate(() => slalom.state.generation);
+    await this.send({ do: "restart" }, page);
+    await this.until((g) => slalom.state.generation > g, generation, page);
   }
   /** Waits until the drive is paused and the page shows the server's tick. */
   async pause(page = this.page) {

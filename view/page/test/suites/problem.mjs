@@ -36,7 +36,7 @@ export default async function (h) {
   });
 
   await h.test("an obstacle is dragged while the drive is paused, and the plan goes around it", async () => {
-    await h.send({ do: "restart" }, look);
+    await h.restart(look);
     await h.until(() => slalom.scalar("tick") > 7 && slalom.scalar("tick") < 30, null, look);
     await h.send({ do: "seek", tick: 7 }, look);
     await h.until(() => slalom.state.tick === 7 && slalom.scalar("tick") === 7, null, look);
@@ -79,7 +79,7 @@ export default async function (h) {
   });
 
   await h.test("a past step is shown again, and the drive goes on from there exactly", async () => {
-    await h.send({ do: "restart" }, look);
+    await h.restart(look);
     await h.until(() => slalom.scalar("tick") > 20, null, look);
     await h.send({ do: "pause" }, look);
     await h.until(() => slalom.state.paused, null, look);
@@ -126,7 +126,7 @@ export default async function (h) {
     "a candidate that is chosen while driving stays, and is forgotten with a new plan",
     async () => {
       await h.send({ do: "rate", rate: 0 }, look);
-      await h.send({ do: "restart" }, look);
+      await h.restart(look);
       await h.until(() => !slalom.state.paused && slalom.scalar("tick") > 5, null, look);
       await look.locator("#rank").fill("3");
       await look.locator("#rank").press("Tab");
@@ -171,6 +171,7 @@ export default async function (h) {
   });
 
   await h.test("bodies that cannot be moved are not dragged", async () => {
+    await h.pause(look);
     const box = await look.evaluate(() => slalom.frame.bodies[1]);
     const from = await placeOf(look, box.x, box.y);
     await look.mouse.move(...from);
