@@ -53,6 +53,8 @@ def main(to, site):
     for file in (site / "reference").glob("*_8hpp.html"):
         title = re.search(r"<title>Slalom: (\S+) File Reference", file.read_text())
         reference[Path("include", title[1])] = file.name
+    for file in (site / "notebooks").glob("*.html"):
+        file.write_text(re.sub(r'href="\.\./\.\./([^"]+)\.md', r'href="../\1.html', file.read_text()))
     names = subprocess.run(["git", "ls-files"], capture_output=True, text=True, check=True).stdout.split()
     for path in map(Path, names):
         if path.suffix not in (".md", ".png", ".webm") and path.name not in ("site.css", "site.js"):
