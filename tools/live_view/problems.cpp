@@ -11,6 +11,7 @@
 #include "slalom/problems/quadrotor.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/view/serve.hpp"
+#include "view/problem/differential_drive.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -83,28 +84,8 @@ std::unique_ptr<view::Subject> cart_pole(Solving solving) {
 }
 
 std::unique_ptr<view::Subject> differential_drive(Solving solving) {
-  using State = DifferentialDrive::State<double>;
-  const auto discs = [](const DifferentialDrive& p) {
-    std::vector<Shape> all;
-    for (const Disc& disc : p.discs) all.push_back(view::disc(disc.x, disc.y, disc.radius));
-    return all;
-  };
-  const auto move = [](DifferentialDrive& p, int shape, const Point& to) {
-    Disc& disc = p.discs[static_cast<std::size_t>(shape)];
-    disc.x = to.x, disc.y = to.y;
-  };
   solving.horizon = 25, solving.low = {0, -2}, solving.high = {1.5, 2};
-  return subject(DifferentialDrive{}, solving,
-                 {.x = &State::x,
-                  .y = &State::y,
-                  .heading = &State::yaw,
-                  .length = 0.5,
-                  .width = 0.4,
-                  .shapes = discs,
-                  .move = move,
-                  .states = {"x, m", "y, m", "yaw, rad"},
-                  .inputs = {"speed, m/s", "yaw rate, rad/s"},
-                  .title = "differential_drive"});
+  return subject(DifferentialDrive{}, solving, view::drawing_among_discs());
 }
 
 std::unique_ptr<view::Subject> quadrotor(Solving solving) {

@@ -4,9 +4,8 @@
 
 #include <utility>
 
-#include "slalom/problems/differential_drive.hpp"
-#include "slalom/solvers/registry.hpp"
-#include "slalom/view/serve.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
+#include "view/problem/differential_drive.hpp"
 #include "view/problem/problem_session.hpp"
 #include "view/server/server.hpp"
 
@@ -65,40 +64,18 @@ int Server::clients() const noexcept {
 namespace {
 
 /// A robot among discs. Once it is at its goal, it begins again.
-struct Robot : slalom::problems::DifferentialDrive {};
-using State = Robot::State<double>;
-
 std::unique_ptr<slalom::view::Subject> robot() {
-  slalom::SolverOptions options = slalom::solver_options("svg_mppi");
-  *options.find<int>("horizon") = 25;
-  *options.find<int>("samples") = 1024;
-  *options.find<slalom::PerInput>("input_min") = {0, -2};
-  *options.find<slalom::PerInput>("input_max") = {1.5, 2};
-  const auto next = [](const State& x, const slalom::Input<double, 2>& u) {
-    return Robot{}.distance(x) < 0.5 ? State{} : Robot{}.step(x, u);
+  using slalom::problems::DifferentialDrive;
+  using State = DifferentialDrive::State<double>;
+  auto drawing = slalom::view::drawing_among_discs();
+  drawing.title = "a robot among discs";
+  drawing.plant = [](const State& x, const slalom::Input<double, 2>& u) {
+    const DifferentialDrive problem;
+    return problem.distance(x) < 0.5 ? State{} : problem.step(x, u);
   };
-  const auto discs = [](const Robot& robot) {
-    std::vector<slalom::view::Shape> all;
-    for (const auto& disc : robot.discs) all.push_back(slalom::view::disc(disc.x, disc.y, disc.radius));
-    return all;
-  };
-  const auto move = [](Robot& robot, int shape, const slalom::maps::Point& to) {
-    auto& disc = robot.discs[static_cast<std::size_t>(shape)];
-    disc.x = to.x, disc.y = to.y;
-  };
-  return std::make_unique<slalom::view::detail::ControllerSubject<Robot>>(
-      slalom::Controller<Robot>(Robot{}, options),
-      slalom::view::Drawing<Robot>{.x = &State::x,
-                                   .y = &State::y,
-                                   .heading = &State::yaw,
-                                   .length = 0.5,
-                                   .width = 0.4,
-                                   .shapes = discs,
-                                   .move = move,
-                                   .plant = next,
-                                   .states = {"x, m", "y, m", "yaw, rad"},
-                                   .inputs = {"speed, m/s", "yaw rate, rad/s"},
-                                   .title = "a robot among discs"});
+  const slalom::SvgMppiOptions options{.horizon = 25, .input_min = {0, -2}, .input_max = {1.5, 2}};
+  return std::make_unique<slalom::view::detail::ControllerSubject<DifferentialDrive>>(
+      slalom::Controller<DifferentialDrive>({}, options), std::move(drawing));
 }
 
 struct Demonstration {

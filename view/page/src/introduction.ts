@@ -21,8 +21,9 @@ const method = (of: Frame) => page.hello!.methods[scalar("method", of.scalars)];
 const contacts = (of: Frame) => scalar("contacts", of.scalars);
 const verdicts = (frames: Frame[]) => frames.map((each) => verdict(modesOf(each)));
 const list = (frames: Frame[], text: (frame: Frame) => string) => frames.map(text).join(", ");
-const outcome = (of: Frame) =>
-  `${method(of)} ${contacts(of) === 0 ? "without a collision" : `with ${counted(contacts(of), "collision")}`}`;
+const hits = (of: Frame) =>
+  contacts(of) === 0 ? "without a collision" : `with ${counted(contacts(of), "collision")}`;
+const outcome = (of: Frame) => `${method(of)} ${hits(of)}`;
 
 const steps: Step[] = [
   {
@@ -42,8 +43,8 @@ const steps: Step[] = [
   {
     layers: 1,
     text: () =>
-      "Weights: the lower the cost of a sample, the more weight it has, and the wider and more opaque is its " +
-      "line. Red samples collide.",
+      "Weights: the lower the cost of a sample, the more weight it has, and the wider and more opaque is " +
+      "its line. Red samples collide.",
   },
   {
     layers: 2,
@@ -53,15 +54,15 @@ const steps: Step[] = [
   {
     layers: 3,
     text: () =>
-      "Guides: svg_mppi first moves a sequence of its own to low cost, the purple line, and fits the variances " +
-      "of its samples to it. mppi has no guide.",
+      "Guides: svg_mppi first moves a sequence of its own to low cost, the purple line, and fits the " +
+      "variances of its samples to it. mppi has no guide.",
   },
   {
     layers: 3,
     due: (both) => verdicts(both).join() === "commits,averages",
     text: ([car, ghost]) =>
-      `Two ways: ${method(ghost)} gives weight to both, and the plan between them leads into the parked car. ` +
-      `${method(car)} chooses one.`,
+      `Two ways: ${method(ghost)} gives weight to both, and the plan between them leads into the parked ` +
+      `car. ${method(car)} chooses one.`,
   },
   {
     layers: 3,
@@ -80,7 +81,7 @@ const steps: Step[] = [
 const decision = 5; // step at which the two differ
 const last = steps.length - 1;
 
-/** The first thing that a new user sees: two controllers before the same obstacle, in steps that the viewer ends. */
+/** The first thing that a new user sees: two controllers before one obstacle. The viewer ends each step. */
 export class Introduction {
   private readonly box = get("introduction");
   private step = 0;

@@ -25,17 +25,11 @@ function travel(o: OptionDeclaration) {
   };
 }
 
-const greek: Record<string, string> = {
-  alpha: "α",
-  beta: "β",
-  gamma: "γ",
-  epsilon: "ε",
-  lambda: "λ",
-  mu: "μ",
-};
-Object.assign(greek, { nu: "ν", rho: "ρ", sigma: "σ", Sigma: "Σ", tau: "τ", theta: "θ", phi: "φ", psi: "ψ" });
+const greekNames = "alpha beta gamma epsilon lambda mu nu rho sigma Sigma tau theta phi psi".split(" ");
+const greekLetters = "αβγελμνρσΣτθφψ";
 /** The symbol of a formula, with its Greek letters. */
-const symbol = (name: string) => name.replace(/[A-Za-z]+/g, (word) => greek[word] ?? word);
+const symbol = (name: string) =>
+  name.replace(/[A-Za-z]+/g, (word) => greekLetters[greekNames.indexOf(word)] ?? word);
 
 /** The options that are changed most often; those that were changed are shown as well. */
 const short = `samples horizon temperature variance guides restart_variance adapt_covariance use_nominal
