@@ -17,8 +17,9 @@ using detail::RacelineState;
 
 constexpr double weight_factor = 0.3;    // factor of the barrier from one stage to the next
 constexpr double last_gap = 1e-4;        // share of the time: constraints times weight in the last stage
-constexpr double stage_accuracy = 5e-6;  // share of the value that a step must promise in a stage
-constexpr int max_newton_steps = 60;     // steps of Newton's method in a stage
+constexpr double stage_accuracy = 5e-6;  // share of the value that a step of the last stages must promise
+constexpr double centring = 0.01;     // the same in the first stages, as a share of constraints times weight
+constexpr int max_newton_steps = 60;  // steps of Newton's method in a stage
 constexpr double curvature_room =
     1.05;                            // factor for a line that is tighter than the car turns, to be tightened
 constexpr double start_share = 0.4;  // share of the fastest squared speeds along the first line
@@ -114,7 +115,7 @@ class BarrierMethod {
     for (int step = 0; step < max_newton_steps; ++step) {
       tighten(state, weight, value);
       const double decrease = direction(state, weight);
-      if (decrease < stage_accuracy * value) return;
+      if (decrease < std::max(stage_accuracy * value, centring * weight * program_.constraints())) return;
       double length = 1;
       for (;; length *= 0.5) {
         const RacelineState tried = moved(state, length);
