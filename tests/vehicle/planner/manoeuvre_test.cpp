@@ -76,6 +76,21 @@ TEST(Manoeuvre, TurnsACarRoundInALane) {
   }
 }
 
+TEST(Manoeuvre, AWayThatIsFoundCanBeBegun) {
+  Manoeuvre manoeuvre(testing::lane(5), false, body, wheelbase, steer_limit);
+  Lane lane;
+  int found = 0;
+  for (double y = -0.5; y < 0.52; y += 0.05)  // free of the walls in any heading
+    for (double yaw = 1.8; yaw < 4.5; yaw += 0.1) {
+      const maps::Pose start{10, y, maps::wrap_angle(yaw)};
+      const maps::ClearanceMap& map = lane.seen_from(start);
+      if (!manoeuvre.search(map, start, 100, -1e3, sight)) continue;
+      ++found;
+      EXPECT_TRUE(manoeuvre.follow(map, start, 0, 0)) << "from y " << y << ", yaw " << yaw;
+    }
+  EXPECT_GT(found, 500);
+}
+
 TEST(Manoeuvre, FindsNoWayWhereThereIsNone) {
   Manoeuvre manoeuvre(testing::lane(5), false, body, wheelbase, steer_limit);
   Lane narrow(0.25);
