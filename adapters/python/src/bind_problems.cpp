@@ -1,14 +1,9 @@
 #include <variant>
 
+#include "built_in_problems.hpp"
 #include "callable_problem.hpp"
 #include "controller.hpp"
 #include "slalom/core/network/mlp.hpp"
-#include "slalom/problems/arm.hpp"
-#include "slalom/problems/car.hpp"
-#include "slalom/problems/cart_pole.hpp"
-#include "slalom/problems/differential_drive.hpp"
-#include "slalom/problems/pendulum.hpp"
-#include "slalom/problems/quadrotor.hpp"
 
 namespace slalom::python {
 
