@@ -1,8 +1,8 @@
 #include <variant>
 
-#include "built_in_problems.hpp"
 #include "callable_problem.hpp"
 #include "controller.hpp"
+#include "rollouts/built_in_problems.hpp"
 #include "slalom/core/network/mlp.hpp"
 
 namespace slalom::python {

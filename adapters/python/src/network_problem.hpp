@@ -1,8 +1,8 @@
 #pragma once
 
 #include "keywords.hpp"
-#include "network_model.hpp"
 #include "problem.hpp"
+#include "rollouts/network_model.hpp"
 
 namespace slalom::python {
 
