@@ -120,5 +120,43 @@ TEST_P(ScaleFree, DefaultsSwingThePendulumUp) {
   }
 }
 
+/// A stirred tank with an exothermic reaction, cooled by a jacket. In some samples it runs away: their costs
+/// exceed those of the others by 25 orders of magnitude, or are not finite.
+struct Reactor {
+  template <class T>
+  struct State {
+    T concentration, temperature;  // mol/l, K
+  };
+  static constexpr int inputs = 1;  // temperature of the jacket, K
+  double dt = 0.05;                 // min
+  double input_min = 280, input_max = 370;
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 1>& u) const {
+    State<T> now = x;
+    for (int i = 0; i < 5; ++i) {
+      const T reaction = T(7.2e10) * exp(T(-8750) / now.temperature) * now.concentration;
+      const T heat = T(350) - now.temperature + T(209.2) * reaction + T(2.092) * (u[0] - now.temperature);
+      now = {now.concentration + T(dt / 5) * (T(1) - now.concentration - reaction),
+             now.temperature + T(dt / 5) * heat};
+    }
+    return now;
+  }
+  template <class T>
+  T stage_cost(const State<T>& x, const Input<T, 1>&) const {
+    return square((x.concentration - T(0.5)) / T(0.05)) + square((x.temperature - T(350)) / T(5));
+  }
+};
+
+TEST_P(ScaleFree, SamplesThatDivergeDoNotHideTheOthers) {
+  SolverOptions options = solver_options(GetParam());
+  *options.find<int>("horizon") = 30;
+  Controller controller(Reactor{}, options);
+  Reactor::State<double> x{0.9, 305};
+  for (int k = 0; k < 120; ++k)
+    x = controller.problem().step(x, controller.solve(x, {.elapsed = 0.05}).inputs[0]);
+  EXPECT_NEAR(x.concentration, 0.5, 0.1);
+  EXPECT_NEAR(x.temperature, 350, 5);
+}
+
 }  // namespace
 }  // namespace slalom

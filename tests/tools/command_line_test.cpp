@@ -222,6 +222,14 @@ TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheCloneThatAreNamed) {
   refuses("reproduce --claims", {"--claims: needs --paper"}, 2);
 }
 
+TEST_F(CommandLine, ReplayTellsWhatReadsABag) {
+  fs::create_directory(folder_ / "first");
+  std::ofstream(folder_ / "first/metadata.yaml") << "rosbag2_bagfile_information:";
+  std::ofstream(folder_ / "first/first_0.db3") << "SQLite format 3";
+  for (const char* bag : {"first", "first/first_0.db3"})
+    refuses(std::string("replay ") + bag, {bag + std::string(": is a bag of rosbag2"), "slalom identify"});
+}
+
 TEST_F(CommandLine, ReplayIgnoresNoOption) {
   fs::create_directories(folder_ / "ev");
   refuses("replay ev --lap 0", {"ev/settings.json"});

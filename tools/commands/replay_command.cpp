@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
@@ -127,7 +128,16 @@ int replay_recording(const ReplayArguments& arguments) {
   return 0;
 }
 
+/// Throws IoError if `source` is a bag of rosbag2: it has messages of a drive, but not its pictures.
+void reject_bag(const std::filesystem::path& source) {
+  if (source.extension() == ".db3" || std::filesystem::exists(source / "metadata.yaml"))
+    throw IoError(source.string(), 0,
+                  "is a bag of rosbag2, which slalom identify and slalom course --line read; to look at it, "
+                  "use Foxglove or rviz2");
+}
+
 int replay(const ReplayArguments& arguments, const Subcommand& command) {
+  reject_bag(arguments.source);
   if (std::filesystem::is_directory(arguments.source)) {
     reject_options(command, recording_options, "when a lap of an evaluation is repeated");
     return replay_lap(arguments);

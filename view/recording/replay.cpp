@@ -58,7 +58,8 @@ std::vector<std::string> load_replay(const std::string& file, std::uint64_t* los
   const std::uint64_t unread = mcap::read_records(file, lost != nullptr, {.message = {}, .attachment = keep});
   if (lost) *lost = unread;
   if (segments.empty())
-    throw IoError(file, 0, "contains nothing to replay; recordings of slalom drive and slalom view do");
+    throw IoError(
+        file, 0, "contains nothing to replay; recordings of slalom drive and slalom view do, a bag does not");
   return segments;
 }
 

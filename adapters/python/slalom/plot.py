@@ -72,11 +72,13 @@ def _states(axis: Any, plan: Any) -> None:
 
 
 def _costs(axis: Any, plan: Any) -> None:
-    costs = plan.costs[np.isfinite(plan.costs)]
+    costs = np.sort(plan.costs[np.isfinite(plan.costs)]).astype(float)
+    near = costs[costs <= costs[0] + 20 * (costs[len(costs) // 4] - costs[0])] if len(costs) else costs
     axis.set_title(f"costs of {len(plan.costs)} samples: {100 * plan.collided_share:.0f} % collide, "
-                   f"{len(plan.costs) - len(costs)} not finite", loc="left", fontsize="small")
-    if len(costs):
-        axis.hist(costs, bins=50, color="tab:gray")
+                   f"{len(plan.costs) - len(costs)} not finite, {len(costs) - len(near)} beyond the right edge",
+                   loc="left", fontsize="small")
+    if len(near):
+        axis.hist(near, bins=50, color="tab:gray")
     axis.axvline(plan.cost, color="tab:green", linewidth=2.5, label="plan")
     axis.legend(fontsize="small")
 

@@ -151,9 +151,8 @@ void bind_controllers(py::module_& module) {
       py::arg("controllers"), py::arg("states"), py::arg("elapsed") = 0.0,
       py::arg("deadline") = std::numeric_limits<double>::infinity(), py::arg("threads") = 1,
       "The plans of many controllers, each from its own state and its own last plan, in parallel on "
-      "`threads` "
-      "threads. Copies of one controller draw the same noise unless each is reset with a seed of its own. "
-      "Callables run one at a time.");
+      "`threads` threads; with callables on one. Copies of one controller draw the same noise unless each is "
+      "reset with a seed of its own.");
   module.def(
       "methods",
       [] {

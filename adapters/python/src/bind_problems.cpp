@@ -2,13 +2,8 @@
 
 #include "callable_problem.hpp"
 #include "controller.hpp"
+#include "rollouts/built_in_problems.hpp"
 #include "slalom/core/network/mlp.hpp"
-#include "slalom/problems/arm.hpp"
-#include "slalom/problems/car.hpp"
-#include "slalom/problems/cart_pole.hpp"
-#include "slalom/problems/differential_drive.hpp"
-#include "slalom/problems/pendulum.hpp"
-#include "slalom/problems/quadrotor.hpp"
 
 namespace slalom::python {
 

@@ -17,7 +17,7 @@ struct Drawing {
   py::object pose, figure, shapes, move, plant;
 };
 
-Array row(std::span<const double> values) {
+Array row_of(std::span<const double> values) {
   return Array(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
@@ -88,7 +88,7 @@ class PythonSubject final : public view::Subject {
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
     const py::gil_scoped_acquire lock;
     if (drawing_->plant.is_none()) return problem().step(state, input, 0);
-    return drawing_->plant(row(state), row(input)).cast<std::vector<double>>();
+    return drawing_->plant(row_of(state), row_of(input)).cast<std::vector<double>>();
   }
 
   std::vector<maps::Pose> poses(std::span<const double> states) override {
@@ -126,7 +126,7 @@ class PythonSubject final : public view::Subject {
     const py::gil_scoped_acquire lock;
     std::vector<view::Line> all;
     if (drawing_->figure.is_none()) return all;
-    for (const py::handle& line : drawing_->figure(row(state)))
+    for (const py::handle& line : drawing_->figure(row_of(state)))
       all.push_back(line_of(py::reinterpret_borrow<py::object>(line), "figure: a line"));
     return all;
   }

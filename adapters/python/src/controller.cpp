@@ -228,7 +228,6 @@ void Controller::finish() {
 
 void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,
                        const SolveRequest& request, int threads) {
-  ThreadPool pool(threads);
   std::vector<Controller*> all;
   std::vector<std::unique_ptr<Busy>> busy;
   for (std::size_t i = 0; i < owners.size(); ++i) {
@@ -236,6 +235,11 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
     all[i]->check(states[i], request);
     busy.push_back(std::make_unique<Busy>(all[i]->usage_));
   }
+  // Threads that hand the interpreter lock to each other take longer than one thread.
+  const bool calls_python = std::any_of(all.begin(), all.end(), [](const Controller* each) {
+    return each->problem_->evaluator().whole_batches();
+  });
+  ThreadPool pool(calls_python && threads > 1 ? 1 : threads);
   std::vector<Controller*> started;
   for (std::size_t i = 0; i < owners.size(); ++i)
     if (all[i]->start(owners[i], std::move(states[i]), request.elapsed)) started.push_back(all[i]);

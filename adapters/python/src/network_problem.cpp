@@ -3,79 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slalom/core/dispatch.hpp"
 #include "slalom/core/option_access.hpp"
 
 namespace slalom::python {
 
 namespace {
-
-constexpr int most = slalom::detail::MlpNetwork::max_neurons;
-
-/// The parts of the cost of a state, and whether it collides.
-template <class T>
-struct StateCost {
-  T distance = T(0), obstacles = T(0), field = T(0);
-  mask_t<T> collided = mask_t<T>(false);
-};
-
-template <class T>
-SLALOM_INLINE_CALLS StateCost<T> state_cost(const NetworkModel& m, const std::vector<double>& weights,
-                                            const T* x) {
-  StateCost<T> cost;
-  for (std::size_t i = 0; i < weights.size(); ++i)
-    cost.distance = cost.distance + T(weights[i]) * square(x[i] - T(m.goal[i]));
-  for (const NetworkModel::Disc& disc : m.discs) {
-    const auto inside = square(x[0] - T(disc.x)) + square(x[1] - T(disc.y)) < T(disc.radius * disc.radius);
-    cost.collided = cost.collided || inside;
-  }
-  if (m.has_walls) cost.collided = cost.collided || m.walls.value(x[0], x[1]) < T(m.clearance);
-  cost.obstacles = select(cost.collided, T(m.disc_weight), T(0));
-  if (m.has_field) cost.field = T(m.field_weight) * m.field.value(x[0], x[1]);
-  return cost;
-}
-
-template <class T>
-SLALOM_INLINE_CALLS T input_cost(const NetworkModel& m, const T* u) {
-  T cost(0);
-  for (std::size_t i = 0; i < m.input_weights.size(); ++i) cost = cost + T(m.input_weights[i]) * square(u[i]);
-  return cost;
-}
-
-/// Replaces a state by the one after a step.
-template <class T>
-SLALOM_INLINE_CALLS void take_step(const NetworkModel& m, const T* u, T* x) {
-  T values[most], other[most];
-  for (int i = 0; i < m.states; ++i) values[i] = x[i];
-  for (int i = 0; i < m.inputs; ++i) values[m.states + i] = u[i];
-  m.network.evaluate(values, other);
-  for (int i = 0; i < m.states; ++i) x[i] = m.residual ? x[i] + values[i] : values[i];
-}
-
-struct NetworkRollout {
-  template <class Target>
-  SLALOM_KERNEL static void run(const NetworkModel& m, const float* start, const SequenceBatch& batch,
-                                int first, int count, float* costs, std::uint8_t* collided) {
-    using F = Pack<Target>;
-    for (int s = first; s < first + count; s += F::lanes) {
-      F x[most], u[most], total(0.0f);
-      mask_t<F> hit(false);
-      for (int i = 0; i < m.states; ++i) x[i] = F(start[i]);
-      for (int k = 0; k <= batch.steps(); ++k) {
-        const bool last = k == batch.steps();
-        const StateCost<F> cost = state_cost(m, last ? m.terminal_weights : m.state_weights, x);
-        total = total + cost.distance + cost.obstacles + cost.field;
-        hit = hit || cost.collided;
-        if (last) break;
-        for (int i = 0; i < m.inputs; ++i) u[i] = F::load(batch.row(k, i) + s);
-        total = total + input_cost(m, u);
-        take_step(m, u, x);
-      }
-      total.store(costs + s);
-      hit.store(collided + s);
-    }
-  }
-};
 
 double bound_of(const std::vector<double>& values, int input, double otherwise) {
   if (values.empty()) return otherwise;
@@ -169,7 +101,7 @@ Prediction NetworkProblem::predict(std::span<const double> state, std::span<cons
 
 void NetworkProblem::evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                               std::uint8_t* collided) const noexcept {
-  simd::dispatch<NetworkRollout>(parts_.model, state_.data(), batch, first, count, costs, collided);
+  roll_out_network(parts_.model, state_.data(), batch, first, count, costs, collided);
 }
 
 MlpParameters parameters_of(const py::object& network) {

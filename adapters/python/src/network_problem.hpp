@@ -2,33 +2,11 @@
 
 #include "keywords.hpp"
 #include "problem.hpp"
-#include "slalom/core/network/mlp.hpp"
-#include "slalom/maps/field.hpp"
+#include "rollouts/network_model.hpp"
 
 namespace slalom::python {
 
-/// The dynamics of a network and a cost of few parts.
-struct NetworkModel {
-  /// A disc in the plane of the first two states.
-  struct Disc {
-    double x = 0, y = 0, radius = 0;
-  };
-  slalom::detail::MlpNetwork network{1, 1};  ///< the state after a step, of state and inputs
-  bool residual = false;                     ///< whether it gives the change of the state instead
-  int states = 0, inputs = 0;                ///< together at most 64
-  std::vector<double> goal, state_weights, terminal_weights;  ///< one for each state
-  std::vector<double> input_weights;                          ///< one for each input
-  std::vector<Disc> discs;
-  double disc_weight = 0;   ///< cost of a state that collides
-  bool has_walls = false;   ///< whether a state collides where `walls` is below `clearance`
-  maps::Field walls;        ///< distance from the nearest wall, m, at the first two states
-  double clearance = 0;     ///< m
-  maps::Field field;        ///< cost map, at the first two states
-  bool has_field = false;   ///< whether `field` has a part in the cost
-  double field_weight = 1;  ///< factor of `field` in the cost of a state
-};
-
-/// A problem of an `NetworkModel`. Its rollouts run in SIMD lanes, though sizes are known only at run time.
+/// A problem of a `NetworkModel`. Its rollouts run in SIMD lanes, though sizes are known only at run time.
 class NetworkProblem final : public AnyProblem, public BatchEvaluator {
  public:
   /// The model, and all that Python gave.

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -194,6 +195,19 @@ def test_a_batch_of_solves_gives_the_plans_of_single_solves():
         slalom.solve_batch(batch, states, elapsed=-1)
     with pytest.raises(RuntimeError, match="another thread is using it"):
         slalom.solve_batch([one, one], states[:2])
+
+
+def test_callables_of_a_batch_run_on_one_thread():
+    threads = set()
+
+    def cost(x, u):
+        threads.add(threading.get_ident())
+        return x[:, 0] ** 2
+
+    problem = slalom.Problem(lambda x, u: x + u, cost, states=1, inputs=1)
+    batch = [slalom.Mppi(problem, horizon=3, samples=64) for _ in range(16)]
+    slalom.solve_batch(batch, [[0.5]] * 16, threads=4)
+    assert threads == {threading.get_ident()}
 
 
 def test_exceptions_of_callables_leave_a_batch():

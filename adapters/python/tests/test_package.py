@@ -234,3 +234,13 @@ def test_a_plan_is_drawn(tmp_path):
         assert len(titles) == 6 and titles[0].startswith("at a bound in ") and "effective sample size" in titles[4]
         at_bound = np.mean(np.abs(plan.inputs[:, 0]) == 0.5)
         assert slalom.plot.saturation(plan)[0] == pytest.approx(at_bound)
+
+
+def test_costs_far_above_the_others_do_not_hide_them_in_the_figure():
+    pytest.importorskip("matplotlib")
+    runs_away = point(cost=lambda x, u: np.where(u[:, 0] > 1.8, np.float32(1e25), u[:, 0] ** 2))
+    plan = slalom.Mppi(runs_away, horizon=4).solve([0, 0])
+    axis = slalom.plot.plan(plan).subfigs[1].axes[1]
+    assert axis.get_xlim()[1] < 1000
+    far = np.sum((plan.costs > 1e20) & np.isfinite(plan.costs))
+    assert 0 < far and f" {far} beyond" in axis.get_title(loc="left")

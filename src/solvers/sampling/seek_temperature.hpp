@@ -22,8 +22,10 @@ inline double default_effective_size(int samples, bool in_batches = false) {
 /// times a power of two give the temperature times that power, bit for bit.
 template <class EffectiveSize>
 double seek_temperature(double wanted, double scale, double start, EffectiveSize&& effective_size) {
-  // Limits of the search, as logarithms of temperature / scale, and the largest error.
-  constexpr double lowest = -23, highest = 7, tolerance = 0.01;
+  // Limits of the search, as logarithms of temperature / scale, and the largest error. The costs of samples
+  // that diverge may exceed all others by 30 orders of magnitude; a temperature is a float.
+  constexpr double highest = 7, tolerance = 0.01;
+  const double lowest = std::clamp(std::log(1e-30 / scale), -80.0, -23.0);
   constexpr int maximum_trials = 40;
   struct Trial {
     double at, error;  // logarithms of temperature / scale and of effective sample size / wanted

@@ -13,6 +13,7 @@
 #include "support/thrown_words.hpp"
 #include "tools/recording/driven_recording.hpp"
 #include "view/recording/mcap_writer.hpp"
+#include "view/recording/replay.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -203,6 +204,8 @@ TEST_F(RosBag, ErrorsSayWhatIsMissingAndWhatIsThere) {
   expect_error_with<IoError>({"odd.mcap: the bag has no poses in the frame map",
                               "/odom (odometry in another frame)", "/drive (steering commands)"},
                              [&] { read_driven_samples(file); });
+  expect_error_with<IoError>({"odd.mcap: contains nothing to replay", "a bag does not"},
+                             [&] { view::load_replay(file); });
   write_mcap({{"/drive", drive_type, start, std::string("\0\1\0\0\7", 5)}}, folder_ / "odd.mcap");
   expect_error_with<IoError>({"odd.mcap: has a message that cannot be read: /drive: it ends too soon"},
                              [&] { read_driven_samples(file); });
