@@ -287,7 +287,7 @@ const showPane = attachPanes(document.querySelector("nav")!, (name) => {
   if (name === "charts") charts.rebuild();
   if (name === "inspect") inspect.show();
 });
-const menu = attachSaveMenu(() => scene.draw());
+const menu = attachSaveMenu(scene);
 
 function deleteSelected() {
   if (scene.selected > 0 && !page.hello?.problem) send({ do: "remove", body: scene.selected });
