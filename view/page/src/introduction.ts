@@ -83,7 +83,7 @@ const steps: Step[] = [
     text: (both) =>
       `Passed: ${list(both, outcome)}. This is one drive, with a seed that shows the difference. ` +
       `In ${laps}, with this configuration, ${overLaps}. ` +
-      "Now drag the parked car yourself, while the drive stands: both plan again at once.",
+      "Now drag the parked car yourself: both plan again at once.",
   },
 ];
 const decision = 5; // step at which the two differ

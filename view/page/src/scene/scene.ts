@@ -190,7 +190,6 @@ export class SceneView {
     if (visible.has("scan") && frame.scan && page.hello?.lidar)
       draw.drawScan(painter, theme, frame.scan, page.hello.lidar);
     this.drawBodies(frame);
-    this.drawMarks(frame !== page.frame);
     if (this.preview) this.drawPreview(this.preview);
     if (this.chosen >= 0 && frame === page.frame && frame.candidates)
       drawChosen(painter, theme, frame, this.chosen, 7 / camera.zoom);
@@ -205,6 +204,7 @@ export class SceneView {
       const steer = scalar("steer", frame.scalars) || 0;
       drawCar(painter, theme, car, steer, theme.car, car.touched ? theme.collided : theme.carEdge);
     }
+    this.drawMarks(frame !== page.frame);
   }
 
   /** Draws the map with an image that is made once for each course and theme. */
@@ -248,11 +248,13 @@ export class SceneView {
 
   private drawMarks(isGhost: boolean) {
     for (const m of this.marks.filter((each) => Boolean(each.isGhost) === isGhost)) {
-      const r = (m.shown ? 9 : 5) / this.camera.zoom;
-      const width = m.shown ? 3.5 : 2.2;
-      const colour = m.shown ? this.theme.selected : this.theme.mark;
-      this.painter.segment(m.x - r, m.y - r, m.x + r, m.y + r, colour, width);
-      this.painter.segment(m.x - r, m.y + r, m.x + r, m.y - r, colour, width);
+      const r = (m.shown ? 12 : 5) / this.camera.zoom;
+      const lines = m.shown ? [7, 4] : [2.2]; // with a rim
+      for (const width of lines)
+        for (const up of [r, -r]) {
+          const colour = width === 7 ? this.theme.free : this.theme.mark;
+          this.painter.segment(m.x - r, m.y - up, m.x + r, m.y + up, colour, width);
+        }
     }
   }
 }
