@@ -22,7 +22,7 @@ using Words = std::vector<std::string>;
 /// The options of ffmpeg for each format.
 const std::pair<const char*, Words> formats[] = {
     // A few flat colours: dithering would make the file several times as large.
-    {".gif", {"-filter_complex", "split[a][b];[a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=none"}},
+    {".gif", {"-filter_complex", "split[a][b];[a]palettegen=max_colors=48[p];[b][p]paletteuse=dither=none"}},
     {".webm", {"-c:v", "libvpx-vp9", "-crf", "34", "-b:v", "0", "-pix_fmt", "yuv420p"}},
     {".mp4", {"-c:v", "libx264", "-crf", "23", "-pix_fmt", "yuv420p", "-movflags", "+faststart"}},
     {".webp", {"-c:v", "libwebp_anim", "-quality", "70", "-loop", "0"}}};
