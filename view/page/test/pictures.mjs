@@ -23,16 +23,21 @@ const isIntroduction = name === "introduction";
 const viewport = isIntroduction ? { width: 1440, height: 900 } : { width: 1000, height: 700 };
 await h.openAll(scenario, { viewport, colorScheme: isIntroduction ? "dark" : "light" });
 const { page } = h;
-await h.restart();
-await h.pause();
+if (!isIntroduction) {
+  await h.restart();
+  await h.pause();
+}
 
-/** The introduction when mppi averages and svg_mppi commits. */
+/** The step of the introduction in which mppi averages and svg_mppi commits. */
 async function drawIntroduction() {
-  const says = ([id, what]) => document.getElementById(id).dataset.verdict === what;
-  const isTold = async () =>
-    (await page.evaluate(says, ["ghost-modes", "averages"])) && page.evaluate(says, ["modes", "commits"]);
-  do await h.step(1);
-  while (!(await isTold()));
+  const says = (step) =>
+    h.until((s) => document.getElementById("introduction-text").textContent.startsWith(s), step);
+  await says("1 of 6");
+  for (const step of ["2 of 6", "3 of 6", "4 of 6", "5 of 6"]) {
+    await page.click("#introduction-next");
+    await says(step);
+  }
+  await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
   await h.drawn();
   return page.screenshot();
 }
@@ -112,7 +117,7 @@ async function filmTwoWays() {
   const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save-recording")]);
   const recording = join(h.folder, "two-ways.mcap");
   await saved.saveAs(recording);
-  const span = ["--from", "0.85", "--to", "1.6", "--speed", "0.2"];
+  const span = ["--from", "0.9", "--to", "1.6", "--speed", "0.2"];
   execFileSync(program, ["replay", recording, "--video", file, ...span], { stdio: "inherit" });
 }
 
