@@ -118,7 +118,7 @@ async function filmTwoWays() {
   const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save-recording")]);
   const recording = join(h.folder, "two-ways.mcap");
   await saved.saveAs(recording);
-  const span = ["--from", "0.9", "--to", "1.6", "--speed", "0.2"];
+  const span = ["--from", "0.95", "--to", "1.6", "--speed", "0.2"];
   execFileSync(program, ["replay", recording, "--video", file, ...span], { stdio: "inherit" });
 }
 
