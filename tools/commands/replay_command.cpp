@@ -17,6 +17,8 @@
 #include "tools/recording/recording.hpp"
 #include "tools/scenario/lap_json.hpp"
 #include "tools/terminal/interrupt.hpp"
+#include "tools/video/drive_video.hpp"
+#include "tools/video/video_file.hpp"
 #include "view/embedded.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/replay.hpp"
@@ -29,7 +31,8 @@ using namespace evaluation;
 
 struct ReplayArguments {
   std::string source;  ///< a recording in MCAP, or the output folder of an evaluation
-  std::string html, host = "127.0.0.1";
+  std::string html, video, host = "127.0.0.1";
+  VideoSpan span;
   std::uint16_t port = 8400;
   std::string method, scenario, course, plot, record;
   int lap = -1;  ///< -1: not given
@@ -37,7 +40,8 @@ struct ReplayArguments {
 
 /// The options of a lap of an evaluation, and those of a recording.
 constexpr const char* lap_options[] = {"--lap", "--scenario", "--plot", "--method", "--course", "--record"};
-constexpr const char* recording_options[] = {"--html", "--host", "--port"};
+constexpr const char* recording_options[] = {"--html", "--host", "--port", "--video",
+                                             "--from", "--to",   "--speed"};
 
 /// Throws CommandLineError if one of the options was given.
 void reject_options(const Subcommand& command, std::span<const char* const> options, const char* when) {
@@ -104,6 +108,16 @@ int replay_lap(const ReplayArguments& arguments) {
   return same ? 0 : 1;
 }
 
+/// Writes a part of a recording as a video.
+int film_recording(const ReplayArguments& arguments) {
+  if (!VideoFile::knows(arguments.video))
+    throw CommandLineError("--video", arguments.video, "must end with .gif, .webm, .mp4 or .webp");
+  if (arguments.span.to <= arguments.span.from) throw CommandLineError("--to", "must be larger than --from");
+  const int pictures = write_video(RecordedDrive(arguments.source), arguments.span, arguments.video);
+  std::printf("video: %s, %d pictures, %.1f s\n", arguments.video.c_str(), pictures, pictures / 25.0);
+  return 0;
+}
+
 /// Serves a recording in the page of the live view until it is interrupted, or writes it as an HTML page.
 int replay_recording(const ReplayArguments& arguments) {
   std::uint64_t lost = 0;
@@ -143,6 +157,7 @@ int replay(const ReplayArguments& arguments, const Subcommand& command) {
     return replay_lap(arguments);
   }
   reject_options(command, lap_options, "when a recording is replayed");
+  if (!arguments.video.empty()) return film_recording(arguments);
   return replay_recording(arguments);
 }
 
@@ -154,6 +169,15 @@ void declare_replay(Subcommand& command) {
   command.option("what", arguments->source, "MCAP recording, or output folder of an evaluation").required();
   const Option html =
       command.option("--html", arguments->html, "Write the recording as an HTML page instead of serving it");
+  Option video = command.option(
+      "--video", arguments->video,
+      "Write the recording as a video from above (GIF, WebM, MP4, WebP) instead; needs the program ffmpeg");
+  video.excludes(html);
+  command.option("--from", arguments->span.from, "Video: first second of the recording", {0, 1e6})
+      .needs(video);
+  command.option("--to", arguments->span.to, "Video: last second of the recording", {0, 1e6}).needs(video);
+  command.option("--speed", arguments->span.speed, "Video: speed; 0.5 is slow motion", {0.01, 100})
+      .needs(video);
   const Option host = command.option("--host", arguments->host, "Address to listen on");
   const Option port = command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
   command.option("--lap", arguments->lap, "Evaluation: number of the lap, from 0", {0, 999999});
@@ -164,8 +188,9 @@ void declare_replay(Subcommand& command) {
   command.option("--plot", arguments->plot, "Evaluation: write a picture of the lap to this PNG, SVG or PDF");
   const Option record =
       command.option("--record", arguments->record, "Evaluation: record the lap to this MCAP file");
-  for (Option served : {host, port}) served.excludes(html).excludes(record);
-  command.examples({"replay lap.mcap", "replay OUT --lap 3 --method svg_mppi --plot lap.png"});
+  for (Option served : {host, port}) served.excludes(html).excludes(video).excludes(record);
+  command.examples({"replay lap.mcap", "replay lap.mcap --video lap.webm --from 4 --to 8 --speed 0.5",
+                    "replay OUT --lap 3 --method svg_mppi --plot lap.png"});
   command.action([arguments, &command] { return replay(*arguments, command); });
 }
 

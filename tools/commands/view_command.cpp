@@ -23,7 +23,7 @@ struct ViewArguments {
   std::string host = "127.0.0.1";
   std::uint16_t port = 8400;
   std::string token, against, evaluation, problem;
-  bool record_times = false;
+  bool record_all = false, record_times = false;
   bool introduction = false;
 };
 
@@ -59,6 +59,7 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
   options.choices = choices();
   options.against = arguments.against;
   options.introduction = arguments.introduction;
+  options.record_all = arguments.record_all;
   options.record_times = arguments.record_times;
   options.program = std::string("slalom ") + version();
   options.further_arguments = further_arguments(arguments.scenario);
@@ -103,6 +104,8 @@ void declare_view(Subcommand& command) {
       "Show a problem that is not a car: pendulum, cart_pole, differential_drive, quadrotor or arm");
   command.option("--eval", arguments->evaluation,
                  "Open an evaluation (output folder of slalom eval): its laps and the collisions in them");
+  command.flag("--record-all", arguments->record_all,
+               "Recordings and replays that the page saves have all candidates, guides and cost maps");
   command.flag("--record-times", arguments->record_times,
                "Recordings saved from the page contain wall-clock times");
   command.option("--host", arguments->host,
@@ -121,7 +124,7 @@ void declare_view(Subcommand& command) {
                                "has only --method, --seed, --host, --port and --token beside it");
       return view_problem(*arguments);
     }
-    if (command.given_only({"--host", "--port", "--token", "--record-times", "--threads"}))
+    if (command.given_only({"--host", "--port", "--token", "--record-all", "--record-times", "--threads"}))
       set_introduction(*arguments);
     ScenarioArguments& scenario = arguments->scenario;
     if (!scenario.obstacle.empty() && !command.given("--obstacles"))

@@ -43,12 +43,19 @@ std::string document(const Drawing& drawing, const std::string& file, Create cre
   return bytes;
 }
 
-std::string to_png(const Drawing& drawing, const std::string& file, double scale) {
-  const Surface surface(
+/// The drawing as an image in memory.
+Surface image_of(const Drawing& drawing, const std::string& file, double scale) {
+  Surface surface(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(scale * drawing.width)),
                                  static_cast<int>(std::ceil(scale * drawing.height))),
       cairo_surface_destroy);
   draw_on(surface, drawing, scale, file);
+  cairo_surface_flush(surface.get());
+  return surface;
+}
+
+std::string to_png(const Drawing& drawing, const std::string& file, double scale) {
+  const Surface surface = image_of(drawing, file, scale);
   std::string bytes;
   require(cairo_surface_write_to_png_stream(surface.get(), append, &bytes), file);
   return bytes;
@@ -69,6 +76,13 @@ Drawing Canvas::drawing() const {
 
 std::string to_svg(const Drawing& drawing) {
   return document(drawing, "SVG", cairo_svg_surface_create_for_stream);
+}
+
+std::string to_pixels(const Drawing& drawing) {
+  const Surface surface = image_of(drawing, "picture", 1);  // a row has no padding
+  const auto bytes = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())) *
+                     static_cast<std::size_t>(cairo_image_surface_get_height(surface.get()));
+  return {reinterpret_cast<const char*>(cairo_image_surface_get_data(surface.get())), bytes};
 }
 
 void save(const Drawing& drawing, const std::filesystem::path& file, double scale) {

@@ -34,6 +34,9 @@ class Canvas {
 /// The drawing as an SVG document. Throws IoError if not everything could be drawn.
 std::string to_svg(const Drawing& drawing);
 
+/// The drawing as pixels 0xXXRRGGBB, row by row, one for a unit of length. Throws IoError as `to_svg` does.
+std::string to_pixels(const Drawing& drawing);
+
 /// Writes the drawing as SVG or PDF if the name of the file ends so, otherwise as PNG with `scale` pixels for
 /// a unit of length. Throws IoError.
 void save(const Drawing& drawing, const std::filesystem::path& file, double scale = 2);

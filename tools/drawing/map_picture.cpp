@@ -110,7 +110,8 @@ double edge(double value, double level, double cell) {
   return std::clamp(0.5 + (value - level) * 2.5 * std::max(cell, 1.0), 0.0, 1.0);
 }
 
-/// The cells of a map as pixels 0xAARRGGBB, row by row: free cells white, walls dark, contours smoothed.
+}  // namespace
+
 std::vector<std::uint32_t> map_pixels(const maps::OccupancyGrid& map, const MapView& view) {
   const Field walls = smoothed_cells(map, maps::Occupancy::occupied),
               roads = smoothed_cells(map, maps::Occupancy::free);
@@ -128,8 +129,6 @@ std::vector<std::uint32_t> map_pixels(const maps::OccupancyGrid& map, const MapV
   }
   return pixels;
 }
-
-}  // namespace
 
 MapPicture::MapPicture(const maps::OccupancyGrid& map, int long_side, const std::vector<maps::Point>& points,
                        double margin)

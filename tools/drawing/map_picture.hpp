@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,6 +24,10 @@ struct MapView {
     return {(point.x - left) * scale, (top - point.y) * scale};
   }
 };
+
+/// The part of a map that a view shows, as pixels 0xFFRRGGBB, row by row: free cells white, walls dark,
+/// contours smoothed.
+std::vector<std::uint32_t> map_pixels(const maps::OccupancyGrid& map, const MapView& view);
 
 /// A picture of a place seen from above, with a band for title, scale bar and speed scale below it. Lengths
 /// are metres of the map frame unless they are called pixels.

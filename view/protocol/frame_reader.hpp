@@ -61,6 +61,7 @@ class PayloadReader {
     return {x, y, get<double>()};
   }
   std::vector<maps::Point> points(std::size_t count) {
+    PayloadReader(*this).take(20 + 4 * count);  // throws before the memory is asked for
     const double x = get<double>(), y = get<double>(), unit = f32();
     std::vector<maps::Point> all(count);
     std::int16_t u = 0, v = 0;
@@ -76,6 +77,7 @@ class PayloadReader {
     at_ += bytes;
     return payload_.substr(at_ - bytes, bytes);
   }
+  bool empty() const { return at_ == payload_.size(); }
   void align() { at_ = std::min((at_ + 3) & ~std::size_t{3}, payload_.size()); }
 
  private:

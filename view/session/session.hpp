@@ -43,6 +43,7 @@ struct SessionOptions {
   std::function<LoadedLap(int experiment, int lap)> load_lap{};  ///< loads a lap of the evaluation
   std::string against{};                                         ///< method of a ghost from the start, if any
   bool introduction = false;       ///< in slow motion until the first obstacle has been passed
+  bool record_all = false;         ///< recordings and replays contain everything
   bool record_times = false;       ///< recordings contain wall-clock times
   std::string program = "slalom";  ///< name of the program in recordings
 };

@@ -93,6 +93,7 @@ void Session::save(std::uint64_t client, const std::string& what) {
                                          .settings = {{"settings", json_text(settings)}},
                                          .lidar_angle_min = world.lidar.angle_min(),
                                          .lidar_angle_increment = world.lidar.angle_increment(),
+                                         .everything = options_.record_all,
                                          .wall_clock = options_.record_times};
   const std::string name = "slalom-" + setup().environment->course.name + "-" + driver().method + "-" +
                            std::to_string(timeline_.newest()) + (is_replay ? ".html" : ".mcap");
@@ -101,7 +102,8 @@ void Session::save(std::uint64_t client, const std::string& what) {
       std::string file;
       if (is_replay) {
         std::vector<std::string> segments;
-        ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); });
+        ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); },
+                              options_.record_all);
         tell_drive(replay);
         file = replay_page(gunzip(page_gzip()), segments);
       } else {

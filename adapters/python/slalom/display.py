@@ -13,6 +13,8 @@ import re
 from types import ModuleType
 from typing import Any, Callable, Dict, Iterable, Tuple
 
+from . import plot
+
 _PARTS = ("dynamics", "cost", "terminal_cost", "states", "inputs", "dt", "input_min", "input_max", "input_rate_max",
           "sampler")
 
@@ -54,6 +56,7 @@ def install(solvers: ModuleType) -> None:
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
             _constructed(cls, lambda problem: ((), _changed(problem)))
     setattr(solvers.Plan, "__repr__", _plan_text)
+    setattr(solvers.Plan, "_repr_png_", lambda plan: plot._png(plot.plan, plan))
 
 
 def set_pickles(module: ModuleType) -> None:

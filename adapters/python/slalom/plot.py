@@ -1,8 +1,10 @@
-"""Figures of a plan, to see why a controller does what it does (docs/my-robot-does-not.md). Needs matplotlib."""
+"""Figures of a plan, to see why a controller does what it does (docs/my-robot-does-not.md), and of a lap. Needs
+matplotlib."""
 
 from __future__ import annotations
 
-from typing import Any
+import io
+from typing import Any, Callable, Dict
 
 import numpy as np
 
@@ -29,6 +31,50 @@ def plan(plan: Any) -> Any:
     _terms(terms, plan)
     figure.suptitle(f"{plan.controller.method}: {plan.status}, cost {plan.cost:.4g}")
     return figure
+
+
+class Lap(Dict[str, Any]):
+    """The results of a lap by name. A notebook shows them as a picture."""
+
+    def __init__(self, results: Dict[str, Any], waypoints: Any) -> None:
+        super().__init__(results)
+        self.waypoints = waypoints  # [n, 4]: x, y, yaw, speed of the course
+
+    def _repr_png_(self) -> bytes | None:
+        return _png(lap, self)
+
+
+def lap(lap: Lap) -> Any:
+    """A matplotlib figure of a lap from above: the path of the car coloured by its speed, the line of the course, and the
+    parked cars."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    axis = figure.add_subplot()
+    axis.plot(lap.waypoints[:, 0], lap.waypoints[:, 1], color="tab:gray", linestyle="--", linewidth=0.8, label="course")
+    for number, (x, y, _) in enumerate(lap["obstacles"]):
+        axis.plot(x, y, "s", color="tab:orange", label="parked car" if number == 0 else None)
+    driven = axis.scatter(*lap["path"][:, :2].T, c=lap["path"][:, 3], s=4, label="driven")
+    figure.colorbar(driven, label="speed, m/s")
+    axis.set_aspect("equal")
+    axis.set_xlabel("x, m")
+    axis.set_ylabel("y, m")
+    axis.legend(fontsize="small")
+    end = "finished" if lap["finished"] else "not finished"
+    axis.set_title(f"{end}, {lap['time']:.2f} s, {lap['contacts']} collision{'' if lap['contacts'] == 1 else 's'}")
+    return figure
+
+
+def _png(draw: Callable[[Any], Any], what: Any) -> bytes | None:
+    """The figure that `draw` makes, as a notebook shows it; None, so that it shows the text, if there is no matplotlib or
+    the plan is of an earlier solve."""
+    try:
+        figure = draw(what)
+    except (ImportError, RuntimeError):
+        return None
+    image = io.BytesIO()
+    figure.savefig(image, format="png", dpi=80)
+    return image.getvalue()
 
 
 def saturation(plan: Any) -> Any:

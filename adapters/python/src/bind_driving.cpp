@@ -35,14 +35,24 @@ evaluation::LapSettings take_world_options(py::dict& options) {
   return settings;
 }
 
-py::dict lap_dict(const evaluation::LapResult& lap) {
+/// The results of a lap as a slalom.plot.Lap. `path`: x, y, yaw and speed at each control step.
+py::dict lap_dict(const evaluation::LapResult& lap, const std::vector<std::array<double, 4>>& path,
+                  const Environment& environment) {
   const auto solves = static_cast<py::ssize_t>(lap.solve_ms.size());
-  return py::dict("seed"_a = lap.seed, "finished"_a = lap.finished, "timeout"_a = lap.timeout,
-                  "contacts"_a = lap.collisions, "time"_a = lap.time, "steps"_a = lap.steps,
-                  "state_cost"_a = lap.state_cost, "collision_cost"_a = lap.collision_cost,
-                  "mean_sequence_cost"_a = lap.mean_sequence_cost(), "mean_speed"_a = lap.mean_speed,
-                  "min_clearance"_a = lap.min_clearance,
-                  "solve_ms"_a = py::array_t<float>(solves, lap.solve_ms.data()));
+  const auto obstacles = rows_of(lap.obstacles, [](const maps::Pose& pose) {
+    return std::array{pose.x, pose.y, pose.yaw};
+  });
+  const auto waypoints = rows_of(environment.path, [](const maps::ReferencePoint& point) {
+    return std::array{point.x, point.y, point.yaw, point.speed};
+  });
+  const py::dict results(
+      "seed"_a = lap.seed, "finished"_a = lap.finished, "timeout"_a = lap.timeout,
+      "contacts"_a = lap.collisions, "time"_a = lap.time, "steps"_a = lap.steps,
+      "state_cost"_a = lap.state_cost, "collision_cost"_a = lap.collision_cost,
+      "mean_sequence_cost"_a = lap.mean_sequence_cost(), "mean_speed"_a = lap.mean_speed,
+      "min_clearance"_a = lap.min_clearance, "solve_ms"_a = py::array_t<float>(solves, lap.solve_ms.data()),
+      "path"_a = rows_of(path, [](const auto& row) { return row; }), "obstacles"_a = obstacles);
+  return py::module_::import("slalom.plot").attr("Lap")(results, waypoints);
 }
 
 void bind_planner(py::module_& module) {
@@ -95,16 +105,22 @@ void bind_planner(py::module_& module) {
         settings.obstacles = obstacles;
         const evaluation::LapSetup setup{environment, {configure(method, config, options), method}, settings};
         evaluation::LapResult lap;
+        std::vector<std::array<double, 4>> path;
         {
           const py::gil_scoped_release unlock;
-          lap = evaluation::run_lap(setup, seed, [](const auto&) { check_signals(); });
+          lap = evaluation::run_lap(setup, seed, [&](const evaluation::ControlStep& step) {
+            const sim::CarState& car = step.world.state(0);
+            path.push_back({car.x, car.y, car.yaw, car.speed});
+            check_signals();
+          });
         }
-        return lap_dict(lap);
+        return lap_dict(lap, path, *environment);
       },
       py::arg("course"), py::arg("method") = "svg_mppi", py::kw_only(), py::arg("seed") = 0,
       py::arg("obstacles") = 0, py::arg("options") = py::dict(), py::arg("config") = "",
-      "Drives one lap in lockstep and returns its results, as `slalom eval` does. `options` may also have "
-      "those of the world, for instance {'world.friction': 0.7}.");
+      "Drives one lap in lockstep and returns its results, as `slalom eval` does, with the `path` of the car "
+      "[n, 4]: x, y, yaw, speed. A notebook draws them. `options` may also have those of the world, for "
+      "instance {'world.friction': 0.7}.");
 }
 
 }  // namespace

@@ -24,10 +24,11 @@ inline maps::Pose to_pose(const std::array<double, 3>& pose) {
   return {pose[0], pose[1], pose[2]};
 }
 
-/// An array [item][4] of the four numbers that `numbers` returns for each item.
+/// An array [item][number] of the numbers that `numbers` returns for each item.
 template <class Items, class Numbers>
 py::array_t<double> rows_of(const Items& items, Numbers&& numbers) {
-  py::array_t<double> all({static_cast<py::ssize_t>(items.size()), py::ssize_t{4}});
+  constexpr auto columns = std::tuple_size_v<decltype(numbers(*items.begin()))>;
+  py::array_t<double> all({static_cast<py::ssize_t>(items.size()), static_cast<py::ssize_t>(columns)});
   double* to = all.mutable_data();
   for (const auto& item : items)
     for (const double number : numbers(item)) *to++ = number;

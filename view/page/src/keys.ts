@@ -5,23 +5,28 @@ const typed = "select, textarea, input:not([type=checkbox])";
 const pressed = "button, summary, a[href], [type=checkbox], [role=tab], [role=tabpanel]";
 const pressing = /^( |Enter|Home|End|Arrow.*)$/;
 
-/** Keys as the help shows them, their meaning, and what each does. Names of keys with Ctrl begin with it. */
-export type Shortcut = [shown: string, meaning: string, acts: Record<string, () => void>];
+/**
+ * Keys as the help shows them, their meaning, and what each does. Names of keys with Ctrl begin with it.
+ * `ofCar`: for a car on a course alone.
+ */
+export type Shortcut = [shown: string, meaning: string, acts: Record<string, () => void>, ofCar?: true];
 
 /** Lists the keys in the help. Calls the function of a key unless a dialog is open or a control uses it. */
 export function attachKeys(shortcuts: Shortcut[]) {
-  const rows = shortcuts.flatMap(([shown, meaning]) => {
+  const rows = shortcuts.flatMap(([shown, meaning, , ofCar]) => {
     const names = shown.split(" ").flatMap((key) => [make("kbd", {}, key), " "]);
-    return [make("dt", {}, ...names), make("dd", {}, meaning)];
+    const className = ofCar ? "of-car" : "";
+    return [make("dt", { className }, ...names), make("dd", { className }, meaning)];
   });
   get("keys").prepend(...rows);
-  const keys: Record<string, () => void> = Object.assign({}, ...shortcuts.map(([, , acts]) => acts));
   addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     if (document.querySelector("dialog[open]")) return;
     if (event.key === "Escape" && target.closest(typed)) return target.blur();
     if (target.closest(typed) || (target.closest(pressed) && pressing.test(event.key))) return;
-    const act = keys[event.ctrlKey || event.metaKey ? "Ctrl " + event.key.toLowerCase() : event.key];
+    const key = event.ctrlKey || event.metaKey ? "Ctrl " + event.key.toLowerCase() : event.key;
+    const [, , acts, ofCar] = shortcuts.find(([, , each]) => key in each) ?? [];
+    const act = ofCar && document.body.matches(".own") ? undefined : acts?.[key];
     if (!act || event.altKey) return;
     act();
     event.preventDefault();

@@ -16,8 +16,12 @@ export function icon(name: keyof typeof icons): string {
   return `<svg class="icon" viewBox="0 0 16 16" aria-hidden="true">${path}</svg>`;
 }
 
+/** Layers that only a car on a course has. */
+const ofCar = ["costMap", "path", "scan", "opponents", "modes", "ghost"];
+
 /** Fills in the parts of the page that follow from lists: icons and layers. */
 export function fillLists() {
+  if (solver) leaveCarOut(); // it has problems alone, and takes a moment to say which
   for (const button of document.querySelectorAll<HTMLElement>("[data-icon]"))
     button.insertAdjacentHTML("afterbegin", icon(button.dataset.icon as keyof typeof icons));
   for (const [name, title, text] of layers) {
@@ -25,7 +29,8 @@ export function fillLists() {
     box.dataset.layer = name;
     const swatch = make("span", { className: "swatch" });
     swatch.dataset.swatch = name;
-    get("layer-list").append(make("label", { title: text }, box, title, swatch));
+    const className = solver && ofCar.includes(name) ? "empty" : "";
+    get("layer-list").append(make("label", { title: text, className }, box, title, swatch));
   }
 }
 
@@ -38,15 +43,20 @@ export function fillTerms() {
   get("term").replaceChildren(...options);
 }
 
-/** Gives the page the name of a problem of the user's own, and hides what only a car on a course has. */
-export function nameProblem({ title }: { title: string }) {
+/** Hides what only a car on a course has. */
+function leaveCarOut() {
   document.body.classList.add("own");
   if (solver && self !== top) {
     document.body.classList.add("framed");
     get("scenario-menu").before(get("primary"));
   }
-  document.title = title;
   document.querySelector('[data-follow="fit"]')!.textContent = "Fit";
+}
+
+/** Gives the page the name of a problem of the user's own. */
+export function nameProblem({ title }: { title: string }) {
+  leaveCarOut();
+  document.title = title;
   get("caption").hidden = false;
   get("caption").textContent = title;
   get("scene").setAttribute("aria-label", `The scene of ${title}, and the plans of the controller`);

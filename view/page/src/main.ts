@@ -287,10 +287,10 @@ const showPane = attachPanes(document.querySelector("nav")!, (name) => {
   if (name === "charts") charts.rebuild();
   if (name === "inspect") inspect.show();
 });
-const menu = attachSaveMenu(() => scene.draw());
+const menu = attachSaveMenu(scene);
 
 function deleteSelected() {
-  if (scene.selected > 0 && !page.hello?.problem) send({ do: "remove", body: scene.selected });
+  if (scene.selected > 0) send({ do: "remove", body: scene.selected });
   scene.selected = -1;
 }
 const arrows = {
@@ -299,6 +299,7 @@ const arrows = {
   ArrowUp: () => controls.move(0, 1),
   ArrowDown: () => controls.move(0, -1),
 };
+const undoing = { "Ctrl z": () => send({ do: "undo" }), "Ctrl y": () => send({ do: "redo" }) };
 const tools = (["disc", "box", "car", "pan"] as const).map((tool) => () => controls.setTool(tool));
 const shortcuts: Shortcut[] = [
   ["Space", "pause and continue", { " ": drive.play }],
@@ -307,18 +308,14 @@ const shortcuts: Shortcut[] = [
   ["R", "restart from the beginning", { r: drive.restart }],
   ["F", "follow the car, heading up or not", { f: () => controls.follow() }],
   ["A", "fit the course", { a: () => controls.setFollow("fit") }],
-  ["G", "car and ghost side by side, or in one picture", { g: () => get("split").click() }],
+  ["G", "car and ghost side by side, or in one picture", { g: () => get("split").click() }, true],
   ["← → ↑ ↓", "move the view", arrows],
   ["+ -", "zoom", { "+": () => controls.zoom(1.2), "-": () => controls.zoom(1 / 1.2) }],
-  ["1 2 3 4", "pole, box, parked car, select", { 1: tools[0], 2: tools[1], 3: tools[2], 4: tools[3] }],
-  ["[ ]", "push the car to its left or right", { "[": drive.left, "]": drive.right }],
-  ["Delete", "delete the selected obstacle", { Delete: deleteSelected, Backspace: deleteSelected }],
-  [
-    "Ctrl Z, Ctrl Y",
-    "undo and redo a change of options or obstacles",
-    { "Ctrl z": () => send({ do: "undo" }), "Ctrl y": () => send({ do: "redo" }) },
-  ],
-  ["K", "fork from the control step shown", { k: drive.fork }],
+  ["1 2 3 4", "pole, box, parked car, select", { 1: tools[0], 2: tools[1], 3: tools[2], 4: tools[3] }, true],
+  ["[ ]", "push the car to its left or right", { "[": drive.left, "]": drive.right }, true],
+  ["Delete", "delete the selected obstacle", { Delete: deleteSelected, Backspace: deleteSelected }, true],
+  ["Ctrl Z, Ctrl Y", "undo and redo a change of options or obstacles", undoing, true],
+  ["K", "fork from the control step shown", { k: drive.fork }, true],
   ["S", "save or share: picture, replay, recording, link", { s: () => menu.toggle() }],
   ["L", "layers", { l: () => get("layers").toggleAttribute("open") }],
   ["T", "dark or light", { t: () => get("theme").click() }],
@@ -340,7 +337,7 @@ controls.setTool(isReplay ? "pan" : "disc");
 showPane("charts");
 requestAnimationFrame(draw);
 
-// The state of the page, for tests and for debugging in the console.
+// For tests, and for debugging in the console.
 const names = ["frame", "state", "hello"] as const;
 const getters = names.map((name) => [name, { get: () => page[name] }]);
 const counters = (["received", "waiting"] as const).map((name) => [name, { get: () => page.link[name] }]);

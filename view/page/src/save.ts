@@ -1,6 +1,8 @@
 import { get } from "./dom";
 import { page, send } from "./page";
+import { picture } from "./scene/picture";
 import { Popover } from "./popover";
+import type { SceneView } from "./scene/scene";
 import { copy, download, toast } from "./toast";
 
 /** Saves a file that the server has made. */
@@ -11,18 +13,18 @@ export function saveFile(name: string, content: Uint8Array) {
 }
 
 /** The menu that saves a picture, the last minute as a replay or a recording, or a link. Returns the menu. */
-export function attachSaveMenu(drawScene: () => void): Popover {
+export function attachSaveMenu(scene: SceneView): Popover {
   const menu = new Popover(get("save-open"), get("save"));
   const on = (id: string, act: () => void) =>
     (get(id).onclick = () => {
       menu.close();
       act();
     });
-  on("save-picture", () => {
-    drawScene();
-    const name = `slalom-${page.state?.course}-${page.state?.tick}.png`;
-    get<HTMLCanvasElement>("scene").toBlob((blob) => blob && download(name, blob, "image/png"));
-  });
+  for (const format of ["png", "svg"] as const)
+    on("save-" + format, () => {
+      const name = `slalom-${page.state?.course}-${page.state?.tick}.${format}`;
+      void picture(scene, format).then((blob) => download(name, blob, blob.type));
+    });
   on("save-replay", () => {
     toast("Saving a replay of the last minute …");
     send({ do: "save", what: "replay" });

@@ -24,6 +24,17 @@ function bare(schema) {
   return Object.fromEntries(demands.map(([key, value]) => [key, bare(value)]));
 }
 
+/** The topics and figures that the layouts for other programs show. */
+function shownByLayouts() {
+  const read = (name) => readFileSync(new URL("../../layouts/" + name, import.meta.url), "utf8");
+  const { configById } = JSON.parse(read("foxglove.json"));
+  const topics = Object.keys(configById["3D!scene"].topics);
+  const plots = Object.values(configById).flatMap(({ paths }) => (paths ?? []).map(({ value }) => value));
+  for (const [, name] of read("plotjuggler.xml").matchAll(/<curve name="([^"]*)"/g))
+    plots.push(name.replace(/^\/tick\//, "/tick."));
+  return { topics, plots };
+}
+
 /** Counts the records of a file by their type, read as a stream. */
 function countOf(bytes) {
   const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers, includeChunks: false });
@@ -76,6 +87,9 @@ async function checkFile(file, { times = false } = {}) {
     const [maker, name] = schema.name.split(".");
     if (maker === "foxglove") assert.deepEqual(parsed, bare(schemas[name]), schema.name);
   }
+  const layouts = shownByLayouts();
+  assert.ok(layouts.topics.length > 5 && layouts.plots.length > 10);
+  for (const topic of layouts.topics) assert.ok(topics.includes(topic), topic);
   const estimates = ["slip_estimate", "grip_used", "friction_estimate", "delay_estimate"];
   for (const message of messages) {
     const { topic, schemaId, messageEncoding } = channelsById.get(message.channelId);
@@ -85,6 +99,7 @@ async function checkFile(file, { times = false } = {}) {
     assert.ok(check(content), `${topic}: ${JSON.stringify(check.errors)}`);
     if (topic !== "/tick") continue;
     for (const name of estimates) assert.equal(typeof content[name], "number", `/tick.${name}`);
+    for (const path of layouts.plots) assert.ok(path.replace("/tick.", "") in content, path);
   }
   const found = `${messages.length} messages, ${topics.length} topics, ${attachments.length} attachments`;
   console.log(`ok    ${file.split("/").at(-1)}: ${bytes.length} bytes, ${found}`);

@@ -1,29 +1,43 @@
-// Draws a picture for the documentation: node test/pictures.mjs PROGRAM introduction|overtake FILE.png
+// Draws a picture for the documentation (script/pictures): node test/pictures.mjs PROGRAM NAME FILE
+import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { Harness } from "./harness.mjs";
 
 const [program, name, file] = process.argv.slice(2);
 const world = { opponent_driver: "racing", opponent_speed: 0.6, opponent_gap: 5, tracking: "exact" };
 const settings = Object.entries(world).flatMap(([key, value]) => ["--set", `world.${key}=${value}`]);
 const overtake = ["--course", "fox", "--obstacles", "0", "--seed", "1", "--opponents", "1", ...settings];
-const scenario = { introduction: [], overtake }[name];
-if (!scenario || !file) throw new Error("usage: pictures.mjs PROGRAM introduction|overtake FILE.png");
+const twoWays = ["--course", "stag", "--config", "published", "--obstacles", "1", "--seed", "77"];
+const scenarios = {
+  introduction: [],
+  overtake,
+  "two-ways": [...twoWays, "--against", "mppi", "--record-all"],
+};
+const scenario = scenarios[name];
+if (!scenario || !file)
+  throw new Error(`usage: pictures.mjs PROGRAM ${Object.keys(scenarios).join("|")} FILE`);
 
 const h = new Harness(program);
 const isIntroduction = name === "introduction";
 const viewport = isIntroduction ? { width: 1440, height: 900 } : { width: 1000, height: 700 };
 await h.openAll(scenario, { viewport, colorScheme: isIntroduction ? "dark" : "light" });
 const { page } = h;
-await h.restart();
-await h.pause();
+if (!isIntroduction) {
+  await h.restart();
+  await h.pause();
+}
 
-/** The introduction when mppi averages and svg_mppi commits. */
+/** The step of the introduction in which mppi averages and svg_mppi commits. */
 async function drawIntroduction() {
-  const says = ([id, what]) => document.getElementById(id).dataset.verdict === what;
-  const isTold = async () =>
-    (await page.evaluate(says, ["ghost-modes", "averages"])) && page.evaluate(says, ["modes", "commits"]);
-  do await h.step(1);
-  while (!(await isTold()));
+  const says = (step) =>
+    h.until((s) => document.getElementById("introduction-text").textContent.startsWith(s), step);
+  await says("1 of 6");
+  for (const step of ["2 of 6", "3 of 6", "4 of 6", "5 of 6"]) {
+    await page.click("#introduction-next");
+    await says(step);
+  }
+  await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
   await h.drawn();
   return page.screenshot();
 }
@@ -95,5 +109,19 @@ async function tiled({ shots, tile }) {
   return canvas.toDataURL("image/png");
 }
 
-writeFileSync(file, await (isIntroduction ? drawIntroduction() : drawOvertake()));
+/** A video of the two controllers, until they have passed the parked car. */
+async function filmTwoWays() {
+  const end = 64; // control steps, 1.6 s
+  const driven = await h.scalar("tick");
+  if (driven < end) await h.step(end - driven);
+  await page.click("#save-open");
+  const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save-recording")]);
+  const recording = join(h.folder, "two-ways.mcap");
+  await saved.saveAs(recording);
+  const span = ["--from", "0.95", "--to", "1.6", "--speed", "0.2"];
+  execFileSync(program, ["replay", recording, "--video", file, ...span], { stdio: "inherit" });
+}
+
+if (name === "two-ways") await filmTwoWays();
+else writeFileSync(file, await (isIntroduction ? drawIntroduction() : drawOvertake()));
 await h.close();

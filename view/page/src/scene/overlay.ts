@@ -43,10 +43,13 @@ export function place(label: HTMLElement, at: Pose | undefined, camera: Camera, 
   label.style.transform = `translate(${left}px, ${top}px)`;
 }
 
+/** A round length (m) that is at least 48 pixels long. */
+export const rulerMetres = (zoom: number) =>
+  [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find((m) => m * zoom >= 48) ?? 200;
+
 /** Shows the ruler and its length. */
 export function showRuler(camera: Camera) {
-  const metres =
-    [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find((m) => m * camera.zoom >= 48) ?? 200;
+  const metres = rulerMetres(camera.zoom);
   get("ruler-text").textContent = metres + " m";
   get("ruler-bar").style.width = metres * camera.zoom + "px";
 }

@@ -2,31 +2,42 @@ import type { Pose } from "../protocol";
 import type { Camera } from "./camera";
 import { css, type Rgba } from "./palette";
 
+/** A canvas, with as much of it as pictures need. */
+export type Pen = Pick<
+  CanvasRenderingContext2D,
+  | ("fillStyle" | "strokeStyle" | "lineWidth" | "lineJoin" | "imageSmoothingQuality" | "font" | "textAlign")
+  | ("save" | "restore" | "scale" | "rotate" | "translate" | "clip" | "fill" | "stroke")
+  | ("beginPath" | "closePath" | "moveTo" | "lineTo" | "arc" | "rect" | "fillRect" | "fillText")
+> & {
+  setTransform(a: number, b: number, c: number, d: number, e: number, f: number): void;
+  drawImage(image: CanvasImageSource, x: number, y: number, width: number, height: number): void;
+};
+
 /** Draws lines and shapes in the order of the calls. Positions are in m (map frame), widths in pixels. */
 export class Painter {
-  private readonly pen: CanvasRenderingContext2D;
-  private ratio = 1; // pixels of the canvas per CSS pixel
   private pixel = 1; // size of a CSS pixel, m
 
-  constructor(private readonly canvas: HTMLCanvasElement) {
-    this.pen = canvas.getContext("2d", { alpha: false })!;
-  }
+  /** `ratio`: pixels of the pen for each CSS pixel. */
+  constructor(
+    private readonly pen: Pen,
+    private readonly ratio: number,
+  ) {}
 
-  /** Begins a picture of the size of the canvas. */
-  begin(ground: Rgba) {
-    this.ratio = Math.min(2, window.devicePixelRatio || 1);
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight].map((side) =>
-      Math.max(1, Math.round(side * this.ratio)),
-    );
-    if (this.canvas.width !== width || this.canvas.height !== height)
-      Object.assign(this.canvas, { width, height });
-    this.pen.reset();
+  /** Begins a picture of this size (CSS pixels). */
+  begin(width: number, height: number, ground: Rgba) {
+    this.pen.save();
     this.pen.fillStyle = css(ground);
-    this.pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
+    this.pen.fillRect(0, 0, width * this.ratio, height * this.ratio);
     this.pen.save();
   }
 
-  /** Limits the following drawings to the part of the canvas that a camera covers. */
+  /** Ends the picture: the pen is as it was. */
+  end() {
+    this.pen.restore();
+    this.pen.restore();
+  }
+
+  /** Limits the following drawings to the part of the picture that a camera covers. */
   look(c: Camera) {
     const { pen, ratio } = this;
     pen.restore();
@@ -100,6 +111,18 @@ export class Painter {
     pen.drawImage(image, 0, 0, width, height);
     pen.restore();
   }
+}
+
+/** A painter of a whole canvas of the page, sharp on its screen. */
+export function painterOf(canvas: HTMLCanvasElement): Painter {
+  const ratio = Math.min(2, window.devicePixelRatio || 1);
+  const pen = canvas.getContext("2d", { alpha: false })!;
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) =>
+    Math.max(1, Math.round(side * ratio)),
+  );
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+  pen.reset();
+  return new Painter(pen, ratio);
 }
 
 /** An image of these pixels, four bytes each. */

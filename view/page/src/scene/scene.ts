@@ -4,7 +4,7 @@ import type { Camera } from "./camera";
 import { candidateAt, drawCandidates, drawChosen } from "./candidates";
 import * as draw from "./drawings";
 import { layers, type Layer } from "./layers";
-import { Painter } from "./painter";
+import { painterOf, type Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
 import {
   carSize,
@@ -51,13 +51,14 @@ export class SceneView {
   preview?: { x: number; y: number; kind: number }; // place of the body that a click adds
   marks: Mark[] = [];
   private scene: Scene = {};
-  private readonly painter: Painter;
   private map?: { grid: Grid; theme: Theme; image: HTMLCanvasElement };
   bounds: [number, number, number, number] = [-5, -5, 5, 5]; // m, of course line and walls
   private fitted = "";
 
-  constructor(canvas: HTMLCanvasElement, theme: Theme) {
-    this.painter = new Painter(canvas);
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    theme: Theme,
+  ) {
     this.theme = theme;
   }
 
@@ -147,13 +148,27 @@ export class SceneView {
     return within.sort((a, b) => distance(a) - distance(b))[0];
   }
 
-  draw() {
-    this.painter.begin(page.hello?.problem && !this.scene.grid ? this.theme.free : this.theme.ground);
+  /** The size of the scene, CSS pixels. */
+  get size() {
+    return [this.canvas.clientWidth, this.canvas.clientHeight];
+  }
+
+  /** Draws on the page, or with the pen of a picture. */
+  draw(painter = painterOf(this.canvas)) {
+    this.painter = painter;
+    const [width, height] = this.size;
+    painter.begin(
+      width,
+      height,
+      page.hello?.problem && !this.scene.grid ? this.theme.free : this.theme.ground,
+    );
     if (this.isSideBySide) this.stage.splitLanes();
     else this.stage.joinLanes();
     this.drawLane(this.camera, page.frame, this.driven);
     if (this.isSideBySide) this.drawLane(this.stage.ghostCamera, page.frame?.ghostFrame, this.ghostDriven);
+    painter.end();
   }
+  private painter!: Painter; // draws at present
 
   private drawLane(camera: Camera, frame: Frame | undefined, driven: number[]) {
     const { painter, theme, visible } = this;
@@ -175,7 +190,6 @@ export class SceneView {
     if (visible.has("scan") && frame.scan && page.hello?.lidar)
       draw.drawScan(painter, theme, frame.scan, page.hello.lidar);
     this.drawBodies(frame);
-    this.drawMarks(frame !== page.frame);
     if (this.preview) this.drawPreview(this.preview);
     if (this.chosen >= 0 && frame === page.frame && frame.candidates)
       drawChosen(painter, theme, frame, this.chosen, 7 / camera.zoom);
@@ -190,6 +204,7 @@ export class SceneView {
       const steer = scalar("steer", frame.scalars) || 0;
       drawCar(painter, theme, car, steer, theme.car, car.touched ? theme.collided : theme.carEdge);
     }
+    this.drawMarks(frame !== page.frame);
   }
 
   /** Draws the map with an image that is made once for each course and theme. */
@@ -233,11 +248,13 @@ export class SceneView {
 
   private drawMarks(isGhost: boolean) {
     for (const m of this.marks.filter((each) => Boolean(each.isGhost) === isGhost)) {
-      const r = (m.shown ? 9 : 5) / this.camera.zoom;
-      const width = m.shown ? 3.5 : 2.2;
-      const colour = m.shown ? this.theme.selected : this.theme.mark;
-      this.painter.segment(m.x - r, m.y - r, m.x + r, m.y + r, colour, width);
-      this.painter.segment(m.x - r, m.y + r, m.x + r, m.y - r, colour, width);
+      const r = (m.shown ? 12 : 5) / this.camera.zoom;
+      const lines = m.shown ? [7, 4] : [2.2]; // with a rim
+      for (const width of lines)
+        for (const up of [r, -r]) {
+          const colour = width === 7 ? this.theme.free : this.theme.mark;
+          this.painter.segment(m.x - r, m.y - up, m.x + r, m.y + up, colour, width);
+        }
     }
   }
 }

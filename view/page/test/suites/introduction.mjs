@@ -46,6 +46,7 @@ export default async function (h) {
     assert.ok(mark.isGhost && Math.hypot(mark.x - hit.x, mark.y - hit.y) < 0.1);
     await next();
     await shows("Passed: svg_mppi without a collision, mppi with ");
+    await shows("mppi hits 22 % of the cars");
     // Back at the decision, before the collision.
     await page.click("#introduction-drag");
     await wait(() => document.getElementById("introduction").hidden && slalom.scene.isSideBySide);
@@ -54,6 +55,14 @@ export default async function (h) {
         slalom.state.paused &&
         slalom.frame.ghostFrame.scalars[slalom.hello.scalars.indexOf("contacts")] === 0,
     );
+    // Without guides, from the beginning and still side by side.
+    await page.evaluate(() => document.getElementById("introduction-without").click());
+    await wait(() => slalom.state.rate === 0.25 && !slalom.state.paused);
+    await wait(() => slalom.scalar("tick") > 5 && slalom.frame.ghostFrame && slalom.scene.isSideBySide);
+    await page.evaluate(() => document.getElementById("tab-options").click());
+    const option = (key) => page.locator(`[data-key="svg_mppi.${key}"] input`);
+    for (const key of ["use_nominal", "adapt_covariance"])
+      assert.equal(await option(key).isChecked(), false, key);
     // After a reload the address holds the scenario, and the view is the ordinary one.
     await page.reload();
     await wait(() => window.slalom?.frame?.ghost && slalom.state);

@@ -35,9 +35,50 @@ export default async function (h) {
     await look.locator("#tab-charts").click();
   });
 
+  await h.test("the help and the keys are those of a problem", async () => {
+    await look.locator("#help").click();
+    const keys = await look.locator("#keys dt:visible").allTextContents();
+    assert.ok(
+      keys.some((text) => text.startsWith("Space")) && !keys.some((text) => text.startsWith("[")),
+      keys,
+    );
+    await look.locator("#help-box button").click();
+    const tool = () => look.evaluate(() => document.querySelector("[data-tool].on").dataset.tool);
+    await look.keyboard.press("1");
+    assert.equal(await tool(), "pan");
+  });
+
+  await h.test("a page with a solver inside shows nothing of a car before it has begun", async () => {
+    const page = await h.open();
+    const text = await look.evaluate(() => fetch("/").then((answer) => answer.text()));
+    const body = text.replace("<meta name", '<meta name="solver" content="solver.js" /><meta name');
+    await page.route("**/*", (route) =>
+      route.request().url().endsWith("solver.js")
+        ? route.fulfill({ body: "", contentType: "text/javascript" })
+        : route.fulfill({ body, contentType: "text/html" }),
+    );
+    await page.goto("http://localhost/demo");
+    await page.locator("#method").waitFor();
+    for (const id of [
+      "course",
+      "ghost",
+      "fork",
+      "tab-laps",
+      "nudge-left",
+      "speed",
+      "save-recording",
+      "config",
+    ])
+      assert.equal(await page.locator("#" + id).isVisible(), false, id);
+    const layers = await page.locator("#layer-list label:visible").allTextContents();
+    assert.ok(layers.includes("Candidates") && !layers.includes("LiDAR"), layers.join());
+    assert.equal(await page.locator('[data-follow="fit"]').textContent(), "Fit");
+    await page.close();
+  });
+
   await h.test("an obstacle is dragged while the drive is paused, and the plan goes around it", async () => {
     await h.restart(look);
-    await h.until(() => slalom.scalar("tick") > 7 && slalom.scalar("tick") < 30, null, look);
+    await h.until(() => slalom.scalar("tick") > 7, null, look);
     await h.send({ do: "seek", tick: 7 }, look);
     await h.until(() => slalom.state.tick === 7 && slalom.scalar("tick") === 7, null, look);
     const gap = () =>

@@ -1,0 +1,156 @@
+import { all, counted, get } from "../dom";
+import { page, period, scalar } from "../page";
+import type { Camera } from "./camera";
+import { layers, type Layer } from "./layers";
+import { rulerMetres } from "./overlay";
+import { Painter, type Pen } from "./painter";
+import { css, rampColour } from "./palette";
+import type { SceneView } from "./scene";
+import { SvgPen } from "./svg_pen";
+
+const margin = 14; // pixels, as all lengths here
+const line = 22;
+const rampWidth = 120;
+const fonts = { plain: "13px sans-serif", bold: "bold 13px sans-serif" };
+
+/** Something in the band below the scene. */
+interface Item {
+  width: number;
+  draw(pen: Pen, x: number, y: number): void;
+}
+
+const measure = document.createElement("canvas").getContext("2d")!;
+const themed = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name);
+
+function words(text: string, font = fonts.plain): Item {
+  measure.font = font;
+  const draw = (pen: Pen, x: number, y: number) => {
+    Object.assign(pen, { font, fillStyle: themed("--text") });
+    pen.fillText(text, x, y);
+  };
+  return { width: measure.measureText(text).width, draw };
+}
+
+function swatch(colour: string, text: string): Item {
+  const name = words(text);
+  const draw = (pen: Pen, x: number, y: number) => {
+    pen.fillStyle = colour;
+    pen.fillRect(x, y - 8, 16, 6);
+    name.draw(pen, x + 22, y);
+  };
+  return { width: 22 + name.width, draw };
+}
+
+/** The scale of the candidates' colours, between the costs at its ends. */
+function ramp(scene: SceneView): Item {
+  const [low, high] = scene.costRange.map((cost) => words(cost.toPrecision(3)));
+  const name = words(`Candidates, by ${scene.term} cost`);
+  const draw = (pen: Pen, x: number, y: number) => {
+    low.draw(pen, x, y);
+    const from = x + low.width + 6;
+    for (let i = 0; i < rampWidth; i += 3) {
+      pen.fillStyle = css(rampColour(scene.theme, i / rampWidth, 1));
+      pen.fillRect(from + i, y - 9, 3, 8);
+    }
+    high.draw(pen, from + rampWidth + 6, y);
+    name.draw(pen, from + rampWidth + high.width + 14, y);
+  };
+  return { width: low.width + high.width + name.width + rampWidth + 20, draw };
+}
+
+function scaleBar({ zoom }: Camera): Item {
+  const metres = rulerMetres(zoom);
+  const name = words(`${metres} m`);
+  const draw = (pen: Pen, x: number, y: number) => {
+    pen.fillStyle = themed("--text");
+    pen.fillRect(x, y - 5, metres * zoom, 2);
+    for (const end of [x, x + metres * zoom - 2]) pen.fillRect(end, y - 9, 2, 8);
+    name.draw(pen, x + metres * zoom + 6, y);
+  };
+  return { width: metres * zoom + 6 + name.width, draw };
+}
+
+/** The places of items in rows as wide as the picture, below `from`; the last is the end of the rows. */
+function flowed(items: Item[], gap: number, from: number, width: number) {
+  const places: { item: Item; x: number; y: number }[] = [];
+  let [x, y] = [margin, from + line];
+  for (const item of items) {
+    if (x > margin && x + item.width > width - margin) [x, y] = [margin, y + line];
+    places.push({ item, x, y });
+    x += item.width + gap;
+  }
+  return { places, end: items.length ? y : from };
+}
+
+function titleParts(): string[] {
+  const { state, hello } = page;
+  const time = `${(page.position * period()).toFixed(2)} s`;
+  if (hello?.problem) return [hello.problem.title, state!.method, time];
+  const ghost = state!.ghost ? [`against ${state!.ghost_label || state!.ghost}`] : [];
+  const hits = counted(scalar("contacts"), "collision");
+  return [state!.course, state!.method, ...ghost, `seed ${state!.seed}`, time, hits];
+}
+
+/** The layers that show something, with their colours. */
+function key(scene: SceneView): Item[] {
+  const isShown = (name: Layer) =>
+    scene.visible.has(name) &&
+    !all(`.empty > [data-layer="${name}"]`).length &&
+    name !== "modes" &&
+    !(name === "ghost" && scene.isSideBySide);
+  return layers
+    .filter(([name]) => isShown(name))
+    .flatMap(([name, title, , colour]) =>
+      name === "candidates"
+        ? [ramp(scene), swatch(css(scene.theme.collided), "Candidates that collide")]
+        : colour
+          ? swatch(css(scene.theme[colour]), title)
+          : [],
+    );
+}
+
+/** The name of a lane, at its top. */
+function drawLaneTitle(pen: Pen, text: string, { left, top, middleX }: Camera) {
+  const title = words(text, fonts.bold);
+  pen.fillStyle = themed("--panel");
+  pen.fillRect(middleX - title.width / 2 - 8, top + 8, title.width + 16, line);
+  title.draw(pen, middleX - title.width / 2, top + 24);
+  pen.fillStyle = themed("--faint");
+  if (left) pen.fillRect(left, 0, 1, 1e4);
+}
+
+/** Draws the scene with its names, captions, scale and the meaning of its colours below. */
+export async function picture(scene: SceneView, format: "png" | "svg"): Promise<Blob> {
+  const [width, height] = scene.size;
+  const captions = [...all(".caption:not([hidden])")].map((each) => each.textContent!.trim());
+  const spoken = captions.map((text) => text.split(/\s+/).map((word) => words(word)));
+  let end = height;
+  const rows = [
+    { items: titleParts().map((part) => words(part, fonts.bold)), gap: 16 },
+    ...spoken.map((items) => ({ items, gap: 4 })),
+    { items: [scaleBar(scene.camera), ...key(scene)], gap: 16 },
+  ].map(({ items, gap }) => {
+    const row = flowed(items, gap, end, width);
+    end = row.end;
+    return row.places;
+  });
+  end += margin;
+
+  const ratio = format === "png" ? 2 : 1;
+  const canvas = Object.assign(document.createElement("canvas"), {
+    width: ratio * width,
+    height: ratio * end,
+  });
+  const pen = format === "png" ? canvas.getContext("2d")! : new SvgPen(width, end);
+  scene.draw(new Painter(pen, ratio));
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  if (scene.isSideBySide)
+    [scene.camera, scene.stage.ghostCamera].forEach((camera, i) =>
+      drawLaneTitle(pen, get(i ? "ghost-lane-title" : "lane-title").textContent!, camera),
+    );
+  pen.fillStyle = themed("--panel");
+  pen.fillRect(0, height, width, end - height);
+  for (const { item, x, y } of rows.flat()) item.draw(pen, x, y);
+  if (pen instanceof SvgPen) return new Blob([pen.text()], { type: "image/svg+xml" });
+  return new Promise((done) => canvas.toBlob((blob) => done(blob!), "image/png"));
+}
