@@ -146,13 +146,13 @@ Symptom SolverBase::suspicion() noexcept {
   highest_cost_ = std::max(highest_cost_, least);
   if (result_.temperature > 0 && effective < 3) return Symptom::few_samples;
 
-  double most = least;
-  for (const float cost : result_.costs)
-    if (std::isfinite(cost)) most = std::max<double>(most, cost);
   const double rounding = std::numeric_limits<float>::epsilon() * std::abs(least);
+  const bool equal_costs = std::none_of(result_.costs.begin(), result_.costs.end(), [&](float cost) {
+    return std::isfinite(cost) && cost - least > rounding;
+  });
   const bool equal_weights =
       result_.temperature > 0 && effective > 0.9 * static_cast<double>(result_.costs.size());
-  if (most - least <= rounding || equal_weights) return Symptom::equal_costs;
+  if (equal_costs || equal_weights) return Symptom::equal_costs;
   if (small_variance_) return Symptom::small_variance;
 
   int saturated = 0;
