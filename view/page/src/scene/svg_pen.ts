@@ -87,7 +87,8 @@ export class SvgPen implements Pen {
   fillText(text: string, x: number, y: number) {
     const [px, py] = this.place(x, y).split(" ");
     const anchor = this.textAlign === "center" ? "middle" : this.textAlign === "right" ? "end" : "start";
-    const look = `${this.colour("fill", this.fillStyle)} text-anchor="${anchor}" style="font:${escaped(this.font)}"`;
+    const fill = this.colour("fill", this.fillStyle);
+    const look = `${fill} text-anchor="${anchor}" style="font:${escaped(this.font)}"`;
     this.parts.push(`<text x="${px}" y="${py}" ${look}>${escaped(text)}</text>`);
   }
   drawImage(image: CanvasImageSource, x: number, y: number, width: number, height: number) {
