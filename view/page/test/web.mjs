@@ -54,7 +54,8 @@ await h.test("it solves at least 20 times a second", async () => {
 
 await h.test("an obstacle is dragged while the drive is paused, and the plan goes around it", async () => {
   await h.restart();
-  await h.until(() => slalom.scalar("tick") > 7);
+  const before = await h.page.evaluateHandle(() => slalom.frame);
+  await h.until((frame) => slalom.frame !== frame && slalom.scalar("tick") > 7, before);
   await h.seek(7);
   const place = (x, y) =>
     h.page.evaluate(

@@ -78,7 +78,8 @@ export default async function (h) {
 
   await h.test("an obstacle is dragged while the drive is paused, and the plan goes around it", async () => {
     await h.restart(look);
-    await h.until(() => slalom.scalar("tick") > 7, null, look);
+    const before = await look.evaluateHandle(() => slalom.frame);
+    await h.until((frame) => slalom.frame !== frame && slalom.scalar("tick") > 7, before, look);
     await h.send({ do: "seek", tick: 7 }, look);
     await h.until(() => slalom.state.tick === 7 && slalom.scalar("tick") === 7, null, look);
     const gap = () =>
