@@ -107,14 +107,14 @@ class Manoeuvre {
     const int gear = way_[at_].gear;
     if (std::abs(maps::inverse_transform(pose, {way_[at_].pose.x, way_[at_].pose.y}).y) > beside)
       return std::nullopt;
-    const double least = least_room(obstacles);
     double left = 0;  // m to the end of the part in this gear
     maps::Point before{pose.x, pose.y}, aim = before;
     std::size_t end = at_;
     for (; end < way_.size() && way_[end].gear == gear; ++end) {
       const maps::Pose& next = way_[end].pose;
       const maps::Point local = maps::inverse_transform(pose, {next.x, next.y});
-      if (room(obstacles, local.x, local.y, direction(next.yaw - pose.yaw)) < least) return std::nullopt;
+      if (room(obstacles, local.x, local.y, direction(next.yaw - pose.yaw)) < keep_ - tolerance)
+        return std::nullopt;
       if (left < look_ahead) aim = {next.x, next.y};
       left += std::hypot(next.x - before.x, next.y - before.y);
       before = {next.x, next.y};
@@ -127,10 +127,10 @@ class Manoeuvre {
             ? std::clamp(2 * to.y / square, -curvature_ / usable_steering, curvature_ / usable_steering)
             : std::tan(way_[at_].steer) / wheelbase_;
     for (const double driven : {0.1, 0.2}) {  // the car may be beside the way
-      if (driven > left) break;
+      if (driven > left) break;  // this part of the way ends before
       const double turned = gear * driven * curvature;
       if (room(obstacles, gear * driven * std::cos(0.5 * turned), gear * driven * std::sin(0.5 * turned),
-               direction(turned)) >= least)
+               direction(turned)) >= std::min(room(obstacles, 0, 0, {1, 0}), keep_ - tolerance))
         continue;
       if (std::abs(speed) < standing) return std::nullopt;
       return Command{std::atan(curvature * wheelbase_), 0};
@@ -208,13 +208,6 @@ class Manoeuvre {
       least = std::min(least,
                        static_cast<double>(obstacles.at(x + disc * heading.cosine, y + disc * heading.sine)));
     return least;
-  }
-
-  /// The clearance (m) that the discs keep on the way. A car that stands nearer gets hardly nearer, and never
-  /// to a touch.
-  double least_room(const maps::ClearanceMap& obstacles) const noexcept {
-    const double now = room(obstacles, 0, 0, {1, 0});
-    return std::min(keep_ - tolerance, std::max(now - tolerance, std::min(now, radius_)));
   }
 
   /// Collects the part of the path around the car, and the place nearest to each cell.
