@@ -127,7 +127,7 @@ class Manoeuvre {
             ? std::clamp(2 * to.y / square, -curvature_ / usable_steering, curvature_ / usable_steering)
             : std::tan(way_[at_].steer) / wheelbase_;
     for (const double driven : {0.1, 0.2}) {  // the car may be beside the way
-      if (driven > left) break;  // this part of the way ends before
+      if (driven > left) break;               // this part of the way ends before
       const double turned = gear * driven * curvature;
       if (room(obstacles, gear * driven * std::cos(0.5 * turned), gear * driven * std::sin(0.5 * turned),
                direction(turned)) >= std::min(room(obstacles, 0, 0, {1, 0}), keep_ - tolerance))
