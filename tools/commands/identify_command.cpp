@@ -134,9 +134,9 @@ Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> sampl
 
 int identify(const IdentifyArguments& arguments) {
   std::FILE* const words = arguments.json == "-" ? stderr : stdout;
-  std::string topics;
-  const auto samples = read_driven_samples(arguments.recording, &topics);
-  if (!topics.empty()) std::fprintf(words, "%s\n", topics.c_str());
+  const DrivenRecording drive = read_drive(arguments.recording);
+  const auto& samples = drive.samples;
+  if (!drive.topics.empty()) std::fprintf(words, "%s\n", drive.topics.c_str());
   const Json found = [&] {
     try {
       return arguments.tyres ? identify_tyres(words, samples, arguments)

@@ -5,12 +5,15 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/commands/replay_against.hpp"
 #include "tools/drawing/course_pictures.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/live_view/view_setup.hpp"
@@ -36,12 +39,14 @@ struct ReplayArguments {
   std::uint16_t port = 8400;
   std::string method, scenario, course, plot, record;
   int lap = -1;  ///< -1: not given
+  std::string against, start, json;
+  std::vector<std::string> set;
 };
 
 /// The options of a lap of an evaluation, and those of a recording.
 constexpr const char* lap_options[] = {"--lap", "--scenario", "--plot", "--method", "--course", "--record"};
-constexpr const char* recording_options[] = {"--html", "--host", "--port", "--video",
-                                             "--from", "--to",   "--speed"};
+constexpr const char* recording_options[] = {"--html", "--host", "--port",  "--video",
+                                             "--from", "--to",   "--speed", "--against"};
 
 /// Throws CommandLineError if one of the options was given.
 void reject_options(const Subcommand& command, std::span<const char* const> options, const char* when) {
@@ -150,7 +155,22 @@ void reject_bag(const std::filesystem::path& source) {
                   "use Foxglove or rviz2");
 }
 
+/// Compares a planner with the driver of a recording.
+int compare_planner(const ReplayArguments& arguments) {
+  AgainstArguments against;
+  against.recording = arguments.source;
+  against.json = arguments.json;
+  against.plot = arguments.plot;
+  against.scenario.course = arguments.course;
+  against.scenario.config = arguments.against;
+  against.scenario.set = arguments.set;
+  against.scenario.start = arguments.start;
+  if (!arguments.method.empty()) against.method = arguments.method;
+  return replay_against(against);
+}
+
 int replay(const ReplayArguments& arguments, const Subcommand& command) {
+  if (!arguments.against.empty()) return compare_planner(arguments);
   reject_bag(arguments.source);
   if (std::filesystem::is_directory(arguments.source)) {
     reject_options(command, recording_options, "when a lap of an evaluation is repeated");
@@ -166,7 +186,10 @@ int replay(const ReplayArguments& arguments, const Subcommand& command) {
 void declare_replay(Subcommand& command) {
   command.summary("Show a recording in the browser, or repeat a lap of an evaluation");
   const auto arguments = std::make_shared<ReplayArguments>();
-  command.option("what", arguments->source, "MCAP recording, or output folder of an evaluation").required();
+  command
+      .option("what", arguments->source,
+              "MCAP recording, output folder of an evaluation, or with --against a bag of rosbag2")
+      .required();
   const Option html =
       command.option("--html", arguments->html, "Write the recording as an HTML page instead of serving it");
   Option video = command.option(
@@ -180,17 +203,38 @@ void declare_replay(Subcommand& command) {
       .needs(video);
   const Option host = command.option("--host", arguments->host, "Address to listen on");
   const Option port = command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
-  command.option("--lap", arguments->lap, "Evaluation: number of the lap, from 0", {0, 999999});
+  const Option lap =
+      command.option("--lap", arguments->lap, "Evaluation: number of the lap, from 0", {0, 999999});
   command.option("--method", arguments->method,
                  "Evaluation: method, or method and options as in the results");
-  command.option("--scenario", arguments->scenario, "Evaluation: pt or oa");
-  command.option("--course", arguments->course, "Evaluation: course folder, if it is not found by name");
-  command.option("--plot", arguments->plot, "Evaluation: write a picture of the lap to this PNG, SVG or PDF");
+  const Option scenario = command.option("--scenario", arguments->scenario, "Evaluation: pt or oa");
+  const Option course =
+      command.option("--course", arguments->course,
+                     "With --against: course; evaluation: its folder, if it is not found by name");
+  command.option("--plot", arguments->plot,
+                 "Evaluation, or with --against: write a picture of the drive to this PNG, SVG or PDF");
   const Option record =
       command.option("--record", arguments->record, "Evaluation: record the lap to this MCAP file");
-  for (Option served : {host, port}) served.excludes(html).excludes(video).excludes(record);
+  Option against = command.option(
+      "--against", arguments->against,
+      "Compare the planner of this configuration with the driver of a recording with all scans, or of a bag");
+  against.needs(course).excludes(html).excludes(video).excludes(record).excludes(lap).excludes(scenario);
+  command
+      .option("--set", arguments->set,
+              "With --against: section.option=value of the configuration; may be repeated")
+      .repeatable()
+      .needs(against);
+  command
+      .option("--start", arguments->start,
+              "With --against: first pose x,y,yaw of the rear axle, for a bag without poses on the map "
+              "[searched on the whole map]")
+      .needs(against);
+  command.option("--json", arguments->json, "With --against: write all moments to this file (- for stdout)")
+      .needs(against);
+  for (Option served : {host, port}) served.excludes(html).excludes(video).excludes(record).excludes(against);
   command.examples({"replay lap.mcap", "replay lap.mcap --video lap.webm --from 4 --to 8 --speed 0.5",
-                    "replay OUT --lap 3 --method svg_mppi --plot lap.png"});
+                    "replay OUT --lap 3 --method svg_mppi --plot lap.png",
+                    "replay bag --against default --course my_course --plot against.png"});
   command.action([arguments, &command] { return replay(*arguments, command); });
 }
 

@@ -81,6 +81,19 @@ void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup,
   picture.save(file);
 }
 
+void draw_plans(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup, const DrivenLine& driven,
+                const std::vector<std::vector<maps::Point>>& plans, const std::string& title,
+                const std::filesystem::path& file) {
+  MapPicture picture(map, picture_side, driven.points, 3);
+  picture.line(positions(setup.environment->path), line_colour, 2, setup.environment->course.closed, true);
+  const auto [slowest, fastest] = speed_scale(driven.speeds, 0.02);
+  picture.speed_line(driven.points, driven.speeds, slowest, fastest, 6, false);
+  for (const auto& plan : plans) picture.line(plan, ink, 2, false);
+  picture.legend(title, "driven line by its speed \xC2\xB7 plans from it every 0.5 s (black)", slowest,
+                 fastest);
+  picture.save(file);
+}
+
 void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& car, const std::string& title,
                  const std::filesystem::path& file) {
   const vehicle::Corridor& corridor = course.corridor;

@@ -21,6 +21,11 @@ struct DrivenLine {
 void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup, const DrivenLine& driven,
               const evaluation::LapResult& lap, const std::string& title, const std::filesystem::path& file);
 
+/// Draws plans beside a drive: map, path, driven line coloured by speed, and the plans from points of it.
+void draw_plans(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup, const DrivenLine& driven,
+                const std::vector<std::vector<maps::Point>>& plans, const std::string& title,
+                const std::filesystem::path& file);
+
 /// Draws a course to check it by: map, corridor, centre line, raceline coloured by speed, start, the place
 /// nearest to a wall and the tightest curve.
 void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& car, const std::string& title,

@@ -10,9 +10,9 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/maps/pose_limits.hpp"
+#include "slalom/sim/lidar.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
-#include "tools/recording/ros_bag.hpp"
 #include "view/recording/mcap_reader.hpp"
 
 namespace slalom::tools {
@@ -50,25 +50,48 @@ std::vector<std::string> files_of(const std::string& recording) {
 }
 
 /// The control step of a message of the topic /tick.
-vehicle::DrivenSample tick_sample(std::string_view message) {
+vehicle::DrivenSample tick_sample(double time, std::string_view message) {
   const Json tick = parse_json(message);
   const auto number = [&](const char* key) {
     const Json& value = member(tick, key);
     return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
   };
-  return {number("time"),         number("odometry_x"),     number("odometry_y"),
-          number("odometry_yaw"), number("odometry_speed"), number("command_steer")};
+  return {time,
+          number("odometry_x"),
+          number("odometry_y"),
+          number("odometry_yaw"),
+          number("odometry_speed"),
+          number("command_steer"),
+          number("command_speed")};
 }
 
-/// Reads an MCAP file: adds the ticks of a recording to `samples`, and the messages of a bag to `bag`.
-void read_mcap(const std::string& file, std::vector<vehicle::DrivenSample>& samples, RosDrive& bag) {
+/// The scan of a message of the topic /scan.
+RecordedScan scan_of(double time, std::string_view message) {
+  const Json json = parse_json(message);
+  RecordedScan scan{.time = time, .shape = {}, .ranges = {}};
+  for (const Json& range : member(json, "ranges")) {
+    if (!range.is_number()) throw std::invalid_argument("key 'ranges': must have numbers");
+    scan.ranges.push_back(range.get<float>());
+  }
+  scan.shape.angle_min = member<double>(json, "start_angle");
+  const double angles = member<double>(json, "end_angle") - scan.shape.angle_min;
+  scan.shape.angle_increment = angles / static_cast<double>(std::max<std::size_t>(scan.ranges.size(), 2) - 1);
+  scan.shape.range_max = sim::LidarOptions{}.range_max;
+  return scan;
+}
+
+/// Reads an MCAP file: adds the ticks of a recording to `drive`, and the messages of a bag to `bag`.
+void read_mcap(const std::string& file, Wanted wanted, DrivenRecording& drive, RosDrive& bag) {
   std::string refused;
   const auto add = [&](const view::mcap::MessageView& message) {
+    const double time = 1e-9 * static_cast<double>(message.time);
     try {
       if (message.encoding == "cdr")
         bag.add(message.topic, message.schema, message.time, message.data);
       else if (message.schema == "slalom.Tick")
-        samples.push_back(tick_sample(message.data));
+        drive.samples.push_back(tick_sample(time, message.data));
+      else if (message.topic == "/scan" && wanted == Wanted::scans)
+        drive.scans.push_back(scan_of(time, message.data));
     } catch (const std::invalid_argument& error) {
       refused = std::string(message.topic) + ": " + error.what();
     }
@@ -79,22 +102,21 @@ void read_mcap(const std::string& file, std::vector<vehicle::DrivenSample>& samp
 
 }  // namespace
 
-std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& recording, std::string* topics) {
-  RosDrive bag;
-  std::vector<vehicle::DrivenSample> samples;
+DrivenRecording read_drive(const std::string& recording, Wanted wanted) {
+  RosDrive bag(wanted);
+  DrivenRecording drive;
   for (const std::string& file : files_of(recording)) {
     const std::string magic = first_bytes(file);
     if (magic.starts_with("SQLite format 3"))
       read_sqlite_bag(file, bag);
     else if (magic.starts_with("\x89MCAP"))
-      read_mcap(file, samples, bag);
+      read_mcap(file, wanted, drive, bag);
     else
       throw IoError(file, 0, "is neither a recording in MCAP nor a bag of rosbag2");
   }
-  if (!samples.empty()) return samples;
+  if (!drive.samples.empty()) return drive;
   try {
-    std::string chosen;
-    return bag.samples(topics ? *topics : chosen);
+    return bag.drive();
   } catch (const std::invalid_argument& error) {
     throw IoError(recording, 0, error.what());
   }
@@ -106,7 +128,7 @@ vehicle::GuideLine driven_line(const std::string& file) {
   std::vector<double> times;  // s, of the points
   double driven = 0, nearest = meeting;
   std::size_t lap = 0;  // points of the first lap, if one was driven
-  for (const vehicle::DrivenSample& sample : read_driven_samples(file)) {
+  for (const vehicle::DrivenSample& sample : read_drive(file).samples) {
     if (std::isnan(sample.x) || std::isnan(sample.y)) continue;
     if (!maps::is_plausible(maps::Point{sample.x, sample.y}))
       throw IoError(file, 0, formatted("at %.2f s: the pose: ", sample.time) + maps::PoseLimits::rule);

@@ -39,6 +39,13 @@ class CdrReader {
     const std::string_view text = take(get<std::uint32_t>());
     return text.substr(0, text.find('\0'));
   }
+  std::vector<float> floats() {
+    const std::size_t count = get<std::uint32_t>();
+    const std::string_view bytes = take(count * sizeof(float));
+    std::vector<float> values(count);
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+  }
   void skip_doubles(std::size_t count) {
     get<double>();
     take((count - 1) * sizeof(double));
@@ -69,6 +76,20 @@ struct Header {
     if (frame.starts_with('/')) frame.remove_prefix(1);
   }
 };
+
+RecordedScan read_scan(CdrReader& from, double time) {
+  RecordedScan scan;
+  scan.time = time;
+  scan.shape.angle_min = from.get<float>();
+  from.get<float>();  // angle_max
+  scan.shape.angle_increment = from.get<float>();
+  from.get<float>();  // time_increment
+  from.get<float>();  // scan_time
+  scan.shape.range_min = from.get<float>();
+  scan.shape.range_max = from.get<float>();
+  scan.ranges = from.floats();
+  return scan;
+}
 
 /// The messages of one topic by time. One with the time of another is left out.
 template <class T>
@@ -107,29 +128,33 @@ std::size_t first_from(const std::vector<T>& values, double time) {
 void RosDrive::add(std::string_view topic, std::string_view type, std::uint64_t time,
                    std::string_view message) {
   const bool odometry = type == "nav_msgs/msg/Odometry",
-             command = type == "ackermann_msgs/msg/AckermannDriveStamped";
-  if (!odometry && !command && type != "geometry_msgs/msg/PoseStamped" &&
+             command = type == "ackermann_msgs/msg/AckermannDriveStamped",
+             scan = wanted_ == Wanted::scans && type == "sensor_msgs/msg/LaserScan";
+  if (!odometry && !command && !scan && type != "geometry_msgs/msg/PoseStamped" &&
       type != "geometry_msgs/msg/PoseWithCovarianceStamped")
     return;
   CdrReader reader(message);
   const Header header(reader, time);
   const std::string name(topic);
   if (command) {
-    commands_[name].push_back({header.time, static_cast<double>(reader.get<float>())});
+    const double steer = reader.get<float>();
+    reader.get<float>();  // the rate of the steering
+    commands_[name].push_back({header.time, steer, reader.get<float>()});
+    return;
+  }
+  if (scan) {
+    scans_[name].push_back(read_scan(reader, header.time));
     return;
   }
   if (odometry) reader.text();  // the frame of the body
   const bool in_map = header.frame == "map";
-  if (in_map) {
-    const auto x = reader.get<double>(), y = reader.get<double>();
-    reader.skip_doubles(1);
-    const auto qx = reader.get<double>(), qy = reader.get<double>(), qz = reader.get<double>(),
-               qw = reader.get<double>();
-    poses_[name].push_back(
+  const auto x = reader.get<double>(), y = reader.get<double>();
+  reader.skip_doubles(1);
+  const auto qx = reader.get<double>(), qy = reader.get<double>(), qz = reader.get<double>(),
+             qw = reader.get<double>();
+  if (in_map || odometry)
+    (in_map ? poses_ : odometry_)[name].push_back(
         {header.time, x, y, std::atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))});
-  } else if (odometry) {
-    reader.skip_doubles(7);
-  }
   if (!odometry) return;
   reader.skip_doubles(36);  // the covariance of the pose
   (in_map ? mapped_speeds_ : speeds_)[name].push_back({header.time, reader.get<double>()});
@@ -144,44 +169,62 @@ std::string RosDrive::all_topics() const {
   list(poses_, "poses in the frame map");
   list(speeds_, "odometry in another frame");
   list(commands_, "steering commands");
+  list(scans_, "scans");
   return names.empty() ? "none of the types that are read" : names;
 }
 
-std::vector<vehicle::DrivenSample> RosDrive::samples(std::string& topics) const {
-  const auto* const poses = chosen(poses_, {"pf/pose/odom"});
+DrivenRecording RosDrive::drive() const {
+  DrivenRecording drive;
+  const auto* poses = chosen(poses_, {"pf/pose/odom"});
+  if (!poses && wanted_ == Wanted::scans) {
+    poses = chosen(odometry_, {});
+    drive.in_map = false;
+  }
   const auto* speeds = chosen(speeds_, {});
   const auto* const commands = chosen(commands_, {"ackermann_cmd", "drive"});
+  const auto* const scans = chosen(scans_, {"scan"});
   if (poses && !speeds)
     if (const auto found = mapped_speeds_.find(poses->first); found != mapped_speeds_.end()) speeds = &*found;
-  if (!poses || !speeds || !commands)
-    throw std::invalid_argument(
-        std::string("the bag has no ") +
-        (!poses ? "poses in the frame map (nav_msgs/Odometry, PoseStamped or PoseWithCovarianceStamped, as "
-                  "localisers publish them)"
-         : !speeds ? "measured speed (nav_msgs/Odometry)"
-                   : "steering commands (ackermann_msgs/AckermannDriveStamped)") +
-        "; its topics: " + all_topics());
-  topics = "poses of " + poses->first + ", speeds of " + speeds->first + ", commands of " + commands->first;
+  const char* missing = nullptr;
+  if (!poses)
+    missing = wanted_ == Wanted::scans ? "poses (nav_msgs/Odometry)"
+                                       : "poses in the frame map (nav_msgs/Odometry, PoseStamped or "
+                                         "PoseWithCovarianceStamped, as localisers publish them)";
+  else if (!speeds)
+    missing = "measured speed (nav_msgs/Odometry)";
+  else if (!commands)
+    missing = "steering commands (ackermann_msgs/AckermannDriveStamped)";
+  else if (!scans && wanted_ == Wanted::scans)
+    missing = "scans (sensor_msgs/LaserScan)";
+  if (missing)
+    throw std::invalid_argument(std::string("the bag has no ") + missing + "; its topics: " + all_topics());
+  drive.topics =
+      "poses of " + poses->first + ", speeds of " + speeds->first + ", commands of " + commands->first;
   const auto at = in_order(poses->second);
-  const auto measured = in_order(speeds->second), steering = in_order(commands->second);
-  std::vector<vehicle::DrivenSample> samples;
+  const auto measured = in_order(speeds->second);
+  const auto sent = in_order(commands->second);
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Pose& pose = at[i];
-    const std::size_t after = first_from(measured, pose.time), next = first_from(steering, pose.time);
+    const std::size_t after = first_from(measured, pose.time), next = first_from(sent, pose.time);
     double speed = unknown;
     if (after < measured.size() && measured[after].time == pose.time) {
       speed = measured[after].value;
     } else if (after > 0 && after < measured.size()) {
-      const Value &before = measured[after - 1], &then = measured[after];
+      const Speed &before = measured[after - 1], &then = measured[after];
       const double share = (pose.time - before.time) / (then.time - before.time);
       if (then.time - before.time <= most_gap) speed = before.value + share * (then.value - before.value);
     }
-    const bool follows =
-        next < steering.size() && (i + 1 == at.size() || steering[next].time < at[i + 1].time);
-    const double steer = follows ? steering[next].value : next > 0 ? steering[next - 1].value : unknown;
-    samples.push_back({pose.time - at.front().time, pose.x, pose.y, pose.yaw, speed, steer});
+    const bool follows = next < sent.size() && (i + 1 == at.size() || sent[next].time < at[i + 1].time);
+    Command command{0, unknown, unknown};
+    if (follows || next > 0) command = sent[follows ? next : next - 1];
+    drive.samples.push_back(
+        {pose.time - at.front().time, pose.x, pose.y, pose.yaw, speed, command.steer, command.speed});
   }
-  return samples;
+  if (!scans) return drive;
+  drive.topics += ", scans of " + scans->first;
+  drive.scans = in_order(scans->second);
+  for (RecordedScan& scan : drive.scans) scan.time -= at.front().time;
+  return drive;
 }
 
 void read_sqlite_bag(const std::string& file, RosDrive& drive) {

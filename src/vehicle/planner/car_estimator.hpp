@@ -39,19 +39,24 @@ class CarEstimator {
     observer_.set_dead_time(std::max(0.0, parameters_.estimate().delay - latency_));
   }
 
-  /// Returns the command for this angle of the wheels and records it as sent. The angle is rounded to the
-  /// resolution of the steering.
-  Command send(const Command& wheels, double steer_limit) noexcept {
+  /// Returns the command for this angle of the wheels, rounded to the resolution of the steering.
+  Command command(const Command& wheels, double steer_limit) const noexcept {
     Command command = wheels;
-    const double gain = parameters().steering_gain, offset = parameters().steering_offset;
-    command.steer = std::clamp((wheels.steer - offset) / gain, -steer_limit, steer_limit);
+    const ParameterEstimate car = parameters();
+    command.steer =
+        std::clamp((wheels.steer - car.steering_offset) / car.steering_gain, -steer_limit, steer_limit);
     if (const double step = steer_resolution_; step > 0) {
       const double most = std::floor(steer_limit / step);
       command.steer = step * std::clamp(std::round(command.steer / step), -most, most);
     }
-    observer_.send({command.steer * gain + offset, command.speed});
-    parameters_.send(command.steer);
     return command;
+  }
+
+  /// Records the command that the car obeys from now on.
+  void send(const Command& command) noexcept {
+    const ParameterEstimate car = parameters();
+    observer_.send({command.steer * car.steering_gain + car.steering_offset, command.speed});
+    parameters_.send(command.steer);
   }
 
   /// Returns the estimate of car and ground, or the given values if nothing is learned.

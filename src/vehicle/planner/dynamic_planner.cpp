@@ -189,13 +189,14 @@ class DynamicPlanner final : public PlannerBase {
   }
 
   /// Completes the output: its estimates, and the command that turns the wheels to the planned angle.
-  void send() noexcept override {
+  void send(const std::optional<Command>& obeyed) noexcept override {
     const VehicleStart& now = car_.state().now();
     output_.speed_estimate = now.speed;
     output_.yaw_rate_estimate = now.yaw_rate;
     output_.slip_estimate = now.slip;
     output_.parameters = car_.parameters();
-    output_.command = car_.send(output_.command, options_.steer_limit);
+    output_.command = car_.command(output_.command, options_.steer_limit);
+    car_.send(obeyed.value_or(output_.command));
   }
   void forget() noexcept override {
     car_.reset();

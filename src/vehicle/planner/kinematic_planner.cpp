@@ -85,9 +85,9 @@ class KinematicPlanner final : public PlannerBase {
 
   /// Records the angle that the wheels turn to: that of the command. The observer of the paper's program
   /// (`wrap_steer`) follows the planned angle instead, which is not limited, unless another command is sent.
-  void send() noexcept override {
-    const double sent = output_.command.steer;
-    const bool sends_plan = !output_.inputs.empty() && sent == limited(planned_steer_);
+  void send(const std::optional<Command>& obeyed) noexcept override {
+    const double sent = obeyed.value_or(output_.command).steer;
+    const bool sends_plan = !obeyed && !output_.inputs.empty() && sent == limited(planned_steer_);
     history_.send(options_.published.wrap_steer && sends_plan ? planned_steer_ : sent);
   }
   void forget() noexcept override {

@@ -99,7 +99,9 @@ const PlannerOutput& PlannerBase::update(const PlannerInput& input) noexcept {
     shift(choice_.states(), origin_);
   }
   output_.corrections = check_command(input.odometry, steer_estimate());
-  send();
+  const bool obeys_other =
+      input.obeyed && std::isfinite(input.obeyed->steer) && std::isfinite(input.obeyed->speed);
+  send(obeys_other ? input.obeyed : std::nullopt);
   check_output(input.odometry);
   output_.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return output_;

@@ -44,8 +44,8 @@ class PlannerBase {
  protected:
   /// Plans from scan and odometry. The pose is relative to `origin_`.
   virtual void plan(const PlannerInput& input) noexcept = 0;
-  /// Records the output's command as sent.
-  virtual void send() noexcept = 0;
+  /// Completes the output's command, and records which one the car obeys: this one, or another.
+  virtual void send(const std::optional<Command>& obeyed) noexcept = 0;
   /// Forgets the state of the derived planner, for `reset`.
   virtual void forget() noexcept = 0;
   /// The angle of the wheels now, rad.

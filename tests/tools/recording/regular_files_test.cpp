@@ -63,7 +63,7 @@ const FileReader readers[] = {
     {"Settings", "settings.json", [](const fs::path& pipe) { load_evaluation(pipe.parent_path()); }},
     {"LapLog", "log.csv", [](const fs::path& pipe) { evaluation::read_lap_log(pipe); }},
     {"RaceResult", "race.json", [](const fs::path& pipe) { read_run(pipe.string(), Json::object(), 1); }},
-    {"DrivenSamples", "lap.mcap", [](const fs::path& pipe) { read_driven_samples(pipe.string()); }},
+    {"DrivenSamples", "lap.mcap", [](const fs::path& pipe) { read_drive(pipe.string()); }},
     {"Mcap", "lap.mcap", [](const fs::path& pipe) { view::load_replay(pipe.string()); }}};
 
 class RegularFiles : public ::testing::TestWithParam<FileReader> {

@@ -150,9 +150,9 @@ void write_sqlite(const std::vector<Message>& messages, const std::filesystem::p
 class RosBag : public testing::TemporaryFolder {
  protected:
   static void expect_the_drive(const std::string& recording) {
-    std::string topics;
-    const auto samples = read_driven_samples(recording, &topics);
-    EXPECT_EQ(topics, "poses of /pf/pose/odom, speeds of /odom, commands of /drive");
+    const DrivenRecording drive = read_drive(recording);
+    const auto& samples = drive.samples;
+    EXPECT_EQ(drive.topics, "poses of /pf/pose/odom, speeds of /odom, commands of /drive");
     ASSERT_EQ(samples.size(), 2400u);
     EXPECT_NEAR(samples[1].time, 0.025, 1e-6);
     EXPECT_NEAR(samples[2].steer_command, 0.3 * std::sin(0.1), 1e-6) << "the command that followed";
@@ -179,7 +179,7 @@ TEST_F(RosBag, IsReadFromMcapAndSqliteAsFileAndAsFolder) {
 TEST_F(RosBag, OneThatWasCutIsReadUpToTheLastWholeChunk) {
   write_mcap(drive_of_a_minute(), folder_ / "cut.mcap");
   std::filesystem::resize_file(folder_ / "cut.mcap", std::filesystem::file_size(folder_ / "cut.mcap") / 2);
-  const std::size_t read = read_driven_samples((folder_ / "cut.mcap").string()).size();
+  const std::size_t read = read_drive((folder_ / "cut.mcap").string()).samples.size();
   EXPECT_GT(read, 600u);
   EXPECT_LT(read, 1800u);
 }
@@ -191,9 +191,9 @@ TEST_F(RosBag, CommandsOfTheMultiplexerAreThoseThatTheCarGot) {
         {"/ackermann_cmd", drive_type, start + 0.025 * i, drive(start + 0.025 * i + 0.001, 0.25)});
   RosDrive bag;
   for (const Message& each : messages) bag.add(each.topic, each.type, nanoseconds(each.time), each.data);
-  std::string topics;
-  EXPECT_EQ(bag.samples(topics)[7].steer_command, 0.25);
-  EXPECT_NE(topics.find("commands of /ackermann_cmd"), std::string::npos) << topics;
+  const DrivenRecording drive = bag.drive();
+  EXPECT_EQ(drive.samples[7].steer_command, 0.25);
+  EXPECT_NE(drive.topics.find("commands of /ackermann_cmd"), std::string::npos) << drive.topics;
 }
 
 TEST_F(RosBag, ErrorsSayWhatIsMissingAndWhatIsThere) {
@@ -203,17 +203,17 @@ TEST_F(RosBag, ErrorsSayWhatIsMissingAndWhatIsThere) {
   const std::string file = (folder_ / "odd.mcap").string();
   expect_error_with<IoError>({"odd.mcap: the bag has no poses in the frame map",
                               "/odom (odometry in another frame)", "/drive (steering commands)"},
-                             [&] { read_driven_samples(file); });
+                             [&] { read_drive(file); });
   expect_error_with<IoError>({"odd.mcap: contains nothing to replay", "a bag does not"},
                              [&] { view::load_replay(file); });
   write_mcap({{"/drive", drive_type, start, std::string("\0\1\0\0\7", 5)}}, folder_ / "odd.mcap");
   expect_error_with<IoError>({"odd.mcap: has a message that cannot be read: /drive: it ends too soon"},
-                             [&] { read_driven_samples(file); });
+                             [&] { read_drive(file); });
   std::ofstream(folder_ / "odd.mcap") << "SQLite format 3";
-  expect_error_with<IoError>({"odd.mcap: is not a bag of rosbag2"}, [&] { read_driven_samples(file); });
+  expect_error_with<IoError>({"odd.mcap: is not a bag of rosbag2"}, [&] { read_drive(file); });
   std::filesystem::create_directory(folder_ / "empty");
   expect_error_with<IoError>({"empty: is a folder without files of rosbag2 (.mcap, .db3)"},
-                             [&] { read_driven_samples((folder_ / "empty").string()); });
+                             [&] { read_drive((folder_ / "empty").string()); });
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct DrivenSample {
   double yaw = 0;       ///< rad; must not be computed from the steering angle, as in plain wheel odometry
   double speed = 0;     ///< m/s, as measured, along the car's axis
   double steer_command = 0;  ///< rad, sent at `time`
+  double speed_command = 0;  ///< m/s, sent at `time`; not used to identify
 };
 
 /// The values that are known in advance.

@@ -72,6 +72,9 @@ struct PlannerInput {
   /// Other cars and their predictions from the time of the scan on, map frame; used with `predict_others`.
   /// Readings of these cars are not obstacles, and count as invalid in the report of the scan.
   std::span<const maps::PredictedObstacle> others{};
+  /// The command that the car obeys from now on, if it is not the planner's: that of a person who drives, or
+  /// of a recording. Ignored if it is not finite.
+  std::optional<Command> obeyed{};
 };
 
 /// Estimates of the car and the ground.
