@@ -1,6 +1,7 @@
-// `slalom replay --video` draws a part of a recording.
+// `slalom replay`: videos of recordings, and planners beside the driver of one.
 #include <cstdlib>
 
+#include "evaluation/json.hpp"
 #include "tools/program_test.hpp"
 
 namespace slalom::tools {
@@ -68,6 +69,39 @@ TEST_F(ReplayVideo, RefusesWhatItCannotWrite) {
   if (run_shell("command -v ffmpeg").status != 0) return;
   expect_refused("replay lap.mcap --video nowhere/lap.gif --to 1",
                  {"nowhere/lap.gif: cannot be written: ffmpeg ended"});
+}
+
+using ReplayAgainst = testing::ProgramTest;
+
+TEST_F(ReplayAgainst, ComparesAPlannerWithTheDriver) {
+  ASSERT_EQ(program("drive --course wren --obstacles 2 --seed 3 --record-all --record lap.mcap").status, 0);
+  const auto compared = [&](const std::string& more) {
+    const auto run = program("replay lap.mcap --against default --course wren --json all.json " + more);
+    EXPECT_EQ(run.status, 0) << run.output;
+    return parse_json(content(folder_ / "all.json"));
+  };
+  // The same planner: the plans differ by their random numbers alone.
+  const Json same = compared("--plot plans.png");
+  EXPECT_GT(same["moments"].size(), 300u);
+  EXPECT_EQ(same["status"]["ok"], same["moments"].size());
+  EXPECT_LT(same["steering_rad"]["median"].get<double>(), 0.02);
+  EXPECT_LT(same["speed_m_s"]["median"].get<double>(), 0.05);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "plans.png"));
+  const Json slow = compared("--set planner.max_speed=1");
+  EXPECT_GT(slow["speed_m_s"]["median"].get<double>(), 1.5);
+
+  expect_refused("replay lap.mcap --against default", {"--against", "--course"});
+  expect_refused("replay lap.mcap --against default --course wren --video a.gif", {"--video"});
+  expect_refused("replay lap.mcap --against nothing --course wren", {"--config: ", "nothing"});
+}
+
+TEST_F(ReplayAgainst, NeedsAllScans) {
+  ASSERT_EQ(program("drive --course wren --set mppi.samples=100 --method mppi --record few.mcap").status, 0);
+  const auto run = program("replay few.mcap --against default --course wren");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.output.find("few.mcap: has only some of the scans; record the drive with --record-all"),
+            std::string::npos)
+      << run.output;
 }
 
 }  // namespace

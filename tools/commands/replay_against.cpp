@@ -61,6 +61,8 @@ double scan_interval(const DrivenRecording& drive, const std::string& file) {
   for (std::size_t i = 1; i < drive.scans.size(); ++i)
     intervals.push_back(drive.scans[i].time - drive.scans[i - 1].time);
   if (intervals.size() < 10) throw IoError(file, 0, "must have more than ten scans");
+  if (drive.topics.empty() && 2 * drive.scans.size() < drive.samples.size())
+    throw IoError(file, 0, "has only some of the scans; record the drive with --record-all");
   return evaluation::percentile(intervals, 0.5);
 }
 

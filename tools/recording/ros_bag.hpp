@@ -29,7 +29,7 @@ struct DrivenRecording {
   std::vector<vehicle::DrivenSample> samples;  ///< the first is at time 0 in a bag
   std::vector<RecordedScan> scans;             ///< empty unless they are wanted
   bool in_map = true;                          ///< poses are in the frame of the map, not of odometry
-  std::string topics;                          ///< of a bag: a sentence on the topics that were chosen
+  std::string topics;                          ///< sentence on the topics that were chosen, of a bag
 };
 
 /// The parts of a drive that are read.
@@ -75,8 +75,8 @@ class RosDrive {
   std::string all_topics() const;
 
   Wanted wanted_;
-  Topics<Pose> poses_, odometry_;         ///< in the frame `map`; of odometry in other frames
-  Topics<Speed> mapped_speeds_, speeds_;  ///< of odometry in the frame `map`; in other frames
+  Topics<Pose> poses_, odometry_;         ///< poses in the frame `map`; of odometry in other frames
+  Topics<Speed> mapped_speeds_, speeds_;  ///< speeds of odometry in the frame `map`; in other frames
   Topics<Command> commands_;
   Topics<RecordedScan> scans_;
 };

@@ -64,9 +64,18 @@ std::string odometry(double time, const std::string& frame, double x, double y, 
 }
 std::string drive(double time, double steer) {
   CdrWriter message;
-  message.header(time, "").put(static_cast<float>(steer));
-  for (int i = 0; i < 4; ++i) message.put(0.0f);
+  message.header(time, "").put(static_cast<float>(steer)).put(0.0f).put(2.5f).put(0.0f).put(0.0f);
   return message.bytes();
+}
+
+std::string scan(double time, int beams) {
+  CdrWriter message;
+  message.header(time, "laser");
+  for (const float each : {-2.0f, 2.0f, 4.0f / static_cast<float>(beams - 1), 0.0f, 0.025f, 0.1f, 30.0f})
+    message.put(each);
+  message.put(static_cast<std::uint32_t>(beams));
+  for (int i = 0; i < beams; ++i) message.put(1 + 0.01f * static_cast<float>(i));
+  return message.put(std::uint32_t{0}).bytes();  // no intensities
 }
 
 struct Message {
@@ -88,7 +97,7 @@ std::vector<Message> drive_of_a_minute() {
     all.push_back({"/pf/pose/odom", odometry_type, time + 0.01, odometry(time, "map", x, y, yaw, 0)});
     all.push_back({"/odom", odometry_type, time, odometry(time - 0.005, "odom", 9, 9, 9, speed)});
     all.push_back({"/drive", drive_type, time + 0.01, drive(time + 0.01, steer)});
-    all.push_back({"/scan", "sensor_msgs/msg/LaserScan", time, "unread"});
+    all.push_back({"/scan", "sensor_msgs/msg/LaserScan", time, scan(time, 1081)});
     x += 0.025 * speed * std::cos(yaw);
     y += 0.025 * speed * std::sin(yaw);
     yaw += 0.025 * speed * std::tan(0.9 * steer) / 0.33;
@@ -194,6 +203,39 @@ TEST_F(RosBag, CommandsOfTheMultiplexerAreThoseThatTheCarGot) {
   const DrivenRecording drive = bag.drive();
   EXPECT_EQ(drive.samples[7].steer_command, 0.25);
   EXPECT_NE(drive.topics.find("commands of /ackermann_cmd"), std::string::npos) << drive.topics;
+}
+
+TEST_F(RosBag, HasTheScansOnTheClockOfThePoses) {
+  write_mcap(drive_of_a_minute(), folder_ / "first.mcap");
+  const std::string file = (folder_ / "first.mcap").string();
+  EXPECT_TRUE(read_drive(file).scans.empty());
+  const DrivenRecording drive = read_drive(file, Wanted::scans);
+  EXPECT_NE(drive.topics.find("scans of /scan"), std::string::npos) << drive.topics;
+  ASSERT_EQ(drive.scans.size(), 2400u);
+  EXPECT_NEAR(drive.scans[7].time, drive.samples[7].time, 1e-6);
+  const maps::LaserScanView view = drive.scans[7].view();
+  ASSERT_EQ(view.ranges.size(), 1081u);
+  EXPECT_EQ(view.ranges[100], 2.0f);
+  EXPECT_EQ(view.angle_min, -2);
+  EXPECT_NEAR(view.angle_increment, 4.0 / 1080, 1e-9);
+  EXPECT_EQ(view.range_max, 30);
+  EXPECT_EQ(drive.samples[7].speed_command, 2.5);
+  EXPECT_TRUE(drive.in_map);
+}
+
+TEST_F(RosBag, WithoutALocaliserHasThePosesOfOdometry) {
+  std::vector<Message> messages = drive_of_a_minute();
+  std::erase_if(messages, [](const Message& each) { return each.topic == "/pf/pose/odom"; });
+  write_mcap(messages, folder_ / "first.mcap");
+  const std::string file = (folder_ / "first.mcap").string();
+  const DrivenRecording drive = read_drive(file, Wanted::scans);
+  EXPECT_FALSE(drive.in_map);
+  ASSERT_EQ(drive.samples.size(), 2400u);
+  EXPECT_EQ(drive.samples[5].x, 9);
+  std::erase_if(messages, [](const Message& each) { return each.topic == "/scan"; });
+  write_mcap(messages, folder_ / "first.mcap");
+  expect_error_with<IoError>({"the bag has no scans (sensor_msgs/LaserScan); its topics: "},
+                             [&] { read_drive(file, Wanted::scans); });
 }
 
 TEST_F(RosBag, ErrorsSayWhatIsMissingAndWhatIsThere) {
