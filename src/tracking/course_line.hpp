@@ -18,6 +18,8 @@ class CourseLine {
   explicit CourseLine(std::span<const maps::ReferencePoint> points);
 
   bool empty() const noexcept { return points_.empty(); }
+  double length() const noexcept { return length_; }  ///< m
+  bool closed() const noexcept { return closed_; }
 
   /// A point of the course.
   struct Point {

@@ -55,6 +55,7 @@ void Way::advance(double duration) noexcept {
 
 void Way::advance_on_course(double duration) noexcept {
   time_ += duration;
+  if (manoeuvre_ == Manoeuvre::repeat) return repeat(duration);
   const double before = now_.speed;
   if (manoeuvre_ == Manoeuvre::brake) {
     now_.speed = std::max(before - options_.braking * duration, 0.0);
@@ -80,6 +81,23 @@ void Way::advance_on_course(double duration) noexcept {
   const double away = start_.offset - aim, slope = start_.drift + rate * away;
   now_.offset = aim + (away + slope * time_) * fading;
   now_.drift = (slope - rate * (away + slope * time_)) * fading;
+}
+
+/// Drives as cars drove here before. What differs from them at the start fades.
+void Way::repeat(double duration) noexcept {
+  const double before = now_.speed, fading = std::exp(-time_ / options_.reaction);
+  const double there = course_.at(start_.arc).speed;
+  const double next = now_.arc + before * duration;
+  const Habits::Habit habit = habits_.at(next);
+  if (habit.ratio > 0 && start_.habit.ratio > 0 && there > 0) {
+    const double share = start_.speed / (there * start_.habit.ratio);
+    now_.speed = habit.ratio * (1 + (share - 1) * fading) * course_.at(next).speed;
+    const double offset = habit.offset + (start_.offset - start_.habit.offset) * fading;
+    now_.drift = (offset - now_.offset) / duration;
+    now_.offset = offset;
+  }
+  const double widening = std::max(1 - now_.offset * course_.at(now_.arc).curvature, 0.2);
+  now_.arc += 0.5 * (before + now_.speed) * duration / widening;
 }
 
 maps::Pose Way::pose() const noexcept {

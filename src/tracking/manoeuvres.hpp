@@ -6,14 +6,16 @@
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor_options.hpp"
 #include "tracking/course_line.hpp"
+#include "tracking/habits.hpp"
 
 namespace slalom::tracking {
 
-/// A manoeuvre of an object. The first two are also those of an object without a course.
-enum class Manoeuvre { keep, brake, follow, left, right };
-inline constexpr int manoeuvres = 5, manoeuvres_without_course = 2;
-/// Weights of the manoeuvres before an object is known.
-inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0.08, 0.08};
+/// A manoeuvre of an object. The first two are also those of an object without a course; the last one is
+/// possible only where a car came by before.
+enum class Manoeuvre { keep, brake, follow, left, right, repeat };
+inline constexpr int manoeuvres = 6, manoeuvres_without_course = 2;
+/// Weights of the manoeuvres before an object is known. They are divided by their sum.
+inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0.08, 0.08, 0.4};
 
 /// The motion of an object from which hypotheses are drawn.
 struct Motion {
@@ -25,6 +27,7 @@ struct Motion {
   double offset = 0;    ///< m, on a course
   double drift = 0;     ///< m/s, by which the offset grows
   double rise = 0;      ///< 1/s, by which the ratio of the speed to the course's rises while it is below 1
+  Habits::Habit habit{};  ///< habit of the cars that came by here, on a course
 };
 
 /// The motion of an object: on the course if there is one and it drives along it.
@@ -34,8 +37,14 @@ Motion motion_of(const TrackedObject& object, const CourseLine& course,
 /// An object on its way through a hypothesis.
 class Way {
  public:
-  Way(const Motion& motion, Manoeuvre manoeuvre, const CourseLine& course, const PredictorOptions& options)
-      : start_(motion), now_(motion), manoeuvre_(manoeuvre), course_(course), options_(options) {}
+  Way(const Motion& motion, Manoeuvre manoeuvre, const CourseLine& course, const Habits& habits,
+      const PredictorOptions& options)
+      : start_(motion),
+        now_(motion),
+        manoeuvre_(manoeuvre),
+        course_(course),
+        habits_(habits),
+        options_(options) {}
   /// Goes on for `duration` (s).
   void advance(double duration) noexcept;
   const Motion& now() const noexcept { return now_; }
@@ -43,10 +52,12 @@ class Way {
 
  private:
   void advance_on_course(double duration) noexcept;
+  void repeat(double duration) noexcept;
 
   Motion start_, now_;
   Manoeuvre manoeuvre_;
   const CourseLine& course_;
+  const Habits& habits_;
   const PredictorOptions& options_;
   double time_ = 0;
 };

@@ -33,7 +33,8 @@ bool plausible(const TrackedObject& object) noexcept {
 }
 
 int possible(const Motion& motion) noexcept {
-  return motion.on_course ? manoeuvres : manoeuvres_without_course;
+  if (!motion.on_course) return manoeuvres_without_course;
+  return motion.habit.ratio > 0 ? manoeuvres : manoeuvres - 1;
 }
 
 /// The weights of an object of which nothing is known.
@@ -66,12 +67,14 @@ struct Predictor::Implementation {
 
   PredictorOptions options;
   CourseLine course;
+  Habits habits;
   std::size_t times;
   std::vector<Remembered> remembered;  ///< ascending by id
   std::vector<maps::PredictedPose> poses;
   std::vector<maps::PredictedObstacle> predicted;
 
-  Implementation(const PredictorOptions& o, CourseLine line) : options(o), course(std::move(line)) {
+  Implementation(const PredictorOptions& o, CourseLine line)
+      : options(o), course(std::move(line)), habits(course) {
     options.validate();
     const auto most = static_cast<std::size_t>(o.max_objects);
     times = saturate_cast<std::size_t>(std::ceil(o.horizon / o.interval - 1e-9)) + 1;
@@ -89,7 +92,7 @@ struct Predictor::Implementation {
   /// The error of a hypothesis as the exponent of its likelihood.
   double mismatch(const Remembered& past, Manoeuvre manoeuvre, const Motion& now,
                   double elapsed) const noexcept {
-    Way way(past.motion, manoeuvre, course, options);
+    Way way(past.motion, manoeuvre, course, habits, options);
     way.advance(elapsed);
     double along = 0, across = 0;
     if (now.on_course) {
@@ -108,7 +111,7 @@ struct Predictor::Implementation {
   void learn(Remembered& past, const Motion& now, double elapsed) noexcept {
     const Weights first = first_weights(now);
     std::array<double, manoeuvres> mismatches{};
-    const int count = possible(now);
+    const int count = std::min(possible(now), possible(past.motion));
     double least = 1e300, sum = 0;
     for (int m = 0; m < count; ++m) {
       double& each = mismatches[static_cast<std::size_t>(m)];
@@ -120,6 +123,7 @@ struct Predictor::Implementation {
       past.weights[i] *= std::exp(least - mismatches[i]);
       sum += past.weights[i];
     }
+    for (std::size_t i = static_cast<std::size_t>(count); i < past.weights.size(); ++i) past.weights[i] = 0;
     for (std::size_t i = 0; i < past.weights.size(); ++i) {
       const double posterior = sum > 0 ? past.weights[i] / sum : first[i];
       past.weights[i] = (1 - options.forgetting) * posterior + options.forgetting * first[i];
@@ -187,7 +191,7 @@ struct Predictor::Implementation {
     made.length = object.length;
     made.width = object.width;
     made.interval = options.interval;
-    std::array<int, manoeuvres> order{0, 1, 2, 3, 4};
+    std::array<int, manoeuvres> order{0, 1, 2, 3, 4, 5};
     std::sort(order.begin(), order.end(), [&](int a, int b) {
       const double one = weights[static_cast<std::size_t>(a)], other = weights[static_cast<std::size_t>(b)];
       return one != other ? one > other : a < b;
@@ -199,7 +203,7 @@ struct Predictor::Implementation {
       const int chosen = order[static_cast<std::size_t>(h)];
       made.weights[static_cast<std::size_t>(h)] = weights[static_cast<std::size_t>(chosen)];
       sum += weights[static_cast<std::size_t>(chosen)];
-      Way way(motion, static_cast<Manoeuvre>(chosen), course, options);
+      Way way(motion, static_cast<Manoeuvre>(chosen), course, habits, options);
       for (std::size_t k = 0; k < times; ++k) {
         if (k > 0) way.advance(options.interval);
         const maps::Pose pose = k > 0 ? way.pose() : object.pose;
@@ -223,6 +227,7 @@ Predictor::Predictor(const Predictor& other)
           std::make_unique<Implementation>(other.implementation_->options, other.implementation_->course)) {
   const auto& remembered = other.implementation_->remembered;
   implementation_->remembered.assign(remembered.begin(), remembered.end());
+  implementation_->habits = other.implementation_->habits;
 }
 Predictor& Predictor::operator=(const Predictor& other) {
   return *this = Predictor(other);
@@ -247,14 +252,19 @@ std::span<const maps::PredictedObstacle> Predictor::update(std::span<const Track
     const bool room = p.remembered.size() < p.remembered.capacity() || p.find(object.id);
     if (!room) continue;
     Motion motion = motion_of(object, p.course, p.options);
+    if (motion.on_course) motion.habit = p.habits.at(motion.arc);
     const Weights& weights = p.weigh(object.id, motion, stamp);
     p.predict(object, motion, weights);
+    if (const double there = p.course.empty() ? 0 : p.course.at(motion.arc).speed;
+        motion.on_course && there > 0)
+      p.habits.note(motion.arc, {motion.offset, motion.speed / there});
   }
   return p.predicted;
 }
 
 void Predictor::reset() noexcept {
   implementation_->remembered.clear();
+  implementation_->habits.reset();
 }
 
 }  // namespace slalom::tracking

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -113,7 +114,8 @@ TEST(Predictor, ACarThatReturnsToTheCourseIsExpectedToFollowIt) {
   motion.on_course = true;
   motion.speed = 3;
   motion.offset = 1.2;
-  Way way(motion, Manoeuvre::follow, course, options);
+  const Habits habits(course);
+  Way way(motion, Manoeuvre::follow, course, habits, options);
   Predictor predictor(circle(), options);
   double driven = 0;
   const auto advance = [&](double time) {
@@ -128,6 +130,32 @@ TEST(Predictor, ACarThatReturnsToTheCourseIsExpectedToFollowIt) {
   }
   way.advance(1);
   EXPECT_GT(weight_near(predicted, way.pose(), 1, 0.2), 0.7);
+}
+
+TEST(Predictor, ACarThatComesRoundAgainIsExpectedToDriveAsBefore) {
+  Predictor predictor(circle());
+  // A line of its own, three times to the left and to the right in a lap, and slower on the left.
+  std::vector<TrackedObject> seen;
+  double arc = 0;
+  const auto offset = [](double at) { return 0.6 * std::sin(3 * at / radius); };
+  while (arc < 3 * 2 * pi * radius) {
+    const double speed = 3 - 0.8 * std::sin(3 * arc / radius);
+    const double turned = std::atan(1.8 / radius * std::cos(3 * arc / radius));
+    seen.push_back(object_at(beside(arc, offset(arc), turned), speed));
+    arc += speed * std::cos(turned) * period * radius / (radius - offset(arc));
+  }
+  constexpr std::size_t ahead = 48;  // periods: 1.2 s
+  const std::size_t lap = seen.size() / 3;
+  std::array<double, 3> error{};  // m, mean over the hypotheses and a lap
+  for (std::size_t i = 0; i + ahead < seen.size(); ++i) {
+    const auto predicted = predictor.update({&seen[i], 1}, period * static_cast<double>(i))[0];
+    for (int h = 0; h < predicted.hypotheses; ++h)
+      error[std::min<std::size_t>(i / lap, 2)] += predicted.weights[static_cast<std::size_t>(h)] *
+                                                  apart(predicted.at(h, 1.2).pose, seen[i + ahead].pose) /
+                                                  static_cast<double>(lap);
+  }
+  EXPECT_GT(error[0], 0.3);
+  EXPECT_LT(error[2], 0.5 * error[0]);
 }
 
 TEST(Predictor, ACarThatBrakesIsExpectedToBrake) {
