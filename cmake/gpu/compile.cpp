@@ -51,14 +51,17 @@ std::string compile(const std::string& problem, const std::string& architecture,
   options.push_back("-DSLALOM_RESIDENT=" + std::to_string(resident));
   std::vector<const char*> texts;
   for (const std::string& option : options) texts.push_back(option.c_str());
+  // Every standard header is standard.hpp; the header of all is those parts that a problem uses.
   static constexpr const char* headers[] = {
-      "algorithm",        "array",       "bit",      "cmath",       "concepts",
-      "cstddef",          "cstdint",     "cstring",  "filesystem",  "functional",
-      "initializer_list", "iterator",    "limits",   "memory",      "new",
-      "numbers",          "numeric",     "optional", "span",        "stdexcept",
-      "string",           "string_view", "tuple",    "type_traits", "utility",
-      "variant",          "vector"};
-  const std::vector<const char*> contents(std::size(headers), "#include \"standard.hpp\"\n");
+      "slalom/slalom.hpp", "algorithm", "array",     "bit",        "cmath",       "concepts",
+      "cstddef",           "cstdint",   "cstring",   "filesystem", "functional",  "initializer_list",
+      "iterator",          "limits",    "memory",    "new",        "numbers",     "numeric",
+      "optional",          "span",      "stdexcept", "string",     "string_view", "tuple",
+      "type_traits",       "utility",   "variant",   "vector"};
+  std::vector<const char*> contents(std::size(headers), "#include \"standard.hpp\"\n");
+  contents[0] =
+      "#include \"slalom/core/grid_view.hpp\"\n#include \"slalom/core/network/mlp.hpp\"\n"
+      "#include \"slalom/core/problem.hpp\"\n";
   nvrtcProgram program = nullptr;
   nvrtcCreateProgram(&program, "#include \"kernels.cu\"\n", "slalom", static_cast<int>(contents.size()),
                      contents.data(), headers);

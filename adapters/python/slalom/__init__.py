@@ -37,6 +37,7 @@ def __getattr__(name: str) -> object:
 
 
 display.install(_slalom)
+from . import gpu  # noqa: E402  the signatures of its classes are those of the compiled ones
 for _module in filter(None, (_slalom, _driving)):
     display.set_pickles(_module)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]

@@ -14,7 +14,7 @@ from typing import Any, Sequence
 
 from . import _slalom
 
-_INCLUDE = Path(__file__).parent / "include"
+INCLUDE = Path(__file__).parent / "include"
 _COMPILERS = ("c++", "g++", "clang++")
 
 _END = """
@@ -30,25 +30,32 @@ class CompileError(RuntimeError):
     """The C++ compiler rejects a problem, or there is none. The message has the compiler's words."""
 
 
-def compile(source: str | os.PathLike[str], problem: str | None = None, *, flags: Sequence[str] = (),
-            **parameters: Any) -> _slalom.CompiledProblem:
+def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | None = None, *,
+            flags: Sequence[str] = (), gpu: Sequence[int] = (), **parameters: Any) -> _slalom.CompiledProblem:
     """A problem struct in C++ (docs/writing-a-problem.md) as a problem in Python, at the speed of C++.
 
-    source: the text of a header with the struct, or its file
+    source: the text of a header with the struct, or its file; for a GPU also a built-in problem or an MlpProblem
     problem: the name of the struct, with its namespace; needed only if the source has several problems
     flags: further flags of the compiler, for instance "-I..."
+    gpu: architectures of GPUs for which it is compiled, too, for instance [90]; needs a CUDA toolkit (docs/gpu.md)
     parameters: values for members of the struct that are `double` or arrays of it; they are attributes of the problem
 
     The compiler is $CXX, or the first one found of c++, g++ and clang++: g++ 12 or clang 14, or later. The result is
     kept in $XDG_CACHE_HOME/slalom (default: ~/.cache/slalom) and is compiled again only if the source, a header that it
     includes, the compiler's flags or Slalom have changed.
     """
+    values: dict[str, Any] = {}
+    if isinstance(source, _slalom.AnyProblem):
+        from .gpu import source_of
+
+        source, problem, values = source_of(source)
     text = _text_of(source)
     name, members = _problem_in(_without_comments(text if isinstance(source, str) and _is_text(source)
                                                   else Path(source).read_text()), problem)
-    listed = ", ".join(f'{{"{each}", slalom::python::values_of(p.{each})}}' for each in members)
-    made = _slalom.CompiledProblem(str(_library(text + _END.format(name=name, parameters=listed), flags)))
-    for key, value in parameters.items():
+    listed = ", ".join(f'{{"{each}", slalom::python::values_of(p.{each})}}' for each in members or values)
+    end = _END.format(name=name, parameters=listed)
+    made = _slalom.CompiledProblem(str(_library(text, name, end, [*flags], [*gpu])))
+    for key, value in {**values, **parameters}.items():
         setattr(made, key, value)
     return made
 
@@ -63,29 +70,40 @@ def _text_of(source: str | os.PathLike[str]) -> str:
     return f'#include <slalom/slalom.hpp>\n#include "{Path(source).resolve(strict=True)}"'
 
 
-def _library(text: str, flags: Sequence[str]) -> Path:
+def _library(text: str, problem: str, end: str, flags: list[str], architectures: list[int]) -> Path:
     """The shared library of a source text: that of the cache, or a new one."""
     compiler = shlex.split(os.environ.get("CXX", "")) or [name for name in _COMPILERS if shutil.which(name)][:1]
     if not compiler or not shutil.which(compiler[0]):
         raise CompileError(f"no C++ compiler found ({compiler[0] if compiler else ', '.join(_COMPILERS)}): install one "
                            "(Debian: g++), or set CXX")
-    command = [*compiler, "-std=c++20", "-O2", "-Wfatal-errors", "-fPIC", "-fvisibility=hidden", f"-I{_INCLUDE}",
+    sources = [_slalom.__file__]
+    if architectures:
+        from . import gpu
+
+        flags, sources = [*flags, "-DSLALOM_GPU", f"-I{gpu.FOLDER}"], [*sources, str(gpu.FOLDER / "session.cpp"), "-ldl"]
+    command = [*compiler, "-std=c++20", "-O2", "-Wfatal-errors", "-fPIC", "-fvisibility=hidden", f"-I{INCLUDE}",
                f"-DSLALOM_ONLY_TARGET={_slalom.instruction_set()}", *flags]
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slalom"
     cache.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=cache) as folder:
-        unit, result = Path(folder) / "problem.cpp", Path(folder) / "problem.so"
-        unit.write_text(text)
-        preprocessed = _run([*command, "-E", "-P", str(unit)])
-        key = hashlib.sha256("\0".join([*command, _slalom.__file__, preprocessed]).encode()).hexdigest()[:32]
+    with tempfile.TemporaryDirectory(dir=cache) as name:
+        folder = Path(name)
+        header, unit, result = folder / "problem.hpp", folder / "problem.cpp", folder / "problem.so"
+        header.write_text("#pragma once\n" + text)
+        unit.write_text(f'#include "problem.hpp"\n{end}')
+        preprocessed = run([*command, "-E", "-P", str(unit)])
+        key = hashlib.sha256("\0".join([*command, *sources, *map(str, architectures), preprocessed]).encode()).hexdigest()[:32]
         library = cache / f"{key}.so"
         if not library.exists():
-            _run([*command, "-shared", str(unit), _slalom.__file__, "-o", str(result)])
+            if architectures:
+                images = gpu.compile_kernels(header, problem, architectures, compiler, flags)
+                unit.write_text(f'#include "{images}"\n{end}')
+            run([*command, "-shared", str(unit), *sources, "-o", str(result)])
             result.replace(library)
     return library
 
 
-def _run(command: Sequence[str]) -> str:
+def run(command: Sequence[str]) -> str:
+    """Runs a compiler and returns what it prints. Raises CompileError with its words if it fails."""
     done = subprocess.run(command, text=True, capture_output=True)
     if done.returncode:
         raise CompileError(f"{command[0]} rejects the problem:\n{done.stderr}")

@@ -54,7 +54,7 @@ def install(solvers: ModuleType) -> None:
             _constructed(cls, lambda problem: ((problem.network,), {name: getattr(problem, name)
                                                                     for name in _settable(solvers.MlpProblem)}))
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
-            _constructed(cls, lambda problem: ((), _changed(problem)))
+            _constructed(cls, lambda problem: ((), changed(problem)))
     setattr(solvers.Plan, "__repr__", _plan_text)
     setattr(solvers.Plan, "_repr_png_", lambda plan: plot._png(plot.plan, plan))
 
@@ -162,7 +162,7 @@ def _call(name: str, positional: Iterable[Any], named: dict[str, Any]) -> str:
     return f"slalom.{name}({', '.join(arguments)})"
 
 
-def _changed(problem: Any) -> dict[str, Any]:
+def changed(problem: Any) -> dict[str, Any]:
     """The parameters that differ from their defaults."""
     default = type(problem)()
     return {name: getattr(problem, name) for name in _settable(type(problem))
@@ -174,7 +174,7 @@ def _controller_text(controller: Any) -> str:
 
     default = {option["name"]: option["default"] for option in options(controller.method)}
     changed = {name: value for name, value in controller.options.items() if value != default[name]}
-    name = type(controller).__name__
+    name = "gpu." * (type(controller).__module__ == "slalom.gpu") + type(controller).__name__
     return _call(name, [*[controller.method] * (name == "Controller"), controller.problem], changed)
 
 

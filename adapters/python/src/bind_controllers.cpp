@@ -26,11 +26,23 @@ void check_proposals(const Solver& solver, const Sequences& proposals) {
     if (!std::isfinite(proposals.data()[i])) throw std::invalid_argument("proposals: must be finite");
 }
 
-std::unique_ptr<Controller> make_controller(const std::string& method, const AnyProblem& problem,
+constexpr std::string_view gpu_prefix = "gpu.";
+
+/// `method`: its name, behind `gpu_prefix` for a controller on a GPU. Throws slalom.gpu.DeviceError if the
+/// device fails.
+std::unique_ptr<Controller> make_controller(std::string method, const AnyProblem& problem,
                                             const py::kwargs& keywords) {
+  const bool on_gpu = method.starts_with(gpu_prefix);
+  if (on_gpu) method.erase(0, gpu_prefix.size());
   SolverOptions options = solver_options(method);
   set_from_keywords(options, keywords, method);
-  return std::make_unique<Controller>(problem, options);
+  try {
+    return std::make_unique<Controller>(problem, options, on_gpu);
+  } catch (const std::runtime_error& error) {
+    if (!on_gpu) throw;
+    PyErr_SetString(py::module_::import("slalom.gpu").attr("DeviceError").ptr(), error.what());
+    throw py::error_already_set();
+  }
 }
 
 /// Returns method, problem and options, from which `from_state` makes a new controller. Throws
@@ -42,7 +54,8 @@ py::object state_of(const py::object& self) {
         "controller: has been used, and its state cannot be pickled: pickle it before its first solve, or "
         "copy "
         "it with copy.copy");
-  return py::make_tuple(controller.solver().name(), self.attr("problem"), values_of(controller.options()));
+  const std::string method = std::string(controller.on_gpu() ? gpu_prefix : "") + controller.solver().name();
+  return py::make_tuple(method, self.attr("problem"), values_of(controller.options()));
 }
 /// Makes a controller from the state of a pickled one, or as a copy of another one.
 std::unique_ptr<Controller> from_state(const py::object& state) {
@@ -74,6 +87,7 @@ std::string class_name(std::string_view method) {
 void bind_method(py::module_& module, const py::object& controller, const std::string& method) {
   py::dict members;
   members["__module__"] = module.attr("__name__");
+  members["_method"] = method;
   members["__doc__"] = "A controller that solves its problem by the method `" + method +
                        "`.\n\nThe problem is copied: `controller.problem` is the copy, whose parameters may "
                        "change between solves. Keyword arguments with their defaults:\n\n" +
@@ -83,8 +97,8 @@ void bind_method(py::module_& module, const py::object& controller, const std::s
       py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(Py_TYPE(controller.ptr())));
   const py::object cls = metaclass(name, py::make_tuple(controller), members);
   cls.attr("__init__") = py::cpp_function(
-      [controller, method](const py::object& self, const py::object& problem, const py::kwargs& keywords) {
-        controller.attr("__init__")(self, method, problem, **keywords);
+      [controller](const py::object& self, const py::object& problem, const py::kwargs& keywords) {
+        controller.attr("__init__")(self, self.attr("_method"), problem, **keywords);
       },
       py::name("__init__"), py::is_method(cls), py::arg("problem"));
   module.attr(name.c_str()) = cls;
@@ -124,6 +138,8 @@ void bind_controllers(py::module_& module) {
            "By default it is the input that the last plan had for that time.")
       .def("prepare", &Controller::prepare,
            "Draws the noise of the next solve in advance, outside its deadline.")
+      .def("_gpu_fault", &Controller::gpu_fault)
+      .def("_refresh_gpu", &Controller::refresh_gpu)
       .def_property_readonly(
           "problem", &Controller::problem, py::return_value_policy::reference_internal,
           "the controller's copy of its problem; its parameters may change between solves");

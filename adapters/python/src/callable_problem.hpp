@@ -43,6 +43,10 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
   Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps,
                         std::span<const std::string> terms) override;
+  std::unique_ptr<Solver> gpu_solver(const SolverOptions&) const override {
+    throw std::invalid_argument(
+        "problem: callables of Python do not run on a GPU: write a struct in C++ (docs/gpu.md#from-python)");
+  }
   void begin(void* owner) override;
   /// Rethrows the first exception of a callable during the solve.
   void finish() override;

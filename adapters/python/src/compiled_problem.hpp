@@ -4,6 +4,9 @@
 
 #include "problem.hpp"
 #include "slalom/core/problem_check.hpp"
+#ifdef SLALOM_GPU
+#include "slalom/gpu/gpu.hpp"
+#endif
 
 /// The end of a source file that `slalom.compile` makes of a problem struct. This header and problem.hpp do
 /// not need the headers of Python.
@@ -24,6 +27,19 @@ class CompiledFrom final : public BuiltIn<P, CompiledProblem> {
   using BuiltIn<P, CompiledProblem>::BuiltIn;
   std::unique_ptr<AnyProblem> clone() const override { return std::make_unique<CompiledFrom>(*this); }
   std::vector<Parameter> parameters() override { return list(this->problem()); }
+#ifdef SLALOM_GPU
+  std::unique_ptr<Solver> gpu_solver(const SolverOptions& options) const override {
+    if (const auto* guided = options.get_if<SvgMppiOptions>())
+      return std::make_unique<gpu::GpuSolver<P, SvgMppiOptions>>(this->problem(), *guided);
+    return std::make_unique<gpu::GpuSolver<P, MppiOptions>>(this->problem(), *options.get_if<MppiOptions>());
+  }
+  void refresh_gpu(Solver& solver) const noexcept override {
+    static_cast<gpu::DeviceSolver&>(solver).refresh();
+  }
+  std::string gpu_fault(const Solver& solver) const override {
+    return static_cast<const gpu::DeviceSolver&>(solver).fault();
+  }
+#endif
 };
 
 }  // namespace slalom::python

@@ -141,10 +141,12 @@ class Interruptible final : public BatchEvaluator {
 
 }  // namespace
 
-Controller::Controller(const AnyProblem& problem, const SolverOptions& options)
+Controller::Controller(const AnyProblem& problem, const SolverOptions& options, bool on_gpu)
     : problem_(problem.clone()),
       options_(within_bounds(problem, options)),
-      solver_(make_solver(scaled(problem, options_), problem.inputs())),
+      on_gpu_(on_gpu),
+      solver_(on_gpu ? problem_->gpu_solver(scaled(problem, options_))
+                     : make_solver(scaled(problem, options_), problem.inputs())),
       bounds_(bounds_of(options_, problem.inputs())),
       state_(static_cast<std::size_t>(problem.states())),
       inputs_(static_cast<std::size_t>(solver_->horizon() * solver_->inputs())),
@@ -249,7 +251,8 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
     const py::gil_scoped_release unlock;
     pool.run(static_cast<int>(started.size()), [&](int i) {
       const auto at = static_cast<std::size_t>(i);
-      started[at]->solver_->solve(rollouts[at], request);
+      Controller& each = *started[at];  // a GPU takes the problem itself, and a second at most
+      each.solver_->solve(each.on_gpu_ ? each.problem_->evaluator() : rollouts[at], request);
     });
   }
   std::exception_ptr first;

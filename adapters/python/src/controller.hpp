@@ -15,7 +15,7 @@ namespace slalom::python {
 /// threads and the callables of the problem.
 class Controller {
  public:
-  Controller(const AnyProblem& problem, const SolverOptions& options);
+  Controller(const AnyProblem& problem, const SolverOptions& options, bool on_gpu = false);
 
   /// Returns a copy. Throws std::runtime_error if another thread uses the controller.
   std::unique_ptr<Controller> copy();
@@ -36,6 +36,13 @@ class Controller {
 
   AnyProblem& problem() noexcept { return *problem_; }
   const Solver& solver() const noexcept { return *solver_; }
+  bool on_gpu() const noexcept { return on_gpu_; }
+  /// Why the GPU fails; empty if it does not.
+  std::string gpu_fault() const { return on_gpu_ ? problem_->gpu_fault(*solver_) : ""; }
+  /// Copies the memory that the problem declares to the GPU again.
+  void refresh_gpu() {
+    if (on_gpu_) problem_->refresh_gpu(*solver_);
+  }
   const SolverOptions& options() const noexcept { return options_; }
   const SolveResult& result() const noexcept { return solver_->result(); }
   /// The status of the last solve. A cost that is not finite shows when the prediction is first asked for.
@@ -70,6 +77,7 @@ class Controller {
 
   Polymorphic<AnyProblem> problem_;
   SolverOptions options_;
+  bool on_gpu_;
   Polymorphic<Solver> solver_;
   InputBounds bounds_;
   Status status_ = Status::ok;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "slalom/core/problem_evaluator.hpp"
+#include "slalom/solvers/solver_options.hpp"
 #include "slalom/solvers/trajectories.hpp"
 
 namespace slalom::python {
@@ -67,6 +68,16 @@ class AnyProblem {
                      std::span<double> /*remainder*/) const {
     return false;
   }
+  /// A solver on a GPU. Throws std::invalid_argument if the problem has no code for one.
+  virtual std::unique_ptr<Solver> gpu_solver(const SolverOptions&) const {
+    throw std::invalid_argument(
+        "problem: has no code for a GPU: slalom.compile(problem, gpu=[90]) makes it "
+        "(docs/gpu.md#from-python)");
+  }
+  /// Copies the memory that the problem declares to the GPU of such a solver again.
+  virtual void refresh_gpu(Solver&) const noexcept {}
+  /// Why the GPU of such a solver fails; empty if it does not.
+  virtual std::string gpu_fault(const Solver&) const { return {}; }
   /// To be called before and after a solve. The argument is the PyObject that owns the solver's memory.
   virtual void begin(void* /*owner*/) {}
   virtual void finish() {}

@@ -21,12 +21,13 @@ class GpuController : public Controller<P> {
 
   /// Copies the contents of the memory that the problem declares (`visit_memory`) again, for the next solve.
   /// Where the memory itself is another, a new controller is needed.
-  void refresh() noexcept {
-    const_cast<GpuSolver<P, Options>&>(static_cast<const GpuSolver<P, Options>&>(this->solver())).refresh();
-  }
+  void refresh() noexcept { const_cast<DeviceSolver&>(device_solver()).refresh(); }
   /// Why the device fails; empty if it does not.
-  const std::string& fault() const noexcept {
-    return static_cast<const GpuSolver<P, Options>&>(this->solver()).fault();
+  const std::string& fault() const noexcept { return device_solver().fault(); }
+
+ private:
+  const DeviceSolver& device_solver() const noexcept {
+    return static_cast<const DeviceSolver&>(this->solver());
   }
 };
 

@@ -14,9 +14,18 @@
 
 namespace slalom::gpu {
 
+/// A solver on a GPU.
+class DeviceSolver : public Solver {
+ public:
+  /// Copies the contents of the memory that the problem reads again: after a map has changed, before a solve.
+  virtual void refresh() noexcept = 0;
+  /// Why the device fails; empty if it does not.
+  virtual const std::string& fault() const noexcept = 0;
+};
+
 /// `mppi` or `svg_mppi` on a GPU, behind the interface of every solver. Only for a `ProblemEvaluator<P>`.
 template <class P, class Options>
-class GpuSolver final : public Solver {
+class GpuSolver final : public DeviceSolver {
   static constexpr bool guided = std::is_same_v<Options, SvgMppiOptions>;
   using Clock = std::chrono::steady_clock;
 
@@ -111,13 +120,10 @@ class GpuSolver final : public Solver {
     return result_;
   }
 
-  /// Copies the contents of the memory that the problem reads again: after a map has changed, before a solve.
-  void refresh() noexcept {
+  void refresh() noexcept override {
     for (const SharedMemory& m : memory_) session_.copy_in(m.copy, m.data.data(), m.data.size());
   }
-
-  /// Why the device fails; empty if it does not.
-  const std::string& fault() const noexcept { return session_.fault(); }
+  const std::string& fault() const noexcept override { return session_.fault(); }
 
  private:
   static constexpr std::size_t size(int count) noexcept { return static_cast<std::size_t>(count); }

@@ -1,0 +1,131 @@
+"""Controllers on a GPU: compared with those on the processor by running the kernels' source on the host."""
+
+import copy
+import pickle
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import slalom
+from slalom.mlp import Mlp
+
+ROOT = Path(__file__).resolve().parents[3]
+pytestmark = pytest.mark.skipif(not shutil.which("c++") or not (slalom.gpu.FOLDER / "compile.cpp").exists(),
+                                reason="no C++ compiler, or a build of the package without the GPU layer")
+IMAGES = """#include "{header}"
+#include "{root}/tests/gpu/emulation.hpp"
+template <> std::span<const slalom::gpu::Image> slalom::gpu::images<{problem}>() {{
+  static constexpr unsigned char code[1] = {{}};
+  static const Image all[] = {{code}};
+  fake_launch = &emulate<{problem}>;
+  return all;
+}}
+"""
+
+
+@pytest.fixture(scope="module")
+def emulated(tmp_path_factory):
+    """Compiles a problem with the kernels as loops on the host, behind a driver without a device."""
+    folder = tmp_path_factory.mktemp("emulated")
+    driver = folder / "libcuda.so.1"
+    subprocess.run(["c++", "-shared", "-fPIC", f"-Wl,-soname,{driver.name}", ROOT / "tests/gpu/fake_cuda.cpp", "-o", driver],
+                   check=True)
+
+    def compile_for_host(header, problem, *_):
+        header.with_name("images.cpp").write_text(IMAGES.format(header=header, root=ROOT, problem=problem))
+        return header.with_name("images.cpp")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        patch.setattr(slalom.gpu, "compile_kernels", compile_for_host)
+        yield lambda problem: slalom.compile(problem, gpu=[90], flags=[f"-Wl,--no-as-needed,-rpath,{folder}", str(driver)])
+
+
+def network(**parts):
+    random = np.random.default_rng(0)
+    layers = [(random.normal(size=(16, 3)), random.normal(size=16)), (random.normal(size=(2, 16)) / 16, np.zeros(2))]
+    mlp = Mlp(layers, input_mean=[0.1, 0.2, 0], input_scale=[1, 2, 1], output_scale=[0.5, 1], residual=True)
+    return slalom.MlpProblem(mlp, **{"goal": [1, 0], "state_weights": [1, 0.1], "terminal_weights": 2, "dt": 0.1,
+                                     "input_weights": 0.01, "input_min": -2, "input_max": 2, **parts})
+
+
+OPTIONS = {"horizon": 12, "samples": 200, "temperature": 1}
+GUIDED = {**OPTIONS, "batches": 1, "noise_exponent": 0, "gradient_temperature": 1, "seed": 1}
+
+
+@pytest.mark.parametrize("problem", [slalom.Pendulum(length=1.5), network(discs=[(0.6, 0, 0.2)], disc_weight=5)],
+                         ids=["built-in", "network"])
+def test_plans_are_those_of_the_processor(emulated, problem):
+    compiled = emulated(problem)
+    bounds = {"input_min": -2, "input_max": 2}
+    for name, options in ("Mppi", OPTIONS), ("SvgMppi", GUIDED):
+        on_gpu = getattr(slalom.gpu, name)(compiled, **options, **bounds)
+        processor = getattr(slalom, name)(problem, **options, **bounds)
+        plan, expected = (each.solve([0.2, -0.3], elapsed=0.1) for each in (on_gpu, processor))
+        assert plan.ok and type(plan) is type(expected) and on_gpu.fault == "" and on_gpu.method == processor.method
+        assert np.allclose(plan.inputs, expected.inputs, atol=1e-3) and np.ptp(plan.inputs) > 0.01
+        assert np.allclose(plan.states, expected.states, atol=1e-3)
+        assert plan.cost == pytest.approx(expected.cost, rel=1e-3)
+        assert plan.collided_share == pytest.approx(expected.collided_share, abs=0.01)
+        assert len(plan.samples) == len(plan.weights) == 0 and f"slalom.gpu.{name}(" in repr(on_gpu)
+
+
+def test_parameters_and_states_of_controllers(emulated):
+    controller = slalom.gpu.Mppi(emulated(slalom.Pendulum()), **OPTIONS)
+    again = pickle.loads(pickle.dumps(controller))
+    first = controller.solve([1, 0]).inputs.copy()
+    assert isinstance(again, slalom.gpu.Mppi) and np.array_equal(again.solve([1, 0]).inputs, first)
+    controller.reset(0)
+    controller.problem.mass = 3
+    controller.refresh()
+    assert not np.array_equal(controller.solve([1, 0]).inputs, first)
+    plans = slalom.solve_batch([controller, again], [[1, 0], [0.5, 0]], threads=2)
+    assert all(plan.ok for plan in plans)
+    with pytest.raises(RuntimeError, match="GPU: a controller is not copied; make another"):
+        copy.copy(controller)
+
+
+def test_what_a_gpu_lacks_is_refused(emulated, monkeypatch, tmp_path):
+    with pytest.raises(ValueError, match="svg_mppi.temperature: 0 must be above 0 on a GPU"):
+        slalom.gpu.SvgMppi(emulated(slalom.Pendulum()))
+    callables = slalom.Problem(lambda x, u: x, lambda x, u: x[:, 0], states=1, inputs=1)
+    for problem, text in (callables, r"callables of Python do not run .*docs/gpu.md"), (slalom.Pendulum(), r"has no code .*gpu=\[90\]"):
+        with pytest.raises(ValueError, match=text):
+            slalom.gpu.Mppi(problem, temperature=1)
+    with pytest.raises(ValueError, match="slalom.Problem has no struct in C..; must be a built-in problem"):
+        slalom.compile(callables, gpu=[90])
+    field = slalom.Field.from_function(lambda x, y: x, 20, 20, 0.2, (-2, -2))
+    with pytest.raises(ValueError, match="with walls or a field has no struct"):
+        slalom.compile(network(field=field), gpu=[90])
+    monkeypatch.setenv("CUDA_PATH", str(tmp_path))
+    with pytest.raises(slalom.CompileError, match=f"no CUDA toolkit in {tmp_path}: .*nvrtc.h and libnvrtc.so"):
+        slalom.gpu.toolkit()
+
+
+with_nvrtc = slalom.gpu.compile_kernels
+
+
+def toolkit():
+    try:
+        return slalom.gpu.toolkit()
+    except slalom.CompileError:
+        return None
+
+
+@pytest.mark.skipif(not toolkit(), reason="no CUDA toolkit")
+def test_nvrtc_compiles_a_network_and_a_missing_device_is_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(slalom.gpu, "compile_kernels", with_nvrtc)
+    problem = slalom.compile(network(), gpu=[90])
+    code = f"""import slalom
+try:
+    plan = slalom.gpu.Mppi(slalom.CompiledProblem({problem.file!r}), **{OPTIONS!r}).solve([0.2, -0.3])
+    print(plan.status)
+except slalom.gpu.DeviceError as error:
+    print(error)"""
+    done = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, check=True)
+    assert done.stdout.startswith("GPU: no d") or done.stdout == "ok\n"
