@@ -6,22 +6,23 @@
 #include <string_view>
 
 #include "bench/random_network.hpp"
+#include "bench/workload/statistics.hpp"
 #include "slalom/gpu/gpu.hpp"
 #include "slalom/solvers/registry.hpp"
 
 namespace slalom::bench {
 namespace {
 
-using problems::Pendulum, problems::Quadrotor;
+using problems::Pendulum, problems::Quadrotor, workload::TimeStatistics;
 
 constexpr int most = 131072;
 bool brief = false;
 int failed = 0;  ///< how many first plans differ from the processor's
 
-/// Times solves in a closed loop, from the state to the plan. Returns the sorted times, ms.
+/// Times solves in a closed loop, from the state to the plan; ms.
 template <class P>
-std::vector<double> time_loop(ProblemEvaluator<P>& evaluator, Solver& solver,
-                              const typename P::template State<double>& start, double limit) {
+TimeStatistics time_loop(ProblemEvaluator<P>& evaluator, Solver& solver,
+                         const typename P::template State<double>& start, double limit) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> times;
   const auto end = Clock::now() + std::chrono::duration<double>(limit);
@@ -35,8 +36,7 @@ std::vector<double> time_loop(ProblemEvaluator<P>& evaluator, Solver& solver,
     for (int i = 0; i < P::inputs; ++i) u[i] = result.inputs[static_cast<std::size_t>(i)];
     predict(evaluator.problem(), n % 400 == 0 ? start : states[1], &u, 1, states);
   }
-  std::sort(times.begin(), times.end());
-  return times;
+  return workload::time_statistics(times);
 }
 
 /// Prints a row. `flops` of a step are counted by hand; `asked` are the wanted times, ms.
@@ -53,17 +53,15 @@ void compare(const char* name, const P& problem, const typename P::template Stat
   float difference = 0;
   for (std::size_t r = 0; r < first.size(); ++r)
     difference = std::max(difference, std::abs(first[r] - expected[r]));
-  const std::vector<double> times = time_loop(evaluator, gpu, start, 5);
-  const double median = times[times.size() / 2];
+  const TimeStatistics times = time_loop(evaluator, gpu, start, 5);
   const bool good = difference < 1e-3f && gpu.fault().empty();
   failed += !good;
-  std::printf("%s,%s,%d,%.1e,%.4f,%.4f,%.2f", name, Options::method, options.samples, difference, median,
-              times[times.size() * 99 / 100], flops * options.samples * options.horizon / median * 1e-9);
+  std::printf("%s,%s,%d,%.1e,%.4f,%.4f,%.2f", name, Options::method, options.samples, difference, times.p50,
+              times.p99, flops * options.samples * options.horizon / times.p50 * 1e-9);
   for (const int threads : {16, 1}) {
     if (brief) break;
     options.threads = threads;
-    const std::vector<double> there = time_loop(evaluator, *make_solver(options, P::inputs), start, 0.4);
-    std::printf(",%.4f", there[there.size() / 2]);
+    std::printf(",%.4f", time_loop(evaluator, *make_solver(options, P::inputs), start, 0.4).p50);
   }
   std::printf(",%s%s%s\n", asked, good ? "" : " FAILED ", gpu.fault().c_str());
   std::fflush(stdout);

@@ -118,21 +118,17 @@ Session::~Session() {
   d.context_release(0);
 }
 
-void* Session::allocate(std::size_t bytes) {
-  memory_.reserve(memory_.size() + 1);
+void* Session::allocate(std::size_t bytes, bool on_host) {
+  auto& all = on_host ? host_memory_ : memory_;
+  all.reserve(all.size() + 1);
   void* address = nullptr;
-  if (!call("memory", driver().allocate, &address, bytes)) return nullptr;
-  memory_.push_back(address);
+  if (!(on_host ? call("memory of the host", driver().host_allocate, &address, bytes, device_map)
+                : call("memory", driver().allocate, &address, bytes)))
+    return nullptr;
+  all.push_back(address);
+  if (on_host) return std::memset(address, 0, bytes);
   call("memory", driver().fill, address, static_cast<unsigned char>(0), bytes, stream_);
   return address;
-}
-
-void* Session::allocate_on_host(std::size_t bytes) {
-  host_memory_.reserve(host_memory_.size() + 1);
-  void* address = nullptr;
-  if (!call("memory of the host", driver().host_allocate, &address, bytes, device_map)) return nullptr;
-  host_memory_.push_back(address);
-  return std::memset(address, 0, bytes);
 }
 
 bool Session::copy_in(void* to, const void* from, std::size_t bytes) noexcept {
@@ -163,17 +159,12 @@ bool Session::launch(const Kernel& kernel, int blocks, const void* argument) noe
               stream_, arguments, nullptr);
 }
 
-bool Session::alive() noexcept {
-  if (!fault_.empty()) return false;
-  const int result = query();
-  return result == not_ready || check("kernel", result);
-}
-
-bool Session::synchronize() noexcept {
+bool Session::synchronize(bool wait) noexcept {
   using Clock = std::chrono::steady_clock;
   const auto give_up = Clock::now() + std::chrono::seconds(1);
   while (fault_.empty()) {
     const int result = query();
+    if (result == not_ready && !wait) return true;
     if (result != not_ready || Clock::now() > give_up) return check("kernel", result);
   }
   return false;

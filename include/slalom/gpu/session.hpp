@@ -41,10 +41,9 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Zeroed memory on the device. It lasts as long as the session.
-  void* allocate(std::size_t bytes);
-  /// Zeroed memory of the host that the device writes, at the same address.
-  void* allocate_on_host(std::size_t bytes);
+  /// Zeroed memory on the device, or memory of the host that the device writes at the same address. It lasts
+  /// as long as the session.
+  void* allocate(std::size_t bytes, bool on_host = false);
   /// Queues a copy to the device; `from` is read before this returns.
   bool copy_in(void* to, const void* from, std::size_t bytes) noexcept;
   /// Waits for everything that is queued, and copies from the device.
@@ -54,10 +53,10 @@ class Session {
   Kernel kernel(const char* name, int shared_bytes) noexcept;
   /// Queues a launch of a kernel with its argument.
   bool launch(const Kernel& kernel, int blocks, const void* argument) noexcept;
-  /// Whether the device still works; asks it, which takes some microseconds.
-  bool alive() noexcept;
   /// Waits for everything that is queued, for a second at most: then the device counts as failed.
-  bool synchronize() noexcept;
+  bool synchronize() noexcept { return synchronize(true); }
+  /// Whether the device still works; asks it, which takes some microseconds.
+  bool alive() noexcept { return synchronize(false); }
 
   /// The first failure; empty if there is none.
   const std::string& fault() const noexcept { return fault_; }
@@ -71,6 +70,7 @@ class Session {
   bool call(const char* what, int (*function)(Parameters...), Arguments... arguments) noexcept;
   bool check(const char* what, int result) noexcept;
   int query() const noexcept;
+  bool synchronize(bool wait) noexcept;
 
   std::string fault_;
   int processors_ = 0;

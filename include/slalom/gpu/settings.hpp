@@ -39,7 +39,7 @@ void require_supported(const Options& options) {
 
 /// Bytes of shared memory of a block of samples.
 inline int sample_bytes(const Settings& s, int rows) {
-  return 4 * std::max(Tile::floats(rows, s.tile, s.fused), combine_floats(rows, s.groups));
+  return 4 * std::max(sample_floats(rows, s.tile, s.fused), combine_floats(rows, s.groups));
 }
 /// Bytes of shared memory of the block of a guide.
 inline int guide_bytes(const Settings& s, int rows) {
@@ -56,7 +56,7 @@ void spread_samples(Settings& s) {
   s.fused = can_fuse<P> && s.samples >= fused_samples;
   s.tile = s.fused ? block_threads : 32;
   while (s.tile < block_threads && s.samples / s.tile > enough_groups &&
-         4 * Tile::floats(rows, 2 * s.tile, false) <= most_shared_bytes)
+         4 * sample_floats(rows, 2 * s.tile, false) <= most_shared_bytes)
     s.tile *= 2;
   s.tiles = (s.samples + s.tile - 1) / s.tile;
   s.groups = std::min(s.tiles, most_groups);

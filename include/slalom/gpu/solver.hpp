@@ -41,8 +41,8 @@ class GpuSolver final : public DeviceSolver {
     allocate(b.theta, guide_doubles(s, rows));
     allocate(b.partial, static_cast<long long>(s.groups) * padded_rows(rows));
     allocate(b.sums, s.groups), allocate(b.ticket, 2), allocate(costs_, s.samples);
-    b.report = static_cast<Report*>(session_.allocate_on_host(sizeof(Report)));
-    b.plan = static_cast<float*>(session_.allocate_on_host(sizeof(float) * size(rows)));
+    b.report = static_cast<Report*>(session_.allocate(sizeof(Report), true));
+    b.plan = static_cast<float*>(session_.allocate(sizeof(float) * size(rows), true));
     samples_ = session_.kernel("slalom_samples", sample_bytes(s, rows));
     if (guided) guides_ = session_.kernel("slalom_guides", guide_bytes(s, rows));
     blocks_ = std::min(s.groups, samples_.resident_blocks);

@@ -19,25 +19,10 @@ struct alignas(16) Row {
   float mean, deviation, moment;
 };
 
-/// Shared memory of a block: a tile of samples, whose inputs are there only where the threads draw together.
-struct Tile {
-  Row* row;
-  GroupSums* sums;
-  float *cost, *weight, *hit;  ///< [sample]
-  float* part;                 ///< [part][row]
-  float* v;                    ///< [row][sample and one more]
-
-  Tile(float* memory, int rows, int samples) {
-    row = reinterpret_cast<Row*>(memory);
-    sums = reinterpret_cast<GroupSums*>(memory + 4 * rows);
-    cost = memory + 4 * rows + 8;
-    weight = cost + samples, hit = weight + samples, part = hit + samples;
-    v = part + parts_of_tile * rows;
-  }
-  static constexpr int floats(int rows, int samples, bool fused) {
-    return (4 + parts_of_tile) * rows + 8 + 3 * samples + (fused ? 0 : rows * (samples + 1));
-  }
-};
+/// Floats of the shared memory of `SampleBlock`.
+constexpr int sample_floats(int rows, int tile, bool fused) {
+  return (4 + parts_of_tile) * rows + 8 + 3 * tile + (fused ? 0 : rows * (tile + 1));
+}
 
 /// The work of a block on its groups of tiles.
 template <class P>
@@ -47,13 +32,18 @@ struct SampleBlock {
   const Settings& s = a.settings;
   const Buffers& b = a.buffers;
   const int rows = s.horizon * P::inputs;
-  const Tile t{memory, rows, s.tile};
+  Row* const row = reinterpret_cast<Row*>(memory);  ///< [row]
+  GroupSums* const sums = reinterpret_cast<GroupSums*>(memory + 4 * rows);
+  float* const cost = memory + 4 * rows + 8;  ///< [sample], as the next two
+  float *const weight = cost + s.tile, *const hit = weight + s.tile;
+  float* const part_sum = hit + s.tile;              ///< [part][row]
+  float* const v = part_sum + parts_of_tile * rows;  ///< [row][sample, one more], where threads draw together
   const Key key = key_of(a.seed, a.stream);
 
   /// Input `r` of a sample, from a normal value.
   float input(int r, float z) const {
-    const Row row = t.row[r];
-    return clamped(row.mean + row.deviation * z, s.low[input_of<P>(r)], s.high[input_of<P>(r)]);
+    const Row of = row[r];
+    return clamped(of.mean + of.deviation * z, s.low[input_of<P>(r)], s.high[input_of<P>(r)]);
   }
 
   /// Rolls out a sample that its thread draws, step by step: nothing is stored.
@@ -80,19 +70,18 @@ struct SampleBlock {
   /// Draws and rolls out a tile.
   void evaluate(int first) const {
     if (!s.fused) {
-      draw(key, rows, first, log2_of(s.tile), s.tile + 1, t.v, 0,
-           [&](int r, float z) { return input(r, z); });
+      draw(key, rows, first, log2_of(s.tile), s.tile + 1, v, 0, [&](int r, float z) { return input(r, z); });
       Block::barrier();
     }
     Block::each(s.tile, [&](int k) {
       Rollout<P> rollout(a);
       if (!s.fused) {
-        roll_out<unrolled_steps<P>()>(a, rollout, [&](int r) { return t.v[r * (s.tile + 1) + k]; });
+        roll_out<unrolled_steps<P>()>(a, rollout, [&](int r) { return v[r * (s.tile + 1) + k]; });
       } else if constexpr (can_fuse<P>) {
         roll_out_fused(first + k, rollout);
       }
-      t.cost[k] = rollout.finish();
-      t.hit[k] = rollout.collided() ? 1.0f : 0.0f;
+      cost[k] = rollout.finish();
+      hit[k] = rollout.collided() ? 1.0f : 0.0f;
     });
   }
 
@@ -103,52 +92,51 @@ struct SampleBlock {
       for (int octet = Block::lane(); octet < (rows + 7) / 8; octet += Block::lanes) {
         float sum[8] = {};
         for (int k = part; k < s.tile; k += parts_of_tile) {
-          const float weight = t.weight[k];
-          if (!(weight > 0)) continue;
+          const float w = weight[k];
+          if (!(w > 0)) continue;
           float z[8];
           normal_octet(key, first + k, octet, z);
           SLALOM_UNROLLED()
-          for (int j = 0; j < 8; ++j)
-            sum[j] += weight * input(8 * octet + j < rows ? 8 * octet + j : 0, z[j]);
+          for (int j = 0; j < 8; ++j) sum[j] += w * input(8 * octet + j < rows ? 8 * octet + j : 0, z[j]);
         }
         SLALOM_UNROLLED()
         for (int j = 0; j < 8; ++j)
-          if (8 * octet + j < rows) t.part[part * rows + 8 * octet + j] = sum[j];
+          if (8 * octet + j < rows) part_sum[part * rows + 8 * octet + j] = sum[j];
       }
     }
     Block::barrier();
     Block::each(rows, [&](int r) {
       float sum = 0;
-      for (int part = 0; part < parts_of_tile; ++part) sum += t.part[part * rows + r];
-      t.row[r].moment = t.row[r].moment * scale + sum;
+      for (int part = 0; part < parts_of_tile; ++part) sum += part_sum[part * rows + r];
+      row[r].moment = row[r].moment * scale + sum;
     });
   }
 
   /// Weighs the samples of a tile relative to the least cost so far, and adds them to the sums. Returns the
   /// factor of the sums so far.
   float add_weights(int first, int count) const {
-    const auto cost = [&](int k) { return k < count ? t.cost[k] : infinite; };
-    const auto w = [&](int k) { return t.weight[k]; };
-    const GroupSums before = *t.sums;
+    const auto known = [&](int k) { return k < count ? cost[k] : infinite; };
+    const auto w = [&](int k) { return weight[k]; };
+    const GroupSums before = *sums;
     const float inverse_temperature = 1.0f / s.temperature;
-    const float now = fminf(Block::least(s.tile, cost), before.least);
+    const float now = fminf(Block::least(s.tile, known), before.least);
     const float scale = before.least < infinite ? std::exp((now - before.least) * inverse_temperature) : 0.0f;
     Block::each(s.tile, [&](int k) {
-      const float weight = now < infinite ? std::exp((now - cost(k)) * inverse_temperature) : 0.0f;
-      t.weight[k] = weight >= least_weight ? weight : 0.0f;
-      if (b.costs && k < count) b.costs[first + k] = t.cost[k];
+      const float of = now < infinite ? std::exp((now - known(k)) * inverse_temperature) : 0.0f;
+      weight[k] = of >= least_weight ? of : 0.0f;
+      if (b.costs && k < count) b.costs[first + k] = cost[k];
     });
     Block::barrier();
     if (Block::thread() < Block::lanes) {
-      GroupSums sums = before;
-      sums.least = now;
-      sums.weight = before.weight * scale + Block::sum(s.tile, w);
-      sums.squared = before.squared * scale * scale + Block::sum(s.tile, [&](int k) { return w(k) * w(k); });
-      sums.cost =
-          before.cost * scale + Block::sum(s.tile, [&](int k) { return w(k) > 0 ? w(k) * t.cost[k] : 0.0f; });
-      sums.finite += Block::sum(s.tile, [&](int k) { return cost(k) < infinite ? 1.0f : 0.0f; });
-      sums.collided += Block::sum(s.tile, [&](int k) { return k < count ? t.hit[k] : 0.0f; });
-      if (Block::thread() == 0) *t.sums = sums;
+      GroupSums all = before;
+      all.least = now;
+      all.weight = before.weight * scale + Block::sum(s.tile, w);
+      all.squared = before.squared * scale * scale + Block::sum(s.tile, [&](int k) { return w(k) * w(k); });
+      all.cost =
+          before.cost * scale + Block::sum(s.tile, [&](int k) { return w(k) > 0 ? w(k) * cost[k] : 0.0f; });
+      all.finite += Block::sum(s.tile, [&](int k) { return known(k) < infinite ? 1.0f : 0.0f; });
+      all.collided += Block::sum(s.tile, [&](int k) { return k < count ? hit[k] : 0.0f; });
+      if (Block::thread() == 0) *sums = all;
     }
     return scale;
   }
@@ -158,9 +146,9 @@ struct SampleBlock {
     Block::each(rows, [&](int r) {
       const float variance = s.guides > 0 ? b.variance[r] : s.variance[input_of<P>(r)];
       const float mean = s.guides > 0 ? b.nominal[r] : shifted(a, b.mean, r);
-      t.row[r] = {mean, sqrtf(variance), 0};
+      row[r] = {mean, sqrtf(variance), 0};
     });
-    if (Block::thread() == 0) *t.sums = {infinite, 0, 0, 0, 0, 0, 0, 0};
+    if (Block::thread() == 0) *sums = {infinite, 0, 0, 0, 0, 0, 0, 0};
     Block::barrier();
     for (int tile = group; tile < s.tiles; tile += s.groups) {
       const int first = tile * s.tile;
@@ -171,9 +159,9 @@ struct SampleBlock {
       Block::barrier();
     }
     Block::each(rows, [&](int r) {
-      b.partial[static_cast<long long>(group) * padded_rows(rows) + r] = t.row[r].moment;
+      b.partial[static_cast<long long>(group) * padded_rows(rows) + r] = row[r].moment;
     });
-    if (Block::thread() == 0) b.sums[group] = *t.sums;
+    if (Block::thread() == 0) b.sums[group] = *sums;
     Block::barrier();
   }
 };
