@@ -94,7 +94,8 @@ void run(const Strings& a) {
   if (a.size() < 4)
     throw std::runtime_error(
         "usage: slalom_gpu_compile OUT.cpp HEADER PROBLEM \"ARCHITECTURES\" [NVRTC options]");
-  const std::string &out = a[0], &header = a[1], &problem = a[2];
+  const std::string &out = a[0], &header = a[1];
+  const std::string problem = (a[2].starts_with("::") ? "" : "::") + a[2];  // not a name of slalom::gpu
   Strings options = {"-std=c++20",
                      "-default-device",
                      "-diag-suppress=1097",

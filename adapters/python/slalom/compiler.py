@@ -31,7 +31,7 @@ class CompileError(RuntimeError):
 
 
 def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | None = None, *,
-            flags: Sequence[str] = (), gpu: Sequence[int] = (), **parameters: Any) -> _slalom.CompiledProblem:
+            flags: Sequence[str] = (), gpu: int | Sequence[int] = (), **parameters: Any) -> _slalom.CompiledProblem:
     """A problem struct in C++ (docs/writing-a-problem.md) as a problem in Python, at the speed of C++.
 
     source: the text of a header with the struct, or its file; for a GPU also a built-in problem or an MlpProblem
@@ -54,7 +54,8 @@ def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | 
                                                   else Path(source).read_text()), problem)
     listed = ", ".join(f'{{"{each}", slalom::python::values_of(p.{each})}}' for each in members or values)
     end = _END.format(name=name, parameters=listed)
-    made = _slalom.CompiledProblem(str(_library(text, name, end, [*flags], [*gpu])))
+    architectures = [gpu] if isinstance(gpu, int) else [*gpu]
+    made = _slalom.CompiledProblem(str(_library(text, name, end, [*flags], architectures)))
     for key, value in {**values, **parameters}.items():
         setattr(made, key, value)
     return made
@@ -106,7 +107,7 @@ def run(command: Sequence[str]) -> str:
     """Runs a compiler and returns what it prints. Raises CompileError with its words if it fails."""
     done = subprocess.run(command, text=True, capture_output=True)
     if done.returncode:
-        raise CompileError(f"{command[0]} rejects the problem:\n{done.stderr}")
+        raise CompileError(f"{Path(command[0]).name} rejects the problem:\n{done.stderr}")
     return done.stdout
 
 

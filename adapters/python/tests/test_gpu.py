@@ -116,11 +116,21 @@ def toolkit():
         return None
 
 
+SETTINGS = """#include <slalom/slalom.hpp>
+struct Settings {  // a name that slalom::gpu has, too
+  template <class T> struct State { T x, y; };
+  static constexpr int inputs = 1;
+  template <class T> State<T> step(const State<T>& x, const slalom::Input<T, 1>& u) const { return {x.x + u[0], x.y}; }
+  template <class T> T stage_cost(const State<T>& x, const slalom::Input<T, 1>&) const { return x.x * x.x; }
+};"""
+
+
 @pytest.mark.skipif(not toolkit(), reason="no CUDA toolkit")
-def test_nvrtc_compiles_a_network_and_a_missing_device_is_named(tmp_path, monkeypatch):
+@pytest.mark.parametrize("source", [network(), SETTINGS], ids=["network", "text"])
+def test_nvrtc_compiles_a_problem_and_a_missing_device_is_named(source, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(slalom.gpu, "compile_kernels", with_nvrtc)
-    problem = slalom.compile(network(), gpu=[90])
+    problem = slalom.compile(source, gpu=90)
     code = f"""import slalom
 try:
     plan = slalom.gpu.Mppi(slalom.CompiledProblem({problem.file!r}), **{OPTIONS!r}).solve([0.2, -0.3])
