@@ -71,13 +71,12 @@ Settings settings_of(const P& problem, Options o) {
   static_assert(P::inputs <= most_inputs, "slalom: on a GPU a problem has at most 16 inputs");
   validate_options(o, Options::method, P::inputs);
   require_supported(o);
-  const InputBounds stated = slalom::detail::stated_bounds(problem);
-  std::vector<double> low, high;
+  InputBounds bounds = slalom::detail::stated_bounds(problem);
   for (std::size_t i = 0; i < P::inputs; ++i) {
-    low.push_back(std::max(stated.low[i], o.input_min[static_cast<int>(i)]));
-    high.push_back(std::min(stated.high[i], o.input_max[static_cast<int>(i)]));
+    bounds.low[i] = std::max(bounds.low[i], o.input_min[static_cast<int>(i)]);
+    bounds.high[i] = std::min(bounds.high[i], o.input_max[static_cast<int>(i)]);
   }
-  o.input_min = low, o.input_max = high;
+  o.input_min = bounds.low, o.input_max = bounds.high;
   Settings s{};
   const auto set = [](auto& values, const PerInput& from) {
     for (int i = 0; i < P::inputs; ++i)
