@@ -125,21 +125,11 @@ struct Settings {  // a name that slalom::gpu has, too
 };"""
 
 
-needs_toolkit = pytest.mark.skipif(not toolkit(), reason="no CUDA toolkit")
-
-
-@needs_toolkit
-def test_nvrtc_takes_the_struct_of_the_source(tmp_path):
-    (tmp_path / "settings.hpp").write_text(SETTINGS)
-    images = with_nvrtc(tmp_path / "settings.hpp", "Settings", [75], ["c++"], [])
-    assert "images<::Settings>" in images.read_text() and list(tmp_path.glob("*.75.ptx"))
-
-
-@needs_toolkit
-def test_nvrtc_compiles_a_network_and_a_missing_device_is_named(tmp_path, monkeypatch):
+@pytest.mark.skipif(not toolkit(), reason="no CUDA toolkit")
+def test_nvrtc_compiles_the_struct_of_the_source_and_a_missing_device_is_named(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(slalom.gpu, "compile_kernels", with_nvrtc)
-    problem = slalom.compile(network(), gpu=90)
+    problem = slalom.compile(SETTINGS, gpu=75)
     code = f"""import slalom
 problem, options = slalom.CompiledProblem({problem.file!r}), {OPTIONS!r}
 try:
