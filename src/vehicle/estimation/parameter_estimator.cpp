@@ -13,6 +13,7 @@ constexpr double lowest_friction = 0.25, highest_friction = 1.5;
 constexpr double lowest_gain = 0.85, highest_gain = 1.15;
 constexpr double max_delay = 0.2;        // s
 constexpr double friction_spread = 0.5;  // standard deviation of the friction's logarithm, in advance
+constexpr double unknown_share = 0.2;    // factor of the quantile before anything is known
 constexpr double gain_spread = 0.05;     // standard deviation, in advance
 constexpr double delay_spread = 0.06;    // s, standard deviation, in advance
 constexpr double window_time = 0.4;      // s of driving that each hypothesis predicts
@@ -185,10 +186,14 @@ void ParameterEstimator::weigh() noexcept {
   const double remembered = std::exp(-period_ / memory * turned_share);
   const double evidence_share = std::min(4 * turned_share, 1.0);
   const double share = 0.5 * evidence_share / window_, most = square(largest_error);
+  const MeasuredMotion &begin = ago(window_).motion, &end = ago(0).motion;
+  const double lateral_deviation =
+      std::sqrt(square(lateral_noise_) + begin.lateral_variance + end.lateral_variance);
+  const double yaw_deviation = std::sqrt(square(yaw_noise) + begin.yaw_variance + end.yaw_variance);
   double best = -INFINITY;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    const double aside = square(lateral_error_[i] / lateral_noise_);
-    const double turned = square(yaw_error_[i] / yaw_noise);
+    const double aside = square(lateral_error_[i] / lateral_deviation);
+    const double turned = square(yaw_error_[i] / yaw_deviation);
     // A prediction that diverges may have an error that is not a number, which counts as the largest.
     const double error = (aside < most ? aside : most) + (turned < most ? turned : most);
     evidence_[i] = remembered * evidence_[i] - share * error;
@@ -212,12 +217,13 @@ void ParameterEstimator::learn_offset(double straightness) noexcept {
 
 /// Returns the quantile of the friction's logarithm. The density is constant in the interval around a grid
 /// point.
-double ParameterEstimator::log_quantile(const std::array<double, frictions>& shares) const noexcept {
+double ParameterEstimator::log_quantile(const std::array<double, frictions>& shares,
+                                        double quantile) const noexcept {
   double below = 0;
   for (int f = 0; f < frictions; ++f) {
     const double share = shares[static_cast<std::size_t>(f)];
-    if (below + share >= friction_quantile_)
-      return std::log(friction_at(f)) + ratio() * ((friction_quantile_ - below) / share - 0.5);
+    if (below + share >= quantile)
+      return std::log(friction_at(f)) + ratio() * ((quantile - below) / share - 0.5);
     below += share;
   }
   return std::log(highest_friction);
@@ -264,7 +270,8 @@ void ParameterEstimator::summarise() noexcept {
   estimate_.steering_gain_deviation = gain.deviation;
   estimate_.delay = shifted(delay, prior_.delay, learned(delay, prior_.delay), delay_);
   estimate_.delay_deviation = delay.deviation;
-  estimate_.cautious_friction = std::min(std::exp(log_quantile(of_friction)), friction_);
+  const double quantile = friction_quantile_ * (unknown_share + (1 - unknown_share) * estimate_.confidence);
+  estimate_.cautious_friction = std::min(std::exp(log_quantile(of_friction, quantile)), friction_);
 }
 
 }  // namespace slalom::vehicle::detail

@@ -22,7 +22,8 @@ void visit_options(Options& o, Visit&& visit) {
                      "learn friction, steering gain and delay while driving on tyres that slip; else the "
                      "given values hold"});
   visit(o.friction_quantile,
-        {"friction_quantile", "", "quantile of the friction's distribution on which plans rely", 0.01, 0.99});
+        {"friction_quantile", "",
+         "quantile of the friction's distribution on which plans rely once it is known", 0.01, 0.99});
   visit(o.lateral_noise, {"lateral_noise", "m", "deviation of a predicted position, sideways", 1e-3, 1});
   visit(o.position_noise,
         {"position_noise", "m", "state observer: least standard deviation of a position", 1e-6, 1e3});
