@@ -58,7 +58,7 @@ export function nameProblem({ title }: { title: string }) {
   leaveCarOut();
   document.title = title;
   get("caption").hidden = false;
-  get("caption").textContent = title;
+  get("caption").textContent = get("caption").title = title;
   get("scene").setAttribute("aria-label", `The scene of ${title}, and the plans of the controller`);
 }
 
