@@ -1,10 +1,13 @@
 #include "navigation/base_model.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 #include <vector>
 
 #include "navigation/navigation_evaluator.hpp"
 #include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/trajectories.hpp"
 
 namespace slalom::navigation::detail {
 
@@ -24,6 +27,7 @@ class BaseModelOf final : public BaseModel {
   void solve(const NavigationMaps& maps, const maps::Pose& pose, const Velocity& velocity,
              double elapsed) noexcept override {
     controller_.evaluator().set_maps(maps);
+    origin_ = maps.origin;
     Input<double, Base::inputs> before = Base::input(velocity);
     for (int i = 0; i < Base::inputs; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -39,11 +43,29 @@ class BaseModelOf final : public BaseModel {
   }
   const Velocity& command() const noexcept override { return command_; }
   std::span<const maps::Pose> plan() const noexcept override { return plan_; }
+  const SolveResult& solution() const noexcept override { return controller_.solver().result(); }
+  Trajectories roll_out(std::span<const float> sequences) const override {
+    Trajectories all = controller_.evaluator().roll_out(sequences, controller_.solver().horizon());
+    constexpr std::size_t size = sizeof(State) / sizeof(double);
+    std::vector<double> states;
+    for (std::size_t at = 0; at < all.states.size(); at += size) {
+      State x;
+      std::memcpy(&x, &all.states[at], sizeof x);
+      const Motion<double> motion = controller_.problem().motion(x.before);
+      states.insert(states.end(),
+                    {x.x + origin_.x, x.y + origin_.y, x.yaw, motion.forward, motion.left, motion.turn});
+    }
+    all.states = std::move(states);
+    return all;
+  }
   void reset(std::uint64_t seed) noexcept override { controller_.reset(seed); }
   void set_cost(StateCost cost) noexcept override { controller_.evaluator().set_cost(std::move(cost)); }
 
  private:
+  using State = typename NavigationEvaluator<Base>::State;
+
   Controller<NavigationEvaluator<Base>> controller_;
+  maps::Point origin_;  ///< m, map frame, where the states of the last plan begin
   Velocity command_;
   std::vector<maps::Pose> plan_;
 };

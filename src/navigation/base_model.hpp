@@ -20,6 +20,9 @@ class BaseModel {
   /// The velocity of the plan's first step, and the poses that it predicts, map frame.
   virtual const Velocity& command() const noexcept = 0;
   virtual std::span<const maps::Pose> plan() const noexcept = 0;
+  virtual const SolveResult& solution() const noexcept = 0;
+  /// As Navigator::roll_out.
+  virtual Trajectories roll_out(std::span<const float> sequences) const = 0;
   virtual void reset(std::uint64_t seed) noexcept = 0;
   virtual void set_cost(StateCost cost) noexcept = 0;
 };

@@ -7,6 +7,7 @@
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/navigation/navigation_problem.hpp"
 #include "slalom/navigation/state_cost.hpp"
+#include "slalom/solvers/trajectories.hpp"
 
 namespace slalom::navigation::detail {
 
@@ -46,6 +47,10 @@ class NavigationEvaluator final : public BatchEvaluator {
   Cost<double> predict(const State& state, const Input<double, input_count>* u, int steps,
                        State* x) const noexcept {
     return slalom::predict(problem(), state, u, steps, x);
+  }
+
+  Trajectories roll_out(std::span<const float> sequences, int steps) const {
+    return slalom::roll_out(evaluator_, start_, sequences, steps);
   }
 
  private:

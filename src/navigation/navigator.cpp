@@ -11,6 +11,7 @@
 #include "navigation/way.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/pose_limits.hpp"
+#include "slalom/solvers/trajectories.hpp"
 
 namespace slalom::navigation {
 
@@ -84,6 +85,7 @@ class Navigator::Implementation {
   Velocity send(const Velocity& decision) noexcept { return command_ = delay_.send(decision); }
   double delay() const noexcept { return delay_.longest(); }
   const BaseOptions& base() const noexcept { return options_.base; }
+  const detail::BaseModel& model() const noexcept { return *model_; }
 
  private:
   bool fits(const Costmap& costmap) const noexcept;
@@ -270,6 +272,14 @@ NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& veloc
 
 void Navigator::set_cost(StateCost cost) noexcept {
   implementation_->set_cost(std::move(cost));
+}
+
+const SolveResult& Navigator::solution() const noexcept {
+  return implementation_->model().solution();
+}
+
+Trajectories Navigator::roll_out(std::span<const float> sequences) const {
+  return implementation_->model().roll_out(sequences);
 }
 
 void Navigator::reset(std::uint64_t seed) noexcept {

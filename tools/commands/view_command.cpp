@@ -6,6 +6,7 @@
 #include "slalom/view/serve.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/live_view/problems.hpp"
+#include "tools/live_view/rooms.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
@@ -22,7 +23,7 @@ struct ViewArguments {
   std::uint64_t seed = 0;
   std::string host = "127.0.0.1";
   std::uint16_t port = 8400;
-  std::string token, against, evaluation, problem;
+  std::string token, against, evaluation, problem, room;
   bool record_all = false, record_times = false;
   bool introduction = false;
 };
@@ -78,11 +79,15 @@ int view(const ViewArguments& arguments) {
   return 0;
 }
 
-/// Serves the page of a problem that is not a car.
+/// Serves the page of a problem that is not a car, or of a navigator in a room.
 int view_problem(const ViewArguments& arguments) {
   const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
-  view::View view(problem_subject(arguments.problem, arguments.method, arguments.seed),
-                  {.host = options.host, .port = options.port, .token = options.token});
+  const auto& [problem, room] = std::tie(arguments.problem, arguments.room);
+  view::View view(
+      room.empty()
+          ? problem_subject(problem, arguments.method, arguments.seed)
+          : for_option("--room", [&] { return room_subject(room, arguments.method, arguments.seed); }),
+      {.host = options.host, .port = options.port, .token = options.token});
   const InterruptFlag interrupt;
   print_address(view.address());
   while (!interrupt.raised()) view.turn(std::chrono::milliseconds(50));
@@ -102,6 +107,9 @@ void declare_view(Subcommand& command) {
   command.option(
       "--problem", arguments->problem,
       "Show a problem that is not a car: pendulum, cart_pole, differential_drive, quadrotor or arm");
+  command.option(
+      "--room", arguments->room,
+      "Show the navigator of a mobile robot in a scenario of slalom navigate, such as crowd-crossing");
   command.option("--eval", arguments->evaluation,
                  "Open an evaluation (output folder of slalom eval): its laps and the collisions in them");
   command.flag("--record-all", arguments->record_all,
@@ -114,14 +122,16 @@ void declare_view(Subcommand& command) {
   command.option("--token", arguments->token,
                  "Token that the page must present; random if --host is not a loopback address");
   command.examples(
-      {"view", "view --course fox --against mppi --obstacles 5", "view --problem quadrotor"},
+      {"view", "view --course fox --against mppi --obstacles 5", "view --problem quadrotor",
+       "view --room crowd-crossing"},
       "Without options of the scenario, the page opens with an introduction: svg_mppi and mppi side by "
       "side on the same seed, in slow motion before a parked car.");
   command.action([arguments, &command] {
-    if (!arguments->problem.empty()) {
-      if (!command.given_only({"--problem", "--method", "--seed", "--host", "--port", "--token"}))
-        throw CommandLineError("--problem",
-                               "has only --method, --seed, --host, --port and --token beside it");
+    for (const auto& [name, value] :
+         {std::pair("--problem", arguments->problem), {"--room", arguments->room}}) {
+      if (value.empty()) continue;
+      if (!command.given_only({name, "--method", "--seed", "--host", "--port", "--token"}))
+        throw CommandLineError(name, "has only --method, --seed, --host, --port and --token beside it");
       return view_problem(*arguments);
     }
     if (command.given_only({"--host", "--port", "--token", "--record-all", "--record-times", "--threads"}))

@@ -22,18 +22,6 @@ constexpr Colour ground{0.925, 0.935, 0.95};  // beyond the walls
 constexpr Colour road{1, 1, 1};
 constexpr Colour wall{0.20, 0.24, 0.32};
 
-/// A rectangle in the map frame, m.
-struct Bounds {
-  double left = 1e300, right = -1e300, low = 1e300, top = -1e300;
-
-  void include(const maps::Point& point, double margin = 0) {
-    left = std::min(left, point.x - margin);
-    right = std::max(right, point.x + margin);
-    low = std::min(low, point.y - margin);
-    top = std::max(top, point.y + margin);
-  }
-};
-
 /// The part of a map within `margin` around the points; all of it if there are none or if they are elsewhere.
 Bounds bounds_of(const maps::OccupancyGrid& map, const std::vector<maps::Point>& points, double margin) {
   const double along = map.width * map.resolution, across = map.height * map.resolution;

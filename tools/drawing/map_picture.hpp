@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,20 @@
 #include "tools/drawing/drawing.hpp"
 
 namespace slalom::tools {
+
+/// A rectangle of the map frame that grows, m.
+struct Bounds {
+  double left = 1e300, right = -1e300, low = 1e300, top = -1e300;
+
+  /// Grows to include a point with some room beside it and above and below it.
+  void include(const maps::Point& point, double across, double up) {
+    left = std::min(left, point.x - across);
+    right = std::max(right, point.x + across);
+    low = std::min(low, point.y - up);
+    top = std::max(top, point.y + up);
+  }
+  void include(const maps::Point& point, double margin = 0) { include(point, margin, margin); }
+};
 
 /// The place of a picture in the map frame: `scale` pixels per m, `left` and `top` in m.
 struct MapView {

@@ -140,32 +140,20 @@ class LanePainter {
   double left_;
 };
 
-/// A rectangle of the map frame that grows.
-struct Extent {
-  double left = 1e300, right = -1e300, low = 1e300, top = -1e300;
-
-  void include(const maps::Point& point, double across, double up) {
-    left = std::min(left, point.x - across);
-    right = std::max(right, point.x + across);
-    low = std::min(low, point.y - up);
-    top = std::max(top, point.y + up);
-  }
-};
-
 /// The pictures of a span.
 class Film {
  public:
   Film(const RecordedDrive& drive, std::size_t first, std::size_t last)
       : drive_(drive), lanes_(drive.at(first).size()), lane_width_(width / static_cast<int>(lanes_.size())) {
-    Extent way;
+    Bounds way;
     for (std::size_t i = first; i <= last; ++i)
       for (const RecordedStep& step : drive.at(i)) {
-        way.include({step.car.x, step.car.y}, 1, 1);
-        if (!step.plan.empty()) way.include(step.plan.back(), 0.6, 0.6);
+        way.include({step.car.x, step.car.y}, 1);
+        if (!step.plan.empty()) way.include(step.plan.back(), 0.6);
       }
     const double fitting = std::min(lane_width_ / (way.right - way.left), scene / (way.top - way.low));
     double scale = std::min(fitting, nearest);
-    Extent seen;
+    Bounds seen;
     if (fitting >= following) {
       middle_ = {0.5 * (way.left + way.right), 0.5 * (way.low + way.top)};
       seen.include(*middle_, 0.5 * lane_width_ / scale, 0.5 * scene / scale);
@@ -244,11 +232,16 @@ class Film {
     for (int i = 0; i < 60; ++i) pen.rectangle(at + i, base - 9, 1.5, 7, cost_colour(i / 59.0, 1));
     at += 66;
     name("samples, low to high cost");
+    const auto any = [&](auto has) { return std::any_of(steps_.begin(), steps_.end(), has); };
+    const auto any_body = [&](auto is_one) {
+      return any([&](const auto& step) { return std::ranges::any_of(step.bodies, is_one); });
+    };
     entry("samples that collide", hit);
-    if (std::any_of(steps_.begin(), steps_.end(), [](const auto& step) { return !step.guides.empty(); }))
-      entry("guides", guide_colour);
+    if (any([](const auto& step) { return !step.guides.empty(); })) entry("guides", guide_colour);
     entry("driven", driven_colour);
-    entry("obstacle", obstacle_fill);
+    if (any_body([](const auto& body) { return body.kind > 0 && body.kind < 4; }))
+      entry("obstacle", obstacle_fill);
+    if (any_body([](const auto& body) { return body.kind == 4; })) entry("opponent", opponent_fill);
   }
 
   const RecordedDrive& drive_;

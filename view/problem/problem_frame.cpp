@@ -4,11 +4,13 @@
 #include <cmath>
 #include <span>
 
+#include "view/protocol/solve_blocks.hpp"
+
 namespace slalom::view {
 namespace {
 
 constexpr std::size_t most_candidates = 160, least_candidates = 20;
-constexpr std::size_t most_step_costs = 15000;  // values in a frame
+constexpr std::size_t most_step_costs = 100000;  // values in a frame
 
 using Poses = std::span<const maps::Pose>;
 
@@ -85,7 +87,12 @@ void put_scene(FrameWriter& to, const SubjectFacts& facts, const std::vector<Sha
   for (const Shape& s : shapes) {
     ++id;
     if (s.corners.empty())
-      to.put_body(id, s.is_disc ? 3 : 2, false, s.pose, s.length, s.width);
+      to.put_body(id,
+                  s.kind == ShapeKind::mover  ? 5
+                  : s.kind == ShapeKind::goal ? 6
+                  : s.is_disc                 ? 3
+                                              : 2,
+                  false, s.pose, s.length, s.width);
     else
       polygons.push_back(s.corners);
   }
@@ -156,8 +163,8 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
   for (std::size_t i = 0; i < points * terms; ++i) sums[i % terms] += rolled.costs[i];
   double cost = 0;
   for (const double sum : sums) cost += sum;
-  to.put(
-      {static_cast<double>(step.tick), step.time, now.x, now.y, now.yaw, static_cast<double>(solve.status)});
+  to.put({static_cast<double>(step.tick), step.time, now.x, now.y, now.yaw});
+  to.put({static_cast<double>(subject.status(solve))});
   to.put({solve.minimum_cost, solve.expected_cost, solve.effective_sample_size});
   to.put({solve.samples ? solve.samples->samples() : 0.0, solve.collided_share, solve.temperature});
   to.put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
@@ -169,11 +176,12 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
   to.end();
 
   const std::vector<Shape> shapes = subject.shapes();
-  const std::vector<Line> figure = subject.figure(step.state);
+  const std::vector<Line> figure = subject.figure(step.state), lines = subject.lines();
   frame.bounds = {now.x, now.y, now.x, now.y};
   for (const maps::Pose& p : poses.first(2 * points)) frame.bounds.include(p.x, p.y);
-  for (const Line& line : figure)
-    for (const maps::Point& p : line) frame.bounds.include(p.x, p.y);
+  for (const auto* all_lines : {&figure, &lines})
+    for (const Line& line : *all_lines)
+      for (const maps::Point& p : line) frame.bounds.include(p.x, p.y);
   for (const Shape& s : shapes) {
     const double reach = 0.5 * std::max(s.length, s.width);
     if (s.corners.empty()) {
@@ -182,19 +190,24 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
     }
     for (const maps::Point& p : s.corners) frame.bounds.include(p.x, p.y);
   }
+  if (const auto& map = facts.map)
+    for (const double x : {0.0, map->width * map->resolution})
+      for (const double y : {0.0, map->height * map->resolution}) {
+        const maps::Point corner = maps::transform(map->origin, {x, y});
+        frame.bounds.include(corner.x, corner.y);
+      }
   const Bounds& b = frame.bounds;
   const double reach = 20 * std::max({b.x1 - b.x0, b.y1 - b.y0, 1e-3});
 
   put_scene(to, facts, shapes, now, frame.collides);
   put_lines(to, Block::figure, figure);
+  if (!lines.empty()) put_lines(to, Block::lines, lines);
   if (all.candidates > 0) put_candidates(to, all, solve, rolled, terms, points, poses, reach);
-  to.begin(Block::step_costs);
-  to.put(static_cast<std::uint16_t>(terms));
-  to.put(static_cast<std::uint16_t>(points));
-  for (std::size_t s = 0; s < 2 + all.candidates; ++s)
-    if (s != 1)
-      for (std::size_t i = 0; i < points * terms; ++i) to.put_f32(rolled.costs[s * points * terms + i]);
-  to.end();
+  std::vector<double> costs = rolled.costs;  // those of plan and candidates
+  const auto block = static_cast<std::ptrdiff_t>(points * terms);
+  costs.erase(costs.begin() + block, costs.begin() + 2 * block);
+  costs.resize((1 + all.candidates) * points * terms);
+  put_step_costs(to, costs, terms, points);
   if (all.guides > 0) {
     const auto guides = static_cast<std::size_t>(std::max(1, solve.guides.sequences));
     to.begin(Block::guides);
@@ -216,6 +229,8 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
   for (const maps::Pose& p : poses.first(points)) to.put_f32({p.x - now.x, p.y - now.y, p.yaw, 0, 0, 0});
   to.end();
   to.put_covariance(solve.variances, inputs);
+  put_inputs(to, solve, solve.inputs, inputs);
+  put_effective_samples(to, solve);
   frame.message = to.take();
   return frame;
 }

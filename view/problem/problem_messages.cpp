@@ -37,7 +37,7 @@ Json ProblemSession::hello() const {
   return {{"type", "hello"},
           {"protocol", 1},
           {"scalars", problem_scalars(facts)},
-          {"statuses", names_json(Status::invalid_time)},
+          {"statuses", facts.statuses.empty() ? names_json(Status::invalid_time) : Json(facts.statuses)},
           {"symptoms", symptoms_json()},
           {"courses", Json::array()},
           {"methods", methods_},

@@ -51,6 +51,7 @@ ProblemSession::ProblemSession(std::unique_ptr<Subject> subject, Server& server)
 void ProblemSession::restart() {
   Polymorphic<Subject> subject(run_->subject->clone());
   if (const SolverOptions* options = subject->options()) subject->set_options(SolverOptions(*options));
+  subject->restart();
   std::vector<double> start = subject->start();
   const double period = period_of(*subject);
   run_ = Run{std::move(subject), std::move(start), period};
@@ -274,14 +275,15 @@ void ProblemSession::set(const std::string& key, const std::string& value) {
   }
 }
 
-/// Lets another method solve, with the horizon, samples, bounds and seed of the present one.
+/// Lets another method solve, by default with horizon, samples, bounds and seed of the present one.
 void ProblemSession::set_method(const std::string& method) {
   const SolverOptions* now = present().subject->options();
   if (!now) throw std::invalid_argument("method: the controller has a solver of its own");
-  SolverOptions loaded = solver_options(method);
-  take_common(loaded, loaded_.at(now->method()));
+  const std::optional<SolverOptions> given = present().subject->options_of(method);
+  SolverOptions loaded = given ? *given : solver_options(method);
+  if (!given) take_common(loaded, loaded_.at(now->method()));
   SolverOptions changed = loaded_.emplace(method, loaded).first->second;
-  take_common(changed, *now);
+  if (!given) take_common(changed, *now);
   perform([changed](Run& run) { run.subject->set_options(changed); });
 }
 

@@ -6,6 +6,7 @@
 
 #include "slalom/core/gravity.hpp"
 #include "view/protocol/frame_writer.hpp"
+#include "view/protocol/solve_blocks.hpp"
 
 namespace slalom::view {
 namespace {
@@ -45,7 +46,8 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   const sim::LapTimer& laps = *world.laps(0);
   const StageTimes times = solve ? solve->times : StageTimes{};
   cost_ = {};
-  if (solve && !out.inputs.empty()) predict(tick.planner, out.inputs);
+  step_costs_.clear();
+  if (solve && !out.inputs.empty()) add_step_costs(predict(tick.planner, out.inputs));
   FrameWriter to;
   to.begin(Block::scalars);
   const double none = std::numeric_limits<double>::quiet_NaN(), step = tick.step;
@@ -89,7 +91,11 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   put_states(to, tick.planner, solve->nominal);
   to.end();
   put_plan(to, tick);
-  to.put_covariance(solve->variances, static_cast<std::size_t>(tick.planner.solver().inputs()));
+  const auto inputs = static_cast<std::size_t>(tick.planner.solver().inputs());
+  to.put_covariance(solve->variances, inputs);
+  put_inputs(to, *solve, out.inputs, inputs);
+  put_effective_samples(to, *solve);
+  if (!out.inputs.empty()) put_step_costs(to, step_costs_, 3, states_of(tick.planner, out.inputs));
   return to.take();
 }
 
@@ -99,6 +105,18 @@ FrameEncoder::States FrameEncoder::predict(const vehicle::Planner& planner, std:
   const States states(states_.data(), count);
   cost_ = planner.predict(inputs, states);
   return states;
+}
+
+/// Keeps the cost of each state by term: distance, yaw and speed, collision.
+void FrameEncoder::add_step_costs(States states) {
+  vehicle::PredictedCost before;
+  for (const PredictedState& state : states) {
+    const vehicle::PredictedCost& sum = state.cost;
+    const double distance = sum.distance - before.distance;
+    step_costs_.insert(step_costs_.end(),
+                       {distance, sum.state - before.state - distance, sum.collision - before.collision});
+    before = sum;
+  }
 }
 
 void FrameEncoder::put_states(FrameWriter& to, const vehicle::Planner& planner,
@@ -156,17 +174,25 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   to.begin(Block::candidates);
   to.put(static_cast<std::uint16_t>(count));
   to.put(static_cast<std::uint16_t>(steps + 1));
+  std::string collided;  // 1 + the first state that collides, or 1 if that is not known
   for (int i = 0; i < count; ++i) {
     const int k = chosen(i);
     for (int row = 0; row < steps * inputs; ++row)
       sequence_[static_cast<std::size_t>(row)] = batch.at(row / inputs, row % inputs, k);
-    put_states(points, tick.planner, sequence_);
+    const States states = predict(tick.planner, sequence_);
+    for (const PredictedState& state : states) points.put_point({state.pose.x, state.pose.y});
+    add_step_costs(states);
+    const auto first =
+        std::find_if(states.begin(), states.end(), [](const auto& each) { return each.cost.collided; });
+    const auto place =
+        first == states.end() ? 1 : std::min<std::ptrdiff_t>(1 + (first - states.begin()), 255);
     const auto at = static_cast<std::size_t>(k);
     to.put_f32({cost_.distance, cost_.state - cost_.distance, cost_.collision});
     to.put(solve.costs[at]);
     to.put(at < solve.weights.size() ? solve.weights[at] : 0.0f);
+    collided += static_cast<char>(solve.collided[at] ? place : 0);
   }
-  for (int i = 0; i < count; ++i) to.put(solve.collided[static_cast<std::size_t>(chosen(i))]);
+  to.append(collided);
   to.pad();
   to.append(points.take_blocks());
   to.end();

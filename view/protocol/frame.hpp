@@ -36,10 +36,12 @@ class FrameEncoder {
   void put_candidates(FrameWriter& to, const evaluation::ControlStep& tick);
   void put_guides(FrameWriter& to, const evaluation::ControlStep& tick);
   void put_plan(FrameWriter& to, const evaluation::ControlStep& tick);
+  void add_step_costs(States states);
   static void put_others(FrameWriter& to, const evaluation::ControlStep& tick);
 
   std::vector<vehicle::PredictedState> states_;
   std::vector<float> sequence_;
+  std::vector<double> step_costs_;  ///< those of plan and candidates, [trajectory][point][term]
   vehicle::PredictedCost cost_;
 };
 

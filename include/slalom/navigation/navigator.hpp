@@ -10,8 +10,13 @@
 #include "slalom/navigation/costmap.hpp"
 #include "slalom/navigation/state_cost.hpp"
 #include "slalom/solvers/mppi_options.hpp"
+#include "slalom/solvers/solver.hpp"
 #include "slalom/solvers/solver_options.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
+
+namespace slalom {
+struct Trajectories;
+}
 
 namespace slalom::navigation {
 
@@ -160,6 +165,14 @@ class Navigator {
   /// Adds a term of your own to the cost of plans; an empty function removes it. The search for detours and
   /// the final check do not use it.
   void set_cost(StateCost cost) noexcept;
+
+  /// The solver's result of the last plan, to show it. Valid until the next update.
+  const SolveResult& solution() const noexcept;
+  /// The trajectories of control sequences [sequence][step][input] from the start of the last plan and over
+  /// its costmap, which must not have changed. Each state is x, y, yaw (m, rad, map frame) and the velocity
+  /// forward, left and turn (m/s, rad/s) with which it was reached. Allocates. The cost terms are those of
+  /// NavigationProblem.
+  Trajectories roll_out(std::span<const float> sequences) const;
 
   /// Forgets the path and all that was learned on it, and restarts the random numbers from `seed`.
   void reset(std::uint64_t seed) noexcept;

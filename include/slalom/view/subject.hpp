@@ -18,16 +18,24 @@ namespace slalom::view {
 
 using Line = std::vector<maps::Point>;  ///< points one after the other, m
 
+/// The meaning of a shape.
+enum class ShapeKind {
+  obstacle,  ///< stands in the way
+  mover,     ///< moves by itself, so it cannot be dragged
+  goal,      ///< a place to reach
+};
+
 /// Something that stands in the scene: a disc, a box or a polygon.
 struct Shape {
-  maps::Pose pose{};             ///< middle of a disc or a box
-  double length = 0, width = 0;  ///< m; the length of a disc is its diameter
-  bool is_disc = false;          ///< whether it is a disc, not a box
-  Line corners{};                ///< corners of a polygon; empty for a disc or a box
+  maps::Pose pose{};                     ///< middle of a disc or a box
+  double length = 0, width = 0;          ///< m; the length of a disc is its diameter
+  bool is_disc = false;                  ///< whether it is a disc, not a box
+  Line corners{};                        ///< corners of a polygon; empty for a disc or a box
+  ShapeKind kind = ShapeKind::obstacle;  ///< movers and goals are discs
 };
 /// Returns a disc.
-inline Shape disc(double x, double y, double radius) {
-  return {.pose = {x, y, 0}, .length = 2 * radius, .width = 2 * radius, .is_disc = true};
+inline Shape disc(double x, double y, double radius, ShapeKind kind = ShapeKind::obstacle) {
+  return {.pose = {x, y, 0}, .length = 2 * radius, .width = 2 * radius, .is_disc = true, .kind = kind};
 }
 /// Returns a box around its middle.
 inline Shape box(const maps::Pose& middle, double length, double width) {
@@ -45,6 +53,7 @@ struct SubjectFacts {
   double length = 0, width = 0;                          ///< m, of the body; 0: it is a dot
   bool can_place = false, can_move = false;              ///< whether body and shapes can be dragged
   std::optional<maps::OccupancyGrid> map{};              ///< drawn under the scene
+  std::vector<std::string> statuses{};  ///< names of the values of Subject::status, if it has its own
 };
 
 /// Names those that have no names, by their kind and number. `what`: where the names come from. Throws
@@ -71,10 +80,18 @@ class Subject {
   /// Replaces the method or its options. Throws std::invalid_argument, and nothing changes, if one is not
   /// valid.
   virtual void set_options(const SolverOptions& options) = 0;
+  /// The options with which another method begins. If there are none, it takes its defaults, with horizon,
+  /// samples, bounds and seed of the present method.
+  virtual std::optional<SolverOptions> options_of(const std::string& /*method*/) const { return {}; }
   /// The problem's own parameters.
   virtual std::vector<OptionEntry> parameters() const { return {}; }
   /// Sets a parameter; false if there is none of that name. Throws std::invalid_argument out of its range.
   virtual bool set_parameter(const std::string& /*name*/, const std::string& /*text*/) { return false; }
+
+  /// Begins anew, with the present options, parameters and shapes.
+  virtual void restart() {}
+  /// How the last solve ended.
+  virtual int status(const SolveResult& solve) const { return static_cast<int>(solve.status); }
 
   /// Solves from a state and returns the solver's result.
   virtual const SolveResult& solve(std::span<const double> state, const SolveRequest& request) = 0;
@@ -86,7 +103,8 @@ class Subject {
 
   /// Returns where the body is in each of some states, [state][value].
   virtual std::vector<maps::Pose> poses(std::span<const double> states) = 0;
-  virtual std::vector<Shape> shapes() = 0;  ///< discs, boxes and polygons of the scene
+  virtual std::vector<Shape> shapes() = 0;          ///< discs, boxes and polygons of the scene
+  virtual std::vector<Line> lines() { return {}; }  ///< lines to follow, such as a path
   /// Returns the lines that show the body in a state.
   virtual std::vector<Line> figure(std::span<const double> state) = 0;
   /// Puts the body of a state elsewhere, or a shape.

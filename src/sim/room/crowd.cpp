@@ -67,9 +67,14 @@ Point from_wall(const Point& apart) {
 
 }  // namespace
 
-Crowd::Crowd(const Room& room, std::vector<Walker> walkers)
-    : length_(room.length), width_(room.width), solid_(room.walls), walkers_(std::move(walkers)) {
+void Crowd::set_obstacles(const Room& room) {
+  solid_ = room.walls;
   solid_.insert(solid_.end(), room.obstacles.begin(), room.obstacles.end());
+}
+
+Crowd::Crowd(const Room& room, std::vector<Walker> walkers)
+    : length_(room.length), width_(room.width), walkers_(std::move(walkers)) {
+  set_obstacles(room);
   for (std::size_t i = 0; i < walkers_.size(); ++i) {
     const Walker& each = walkers_[i];
     const std::string name = "walker " + std::to_string(i);

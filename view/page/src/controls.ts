@@ -24,6 +24,11 @@ export class Controls {
     const term = get<HTMLSelectElement>("term");
     term.onchange = () => {
       scene.term = term.value;
+      const isDense = term.value === "density";
+      for (const id of ["ramp", "scale-range"]) get(id).hidden = isDense;
+      get("scale-text").textContent = isDense
+        ? "opaque where they are many"
+        : "low to high cost; line width = weight";
       redraw();
     };
   }
@@ -33,10 +38,10 @@ export class Controls {
     const bodies = frame.bodies.map((body) => body.kind);
     const data: Partial<Record<Layer, unknown>> = {
       ...frame,
-      path: this.scene.hasPath,
+      path: this.scene.hasPath || frame.lines,
       driven: true,
       modes: !page.hello?.problem,
-      obstacles: frame.polygons?.length || bodies.some((kind) => kind > 0 && kind < 4),
+      obstacles: frame.polygons?.length || bodies.some((kind) => kind > 0 && kind !== 4),
       opponents: bodies.includes(4) || frame.others,
       spread: frame.plan?.some((p) => p.spread > 0),
     };

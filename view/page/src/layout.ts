@@ -40,7 +40,7 @@ export function fillTerms() {
     const text = term[0].toUpperCase() + term.slice(1) + " cost";
     return new Option(text, term, term === "total", term === "total");
   });
-  get("term").replaceChildren(...options);
+  get("term").replaceChildren(...options, new Option("Density", "density"));
 }
 
 /** Hides what only a car on a course has. */
@@ -58,7 +58,7 @@ export function nameProblem({ title }: { title: string }) {
   leaveCarOut();
   document.title = title;
   get("caption").hidden = false;
-  get("caption").textContent = title;
+  get("caption").textContent = get("caption").title = title;
   get("scene").setAttribute("aria-label", `The scene of ${title}, and the plans of the controller`);
 }
 

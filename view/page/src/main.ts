@@ -80,7 +80,8 @@ const handlers: Handlers = {
 page.link = isReplay ? new Player(handlers) : new Connection(handlers);
 const seek = (tick: number) => send({ do: "seek", tick });
 
-const charts = new Charts(get("charts"), { past, hovered: hover, chosen: (time) => seek(tickOf(time)) });
+const chosen = (time: number) => seek(tickOf(time));
+const charts = new Charts(get("charts"), { past, ghostPast, hovered: hover, chosen });
 const options = new OptionsPane();
 const inspect = new InspectPane();
 const fork = new ForkBox();
@@ -201,7 +202,7 @@ function showFrame(at?: number) {
   past.set(position, frame.scalars);
   if (frame.ghostFrame) ghostPast.set(position, frame.ghostFrame.scalars);
   showBestLap();
-  get("split").hidden = !frame.ghostFrame;
+  get("split").hidden = get("faint").hidden = !frame.ghostFrame;
   lanes.show(frame, position * period());
   introduction.show(frame);
   controls.showData(frame);
@@ -281,6 +282,8 @@ click("split", () => {
 });
 get("log").onchange = () => charts.setLog(get<HTMLInputElement>("log").checked);
 click("zoom-out", () => charts.zoom());
+click("earlier", () => charts.pan(-0.5));
+click("later", () => charts.pan(0.5));
 click("csv", () => download(`slalom-${page.state?.course}-${page.position}.csv`, charts.csv(), "text/csv"));
 new Popover(get("scenario-open"), get("scenario"));
 const showPane = attachPanes(document.querySelector("nav")!, (name) => {

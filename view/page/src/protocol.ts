@@ -73,11 +73,26 @@ const blocks = {
     r.align();
     return { count, points, width, terms, collided, xy: r.points(count * points) };
   },
-  /** The costs of the plan and of each candidate, [trajectory][point][term]. */
+  /** The costs of the plan and of each candidate, [trajectory][point][term], to a byte's precision. */
   stepCosts: (r: Reader) => {
     const [terms, points] = [r.u16(), r.u16()];
-    return { terms, points, costs: r.f32s((r.end - r.at) / 4) };
+    const curves = Math.floor((r.end - r.at) / (8 + points));
+    const costs = new Float32Array(curves * points);
+    for (let i = 0; i < curves; ++i) {
+      const [low, high] = r.f32s(2);
+      for (let p = 0; p < points; ++p)
+        costs[(Math.floor(i / terms) * points + p) * terms + (i % terms)] =
+          low + ((high - low) * r.u8()) / 255;
+    }
+    return { terms, points, costs };
   },
+  /** Inputs of each step, [sequence][step][input]: the plan, the nominal sequence, its guide at first. */
+  inputs: (r: Reader) => {
+    const [steps, inputs] = [r.u16(), r.u16()];
+    return { steps, inputs, values: r.f32s((r.end - r.at) / 4) };
+  },
+  effectiveSamples: (r: Reader) => r.f32s((r.end - r.at) / 4), // temperature, effective sample size, ...
+  lines: (r: Reader) => r.lines(), // to follow
   figure: (r: Reader) => r.lines(), // the body of a problem that is not a car
   polygons: (r: Reader) => r.lines(),
   /** The trajectories are [iteration][guide]; the last iteration is where the guides ended. */
@@ -97,7 +112,7 @@ const blocks = {
       return { x: x0 + x, y: y0 + y, yaw, speed, steer, spread };
     });
   },
-  /** Kinds: 0 driven, 1 parked car, 2 box, 3 disc, 4 opponent; `touched`: it has collided. */
+  /** Kinds: 0 driven, 1 parked car, 2 box, 3 disc, 4 opponent, 5 mover, 6 goal; `touched`: it has collided. */
   bodies: (r: Reader) =>
     Array.from({ length: r.u32() }, () => {
       const [id, kind, touched] = [r.u16(), r.u8(), r.u8() !== 0];
@@ -152,7 +167,10 @@ const kinds: Record<number, keyof typeof blocks> = {
     12: "others",
     13: "figure",
     14: "polygons",
-    15: "stepCosts",
+    16: "stepCosts",
+    17: "inputs",
+    18: "effectiveSamples",
+    19: "lines",
     20: "grid",
     21: "path",
     22: "past",

@@ -11,6 +11,7 @@ import names from "./suites/names.mjs";
 import pages from "./suites/pages.mjs";
 import panes from "./suites/panes.mjs";
 import problem from "./suites/problem.mjs";
+import room from "./suites/room.mjs";
 import save from "./suites/save.mjs";
 
 const suites = {
@@ -19,6 +20,7 @@ const suites = {
   compare,
   panes,
   problem,
+  room,
   save,
   evaluation,
   names,

@@ -1,6 +1,6 @@
 // The parts that all tests of the page share: the program as a server, Chromium, and waiting for conditions.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -126,6 +126,13 @@ export class Harness {
     await this.send({ do: "step", ticks }, page);
     const isThere = (t) => slalom.scalar("tick") === t && slalom.state.newest === t;
     await this.until(isThere, tick + ticks, page);
+  }
+
+  /** The rows and cells of what "Save as CSV" saves. */
+  async csv(page = this.page) {
+    const [file] = await Promise.all([page.waitForEvent("download"), page.click("#csv")]);
+    const text = readFileSync(await file.path(), "utf8").trim();
+    return text.split("\n").map((row) => row.split(","));
   }
 
   /** Waits until the page has drawn what it has received. */

@@ -43,6 +43,9 @@ class Crowd {
   /// and `velocity` (m/s, map frame) that of its middle.
   void step(double duration, const Box& robot, const maps::Point& velocity) noexcept;
 
+  /// Replaces the walls and obstacles that push by those of another room.
+  void set_obstacles(const Room& room);
+
   /// The bodies, in the order of the walkers.
   std::span<const Disc> bodies() const noexcept { return bodies_; }
   /// Their velocities, m/s.

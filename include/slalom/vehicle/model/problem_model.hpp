@@ -74,6 +74,7 @@ class ProblemModelBase : public Interface {
       total.collision += collision;
       total.collided |= cost.collided && was_free;
       was_free |= !cost.collided;
+      states[k].cost = total;
       if (!last) s = slalom::detail::step<P, double>(problem, s, seen, u, step);
     }
     total.collided |= !was_free;

@@ -12,14 +12,6 @@
 
 namespace slalom::vehicle {
 
-/// The cost of a predicted sequence, by term.
-struct PredictedCost {
-  double state = 0;       ///< cost of distance, yaw and speed, without collisions
-  double distance = 0;    ///< the part of `state` for the distance to the path
-  double collision = 0;   ///< cost of collisions and nearness to obstacles
-  bool collided = false;  ///< a state after the first free one collides, or none is free
-};
-
 /// A vehicle problem of any type, as the planner uses it. A copy continues bit for bit like the original.
 class VehicleModel {
  public:

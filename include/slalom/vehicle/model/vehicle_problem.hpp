@@ -21,14 +21,23 @@ struct VehicleStart {
   double slip = 0;      ///< rad, from the body's axis to the direction of travel of the centre of gravity
 };
 
+/// The cost of a predicted sequence, by term.
+struct PredictedCost {
+  double state = 0;       ///< cost of distance, yaw and speed, without collisions
+  double distance = 0;    ///< the part of `state` for the distance to the path
+  double collision = 0;   ///< cost of collisions and nearness to obstacles
+  bool collided = false;  ///< a state after the first free one collides, or none is free
+};
+
 /// A predicted state.
 struct PredictedState {
-  maps::Pose pose;      ///< pose of the rear axle, map frame
-  double speed = 0;     ///< m/s
-  double steer = 0;     ///< rad, of the wheels
-  maps::Pose local;     ///< pose of the body in the frame of the robot at the time of the scan
-  double yaw_rate = 0;  ///< rad/s; 0 if the model has none
-  double slip = 0;      ///< rad; 0 if the model has none
+  maps::Pose pose;       ///< pose of the rear axle, map frame
+  double speed = 0;      ///< m/s
+  double steer = 0;      ///< rad, of the wheels
+  maps::Pose local;      ///< pose of the body in the frame of the robot at the time of the scan
+  double yaw_rate = 0;   ///< rad/s; 0 if the model has none
+  double slip = 0;       ///< rad; 0 if the model has none
+  PredictedCost cost{};  ///< sum over the states up to this one
 };
 
 /// The maps that rollouts look up; they must outlive their use.

@@ -16,10 +16,12 @@ interface Plotted {
   strip: Strip;
   chart: Chart;
   columns: (number | null)[][];
+  ghost: (number | null)[][]; // the same of the second controller
 }
 
 interface Setting {
   past: Past;
+  ghostPast: Past;
   /** Called with the time under the pointer (s), if it is over a chart. */
   hovered(time: number | undefined): void;
   /** Called with the time at which a chart was clicked. */
@@ -54,7 +56,7 @@ export class Charts {
     this.plotted = stripsOf(hello).map((strip) => {
       const chart = new Chart(root, strip.title, strip.lines);
       chart.box.hidden = strip.lines.some(isEstimate);
-      return { strip, chart, columns: strip.lines.map(() => []) };
+      return { strip, chart, columns: strip.lines.map(() => []), ghost: [] };
     });
     const input = hello.problem?.inputs[0] ?? "the steering, rad";
     const [name, unit] = input.split(", ");
@@ -107,7 +109,7 @@ export class Charts {
         r: { range: padded },
       },
       axes: isTwofold ? [axis({ side: 1, scale: "r", grid: { show: false } })] : [],
-      series: [{}, ...series],
+      series: [{}, ...series, ...series.map((each) => ({ ...each, width: 1, alpha: 0.45 }))],
       hooks: { draw: [(u) => this.drawShown(u)], setSelect: [(u) => this.zoomTo(u)] },
     });
     this.watch(p.chart.plot!);
@@ -148,8 +150,14 @@ export class Charts {
   /** Shows a span (s), or the newest seconds. */
   zoom(window?: [number, number]) {
     this.window = window;
-    get("zoom-out").hidden = !window;
+    for (const id of ["earlier", "later", "zoom-out"]) get(id).hidden = !window;
     this.draw(true);
+  }
+  /** Moves the span that is shown by a share of its length. */
+  pan(share: number) {
+    const [from, to] = this.window ?? this.range();
+    const way = share * (to - from);
+    this.zoom([from + way, to + way]);
   }
   /** Shows costs on a logarithmic axis, or a linear one. */
   setLog(on: boolean) {
@@ -170,28 +178,32 @@ export class Charts {
   }
 
   private data(p: Plotted): uPlot.AlignedData {
-    return [this.times, ...p.columns] as uPlot.AlignedData;
+    return [this.times, ...p.columns, ...p.ghost] as uPlot.AlignedData;
   }
 
   /** Collects the columns of the window: the newest seconds, or those around the tick that is shown. */
   private collect() {
-    const { past } = this.setting;
+    const { past, ghostPast } = this.setting;
     const length = Math.round(span / period());
     const [from, to] = (this.window ?? []).map((time) => Math.round(time / period()));
     const last =
       to ?? (page.position >= past.newest - length ? past.newest : page.position + Math.round(length / 2));
     this.times = [];
     this.positions = [];
-    for (const p of this.plotted) p.columns = p.strip.lines.map(() => []);
+    for (const p of this.plotted) [p.columns, p.ghost] = [0, 1].map(() => p.strip.lines.map(() => []));
     const index = this.plotted.map((p) => p.strip.lines.map((l) => page.hello!.scalars.indexOf(l.name)));
     for (let position = Math.max(past.oldest, from ?? last - length); position <= last; ++position) {
-      const row = past.at(position);
       this.times.push(+(position * period()).toFixed(6));
       this.positions.push(position);
-      for (const [k, { strip, columns }] of this.plotted.entries())
+      const [row, ghostRow] = [past.at(position), ghostPast.at(position)];
+      for (const [k, { strip, columns, ghost }] of this.plotted.entries())
         for (const [i, line] of strip.lines.entries()) {
-          const v = row ? row[index[k][i]] : NaN;
-          columns[i].push(Number.isFinite(v) ? v * (line.scale ?? 1) : null);
+          const of = (from?: Float64Array) => {
+            const v = from ? from[index[k][i]] : NaN;
+            return Number.isFinite(v) ? v * (line.scale ?? 1) : null;
+          };
+          columns[i].push(of(row));
+          ghost[i].push(of(ghostRow));
         }
     }
     // Without tyres that slip there are no estimates, and their charts are hidden.
@@ -262,12 +274,17 @@ export class Charts {
     if (page.hello) this.collect();
     const shown = this.plotted.filter((p) => !p.chart.box.hidden);
     const columns = shown.flatMap((p) =>
-      p.strip.lines.map((line, i) => ({ line, unit: unitOf(p.strip, line), values: p.columns[i] })),
+      p.strip.lines.flatMap((line, i) => {
+        const unit = unitOf(p.strip, line);
+        const ghost = { name: "ghost_" + line.name, unit, values: p.ghost[i] };
+        const hasGhost = ghost.values.some((v) => v !== null);
+        return [{ name: line.name, unit, values: p.columns[i] }, ...(hasGhost ? [ghost] : [])];
+      }),
     );
     const rows = this.positions.map((position, i) => {
       return [position, this.times[i], ...columns.map(({ values }) => values[i] ?? "")];
     });
-    const head = ["tick", "time [s]", ...columns.map(({ line, unit }) => line.name + (unit && ` [${unit}]`))];
+    const head = ["tick", "time [s]", ...columns.map(({ name, unit }) => name + (unit && ` [${unit}]`))];
     return [head, ...rows].map((row) => row.join()).join("\n") + "\n";
   }
 }

@@ -3,8 +3,8 @@ import { get, make } from "../dom";
 import { page, redraw, scalar, send } from "../page";
 import type { Candidates, Frame } from "../protocol";
 import { costTerms } from "../scene/layers";
-import { collisionPoint } from "../scene/candidates";
-import { Chart, css, padded } from "./plots";
+import { bodyHit, collisionPoint } from "../scene/candidates";
+import { Chart, css, padded, vertical } from "./plots";
 import { looks } from "./strips";
 
 const bins = 24; // number in a histogram
@@ -25,14 +25,17 @@ export class InspectPane {
   private frame?: Frame; // the one that is shown
   private readonly rank = get<HTMLInputElement>("rank");
   private readonly horizon: Chart;
+  private readonly inputs: Chart[] = []; // one for each input of a step
   private readonly costs: Chart;
   private readonly weights: Chart;
+  private readonly effective: Chart;
 
   constructor() {
     const root = get("inspect-charts");
     this.horizon = new Chart(root, "Cost over the horizon: plan solid, candidate dotted", []);
     this.costs = new Chart(root, "Candidates by cost, without collisions", []);
     this.weights = new Chart(root, "Candidates by weight, %", []);
+    this.effective = new Chart(root, "Effective sample size by temperature, with the one in use", []);
     this.rank.onchange = () => {
       const candidates = page.frame?.candidates;
       if (candidates) this.choose(ranked(candidates)[Number(this.rank.value) - 1] ?? -1);
@@ -80,6 +83,8 @@ export class InspectPane {
       order.map((k) => 100 * c.terms[c.width * (k + 1) - 1]),
       "%",
     );
+    this.drawEffective(frame);
+    this.drawInputs(frame);
   }
 
   private hint(c: Candidates) {
@@ -93,52 +98,103 @@ export class InspectPane {
     const at = collisionPoint(frame, i);
     const time =
       at === undefined ? "" : ` after ${(at * scalar("prediction_step")).toFixed(2)} s, at the cross`;
-    const end = c.collided[i] ? `It collides${time}.` : "It does not collide.";
+    const hit = at === undefined ? "" : bodyHit(frame, i, at);
+    const end = c.collided[i] ? `It collides${hit && ` with ${hit}`}${time}.` : "It does not collide.";
     return `Rank ${rank} of ${c.count} by cost, weight ${weight}. ${end}`;
   }
 
   private showTerms(frame: Frame, c: Candidates, i: number) {
-    const steps = frame.stepCosts;
     const names = costTerms();
-    const plan = names.slice(0, -1).map((name, k) => {
-      if (!steps) return scalar(`${name}_cost`);
-      const values = Array.from({ length: steps.points }, (_, p) => steps.costs[p * steps.terms + k]);
-      return values.reduce((a, b) => a + b, 0);
-    });
+    const isCar = !page.hello?.problem;
+    const plan = names
+      .slice(0, -1)
+      .map((name) => scalar(isCar ? `${name}_cost` : `cost.${name}`, frame.scalars));
     plan.push(plan.reduce((a, b) => a + b, 0));
     const rows = names.map((name, k) => {
       const candidate = i < 0 ? "" : short(c.terms[c.width * i + k]);
       const cells = [plan[k], candidate].map((v) =>
         make("td", { className: "n" }, typeof v === "number" ? short(v) : v),
       );
-      return make("tr", {}, make("td", {}, name), ...cells);
+      const mark = make("i", { className: "swatch" });
+      mark.style.background = k < names.length - 1 ? `var(--${looks[k % looks.length][0]})` : "none";
+      return make("tr", {}, make("td", {}, mark, name), ...cells);
     });
     get("inspect-terms").replaceChildren(...rows);
   }
 
   private drawHorizon({ stepCosts }: Frame, i: number) {
     this.horizon.box.hidden = !stepCosts;
-    if (!stepCosts || this.horizon.width < 50) return;
+    if (!stepCosts) return;
     const { terms, points, costs } = stepCosts;
     const of = (trajectory: number, term: number) =>
       Array.from({ length: points }, (_, p) => costs[(trajectory * points + p) * terms + term]);
     const all = Array.from({ length: terms }, (_, k) => k);
-    const shown = [...all.map((k) => of(0, k)), ...(i < 0 ? [] : all.map((k) => of(1 + i, k)))];
-    const series = shown.map((_, k) => {
-      const dash = k < terms ? undefined : [2, 3];
-      return {
-        stroke: css(`--${looks[(k % terms) % looks.length][0]}`),
-        width: 1.6,
-        dash,
-        points: { show: false },
-      };
+    const isKnown = i >= 0 && costs.length >= (2 + i) * points * terms;
+    const shown = [...all.map((k) => of(0, k)), ...(isKnown ? all.map((k) => of(1 + i, k)) : [])];
+    const line = (k: number) => ({
+      stroke: css(`--${looks[(k % terms) % looks.length][0]}`),
+      dash: k < terms ? undefined : [2, 3],
     });
-    const step = scalar("prediction_step");
-    const times = Array.from({ length: points }, (_, p) => +(p * step).toFixed(4));
-    this.horizon.draw("s", [times, ...shown], {
+    this.drawLines(this.horizon, "s", this.times(points), shown, line);
+  }
+
+  private times = (points: number) =>
+    Array.from({ length: points }, (_, p) => +(p * scalar("prediction_step")).toFixed(4));
+
+  private drawLines(
+    chart: Chart,
+    unit: string,
+    x: number[],
+    lines: number[][],
+    line: (k: number) => uPlot.Series,
+    options: Partial<uPlot.Options> = {},
+  ) {
+    if (chart.width < 50) return;
+    chart.draw(unit, [x, ...lines], {
       scales: { x: { time: false }, y: { range: padded } },
-      series: [{}, ...series],
+      series: [{}, ...lines.map((_, k) => ({ width: 1.6, points: { show: false }, ...line(k) }))],
+      ...options,
     });
+  }
+
+  private drawEffective({ effectiveSamples, scalars }: Frame) {
+    this.effective.box.hidden = !effectiveSamples;
+    if (!effectiveSamples) return;
+    const [x, y] = [0, 1].map((k) => Array.from(effectiveSamples).filter((_, i) => i % 2 === k));
+    this.drawLines(
+      this.effective,
+      "",
+      x.map((v) => +v.toPrecision(3)),
+      [y],
+      () => ({ stroke: css("--blue") }),
+      {
+        scales: { x: { time: false, distr: 3 }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.1)] } },
+        hooks: { draw: [(u) => vertical(u, scalar("temperature", scalars), "--warn", [5, 4])] },
+      },
+    );
+  }
+
+  /** Draws the inputs of each step: those of the plan, and of the nominal sequence before and after. */
+  private drawInputs({ inputs: all }: Frame) {
+    const names = page.hello?.problem?.inputs ?? ["steering, rad", "acceleration, m/s²"];
+    const count = all?.inputs ?? 0;
+    while (this.inputs.length < count) {
+      const title = `Input ${names[this.inputs.length]}: plan solid, nominal dashed, its guide at first dotted`;
+      this.inputs.push(new Chart(get("inspect-charts"), title, []));
+    }
+    const dashes = [undefined, [6, 3], [2, 3]];
+    const colours = ["accent", "text", "violet"];
+    for (const [k, chart] of this.inputs.entries()) {
+      chart.box.hidden = k >= count;
+      if (!all || k >= count) continue;
+      const { steps, values } = all;
+      const sequences = values.length / (steps * count);
+      const lines = Array.from({ length: sequences }, (_, s) =>
+        Array.from({ length: steps }, (_, p) => values[(s * steps + p) * count + k]),
+      );
+      const line = (s: number) => ({ stroke: css(`--${colours[s]}`), dash: dashes[s] });
+      this.drawLines(chart, "s", this.times(steps), lines, line);
+    }
   }
 
   private histogram(chart: Chart, values: number[], unit: string) {

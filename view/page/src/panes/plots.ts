@@ -35,7 +35,9 @@ export class Chart {
       button.onclick = () => {
         this.shown[i] = !this.shown[i];
         button.setAttribute("aria-pressed", String(this.shown[i]));
-        this.plot?.setSeries(i + 1, { show: this.shown[i] });
+        for (const k of [i + 1, i + 1 + lines.length])
+          // the line, and that of the ghost
+          if (this.plot?.series[k]) this.plot.setSeries(k, { show: this.shown[i] });
       };
       return button;
     });
@@ -46,7 +48,11 @@ export class Chart {
   /** Replaces the plot; `unit` stands beside the values of the x axis. */
   draw(unit: string, data: uPlot.AlignedData, options: Partial<uPlot.Options>) {
     this.plot?.destroy();
-    const bottom = axis({ size: 18, space: 50, values: (_u, all) => all.map((v) => `${v} ${unit}`) });
+    const bottom = axis({
+      size: 18,
+      space: 50,
+      values: (_u, all) => all.map((v) => (v === null ? "" : `${v} ${unit}`)),
+    });
     const usual = {
       cursor: { show: false },
       legend: { show: false },

@@ -88,7 +88,7 @@ export const looks: [colour: string, dash?: number[]][] = [
 
 function lineOf(kind: string, name: string, label: string, i: number): Named {
   const [colour, dashes] = looks[i % looks.length];
-  return [kind + name, label, colour, { dash: dashes }];
+  return [kind + name, label, colour, { dash: i < looks.length ? dashes : [12, 3] }];
 }
 
 /** Charts of values whose names end with their units, "speed, m/s": those of one unit share a chart. */

@@ -2,27 +2,43 @@ import { costTerms } from "./layers";
 import type { Painter } from "./painter";
 import { rampColour, type Theme } from "./palette";
 import { page } from "../page";
-import type { Candidates, Frame } from "../protocol";
+import type { Body, Candidates, Frame } from "../protocol";
 import { faded } from "./shapes";
 
 type Range = [number, number];
 
 /** The index of the point at which a candidate collides; undefined if it does not, or if it is not known. */
-export function collisionPoint(frame: Frame, i: number): number | undefined {
-  const { candidates, costMap } = frame;
-  if (!candidates?.collided[i]) return undefined;
-  if (page.hello?.problem) return candidates.collided[i] - 1;
-  if (!costMap) return undefined;
-  const { rows, columns, resolution, centerX, centerY, cells, x, y, yaw } = costMap;
-  const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
-  for (let p = 0; p < candidates.points; ++p) {
-    const at = 2 * (i * candidates.points + p);
-    const [dx, dy] = [candidates.xy[at] - x, candidates.xy[at + 1] - y];
-    const row = rows - 1 - Math.floor((c * dx + s * dy - centerX) / resolution + rows / 2);
-    const column = columns - 1 - Math.floor((c * dy - s * dx - centerY) / resolution + columns / 2);
-    if (row >= 0 && row < rows && column >= 0 && column < columns && cells[row * columns + column]) return p;
-  }
-  return undefined;
+export function collisionPoint({ candidates }: Frame, i: number): number | undefined {
+  const at = candidates?.collided[i] ?? 0;
+  // That of a car has been free before, so 1 means that the place is not known.
+  return at > (page.hello?.problem ? 0 : 1) ? at - 1 : undefined;
+}
+
+const kindNames: Record<number, string> = {
+  1: "a parked car",
+  2: "a box",
+  3: "a pole",
+  4: "another car",
+  5: "somebody",
+};
+
+/** Names what a candidate meets at one of its points: a body whose edge is within reach, or a wall. */
+export function bodyHit({ bodies, candidates: c }: Frame, i: number, point: number): string {
+  const { car, problem } = page.hello ?? {};
+  const [x, y] = c!.xy.subarray(2 * (i * c!.points + point));
+  const reach = (car?.length ?? Math.hypot(problem?.length ?? 0, problem?.width ?? 0) / 2) + 0.05; // m
+  const distance = (b: Body) => {
+    const [cos, sin, dx, dy] = [Math.cos(b.yaw), Math.sin(b.yaw), x - b.x, y - b.y];
+    if (b.kind === 3 || b.kind === 5) return Math.hypot(dx, dy) - b.length / 2;
+    const [u, v] = [
+      Math.abs(cos * dx + sin * dy) - b.length / 2,
+      Math.abs(cos * dy - sin * dx) - b.width / 2,
+    ];
+    return Math.hypot(Math.max(0, u), Math.max(0, v));
+  };
+  const nearest = bodies.filter((b) => b.kind > 0 && b.kind < 6).sort((a, b) => distance(a) - distance(b))[0];
+  if (nearest && distance(nearest) < reach) return problem ? `shape ${nearest.id}` : kindNames[nearest.kind];
+  return problem ? "" : "a wall";
 }
 
 /** The candidate that passes nearest to a point of the map frame, within `reach` (m); -1 if there is none. */
@@ -75,6 +91,12 @@ export function drawCandidates(
   const [low, high] = range ?? [least, Math.max(least + 1e-9, most)];
   // Their number is small where the weight is concentrated, so a share of the largest weight is shown.
   const heaviest = Math.max(1e-12, ...all.map(weight));
+  if (term === "density") {
+    // Wide lines that are nearly clear add up where the candidates are dense.
+    for (const i of all)
+      painter.polyline(c.xy, i * c.points, c.points, faded(c.collided[i] ? theme.mark : theme.plan, 0.07), 7);
+    return [low, high];
+  }
   for (const i of all.sort((a, b) => c.collided[b] - c.collided[a] || value(b) - value(a))) {
     const share = Math.sqrt(weight(i) / heaviest);
     const cost = Math.min(1, Math.max(0, (value(i) - low) / (high - low)));

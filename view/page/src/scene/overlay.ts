@@ -39,7 +39,11 @@ export function place(label: HTMLElement, at: Pose | undefined, camera: Camera, 
   const inside = (at: number, size: number, from: number, room: number) =>
     Math.round(from + Math.max(margin, Math.min(room - size - margin, at - from)));
   const left = inside(x - h * away - width / 2, width, camera.left, camera.width);
-  const top = inside(y - v * away - height / 2, height, camera.top, camera.height);
+  let top = inside(y - v * away - height / 2, height, camera.top, camera.height);
+  // Below its car where the edge of the view pushes it over the car.
+  const half = 0.2 * camera.zoom + 4;
+  const isOver = Math.abs(x - left - width / 2) < half + width / 2 && Math.abs(y - top - height / 2) < half;
+  if (isOver) top = inside(y + half + further * height, height, camera.top, camera.height);
   label.style.transform = `translate(${left}px, ${top}px)`;
 }
 

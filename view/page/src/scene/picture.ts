@@ -43,6 +43,7 @@ function swatch(colour: string, text: string): Item {
 
 /** The scale of the candidates' colours, between the costs at its ends. */
 function ramp(scene: SceneView): Item {
+  if (scene.term === "density") return words("Candidates, opaque where they are many");
   const [low, high] = scene.costRange.map((cost) => words(cost.toPrecision(3)));
   const name = words(`Candidates, by ${scene.term} cost`);
   const draw = (pen: Pen, x: number, y: number) => {

@@ -118,7 +118,7 @@ export class SceneView {
     const { isFitted } = this;
     if (this.isSideBySide) this.stage.splitLanes();
     else this.stage.joinLanes();
-    if (isFitted) this.fit();
+    if (isFitted && !this.isHeld) this.fit();
   }
 
   zoom(factor: number) {
@@ -180,6 +180,8 @@ export class SceneView {
     if (!frame) return;
     if (visible.has("costMap") && frame.costMap) draw.drawCostMap(painter, theme, frame.costMap);
     if (visible.has("path") && this.scene.path) draw.drawPath(painter, theme, this.scene.path);
+    for (const xy of (visible.has("path") && frame.lines) || [])
+      painter.dashed(xy, xy.length / 2, theme.path, 1.3);
     if (visible.has("driven")) painter.polyline(driven, 0, driven.length / 2, theme.driven, 2);
     if (visible.has("candidates") && frame.candidates) {
       const range = frame === page.frame ? undefined : this.costRange; // both lanes have one scale

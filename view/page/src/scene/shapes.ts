@@ -35,9 +35,13 @@ export function circle(x: number, y: number, radius: number, n = 28): Point[] {
 }
 
 export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected: boolean) {
-  const points = b.kind === 3 ? circle(b.x, b.y, b.length / 2) : corners(b);
+  const points = b.kind >= 3 ? circle(b.x, b.y, b.length / 2) : corners(b);
   const [r, g, blue] = theme.collided;
-  painter.fill(points, b.touched ? [r, g, blue, 1] : theme.obstacle);
+  if (b.kind === 6) {
+    painter.outline(points, isSelected ? theme.selected : theme.plan, 3);
+    return painter.dot(b.x, b.y, 6, theme.plan);
+  }
+  painter.fill(points, b.kind === 5 ? theme.opponent : b.touched ? [r, g, blue, 1] : theme.obstacle);
   painter.outline(points, isSelected ? theme.selected : theme.obstacleEdge, isSelected ? 2.5 : 1.2);
   if (b.kind === 1) {
     const [l, w] = [0.12 * b.length, 0.4 * b.width];

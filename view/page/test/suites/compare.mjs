@@ -42,6 +42,11 @@ export default async function (h) {
       () => slalom.frame.ghost.laps - slalom.scalar("lap") - slalom.scalar("progress"),
     );
     assert.ok(Math.abs(gap) < 0.1);
+    // The charts have the ghost's lines.
+    assert.ok(await page.locator("#faint").isVisible());
+    const [head, ...rows] = await h.csv();
+    const speed = Number(rows.at(-1)[head.indexOf("ghost_speed [m/s]")]);
+    assert.ok(speed > 0.5, `the ghost drives at ${speed} m/s`);
     await h.send({ do: "ghost", method: "" });
     await h.until(() => slalom.state.ghost === "");
     await h.play();

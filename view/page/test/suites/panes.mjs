@@ -1,6 +1,5 @@
 // The panes and what the page knows of the past.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 
 export default async function (h) {
   const { page } = h;
@@ -58,11 +57,7 @@ export default async function (h) {
 
   await h.test("the charts are saved as CSV", async () => {
     await h.until(isWhole);
-    const [file] = await Promise.all([page.waitForEvent("download"), page.click("#csv")]);
-    const rows = readFileSync(await file.path(), "utf8")
-      .trim()
-      .split("\n");
-    const [head, ...cells] = rows.map((row) => row.split(","));
+    const [head, ...cells] = await h.csv();
     assert.deepEqual(head.slice(0, 3), ["tick", "time [s]", "distance_cost"]);
     assert.ok(cells.length > 10 && cells.every((row) => row.length === head.length));
     const known = (t) => slalom.past.at(t)[slalom.hello.scalars.indexOf("speed")];

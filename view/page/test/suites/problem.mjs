@@ -150,15 +150,14 @@ export default async function (h) {
     assert.match(text, /^Rank \d+ of \d+ by cost, weight [\d.e-]+ %\. It (does not collide|collides)/);
     const rows = await look.locator("#inspect-terms tr").allTextContents();
     assert.ok(rows.length >= 2 && rows.at(-1).startsWith("total"), rows.join());
-    assert.equal(await look.locator("#inspect-charts .chart:visible canvas").count(), 3);
+    assert.equal(await look.locator("#inspect-charts .chart:visible canvas").count(), 6);
     // By rank: the cost of the candidate is the sum of its terms, as the solver has it, but for float32.
     await look.locator("#rank").fill("1");
     await look.locator("#rank").press("Tab");
     const [sum, cost] = await look.evaluate(() => {
-      const { candidates: c, stepCosts: s } = slalom.frame;
+      const { candidates: c } = slalom.frame;
       const i = slalom.scene.chosen;
-      const from = (1 + i) * s.points * s.terms;
-      const terms = s.costs.slice(from, from + s.points * s.terms);
+      const terms = c.terms.slice(c.width * i, c.width * (i + 1) - 2);
       return [terms.reduce((a, b) => a + b), c.terms[c.width * (i + 1) - 2]];
     });
     assert.ok(Math.abs(sum - cost) < 1e-3 * cost, `${sum} is ${cost}`);
@@ -195,6 +194,17 @@ export default async function (h) {
     await look.mouse.move(box.x + 0.6 * box.width, box.y + 20, { steps: 5 });
     await look.mouse.up();
     await look.locator("#zoom-out").waitFor();
+    const begin = async () => {
+      const rows = await h.csv(look);
+      return Number(rows[1][1]);
+    };
+    const zoomed = await begin();
+    await look.locator("#later").click();
+    const later = await begin();
+    assert.ok(later > zoomed, `${later} s is after ${zoomed} s`);
+    await look.locator("#earlier").click();
+    assert.ok(Math.abs((await begin()) - zoomed) < 0.11, "as far back as it went on");
+    await look.locator("#toast").waitFor({ state: "hidden" });
     await h.send({ do: "restart" }, look);
     await look.locator("#zoom-out").waitFor({ state: "hidden" });
   });
@@ -224,7 +234,8 @@ export default async function (h) {
     await h.drawn(look);
     const [x] = await placeOf(look, box.x, box.y);
     assert.ok(x > from[0] + 20, "the scene is moved instead");
-    assert.equal(await look.locator("#toast").isVisible(), false);
+    const toast = look.locator("#toast");
+    assert.equal((await toast.isVisible()) && (await toast.textContent()), false);
   });
 
   await h.test("a page of another address shows the problem inside, as a notebook does", async () => {
@@ -250,6 +261,37 @@ export default async function (h) {
       rows.map((text) => text.replace(/[\d.–-].*/, "")),
       ["distance", "yaw", "collision", "total"],
     );
+    // One that collides: the costs over the horizon are those of its terms, to a byte's precision.
+    const rank = await h.page.evaluate(() => {
+      const c = slalom.frame.candidates;
+      const cost = (i) => c.terms[c.width * (i + 1) - 2];
+      const order = Array.from({ length: c.count }, (_, i) => i).sort((a, b) => cost(a) - cost(b));
+      return 1 + order.findIndex((i) => c.collided[i] > 1);
+    });
+    assert.ok(rank > 0, "a candidate collides");
+    await h.page.locator("#rank").fill(String(rank));
+    await h.page.locator("#rank").press("Tab");
+    const says = /^Rank \d+ of .* It collides with (a parked car|a wall) after [\d.]+ s, at the cross\.$/;
+    await h.until(
+      (r) => new RegExp(r).test(document.getElementById("inspect-text").textContent),
+      says.source,
+    );
+    const differences = await h.page.evaluate(() => {
+      const { candidates: c, stepCosts: s } = slalom.frame;
+      const i = slalom.scene.chosen;
+      return [0, 1, 2].map((k) => {
+        const at = (p) => s.costs[((1 + i) * s.points + p) * s.terms + k];
+        const values = Array.from({ length: s.points }, (_, p) => at(p));
+        const sum = values.reduce((a, b) => a + b);
+        return Math.abs(sum - c.terms[c.width * i + k]) - (s.points / 510) * Math.max(...values);
+      });
+    });
+    for (const each of differences) assert.ok(each < 1e-4, differences.join());
+    const effective = await h.page.evaluate(() => [...slalom.frame.effectiveSamples]);
+    const [temperature, size] = [await h.scalar("temperature"), await h.scalar("effective_samples")];
+    const at = effective.findIndex((v, i) => i % 2 === 0 && Math.abs(v - temperature) < 1e-4 * v);
+    assert.ok(Math.abs(effective[at + 1] - size) < 0.01 * size, `${effective} at ${temperature}: ${size}`);
+    assert.equal(await h.page.locator("#inspect-charts .chart:visible canvas").count(), 6);
     await h.page.locator("#tab-charts").click();
     await h.play();
   });
