@@ -20,13 +20,13 @@ inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0
 /// The motion of an object from which hypotheses are drawn.
 struct Motion {
   bool on_course = false;
-  maps::Pose pose;      ///< pose of the middle
-  double speed = 0;     ///< m/s; on a course along it
-  double yaw_rate = 0;  ///< rad/s, without a course
-  double arc = 0;       ///< m, on a course
-  double offset = 0;    ///< m, on a course
-  double drift = 0;     ///< m/s, by which the offset grows
-  double rise = 0;      ///< 1/s, by which the ratio of the speed to the course's rises while it is below 1
+  maps::Pose pose;        ///< pose of the middle
+  double speed = 0;       ///< m/s; on a course along it
+  double yaw_rate = 0;    ///< rad/s, without a course
+  double arc = 0;         ///< m, on a course
+  double offset = 0;      ///< m, on a course
+  double drift = 0;       ///< m/s, by which the offset grows
+  double rise = 0;        ///< 1/s, by which the ratio of the speed to the course's rises while it is below 1
   Habits::Habit habit{};  ///< habit of the cars that came by here, on a course
 };
 

@@ -23,8 +23,8 @@
 ///  3. brakes,
 ///  4. moves to the left or 5. to the right of where it is,
 ///  6. does what the last car did that came by here, on a closed course,
-/// and but for the third and sixth keeps the ratio of its speed to that of the course. Without a course, far from it or
-/// across it, an object keeps its turn rate and speed, or brakes.
+/// and but for the third and sixth keeps the ratio of its speed to that of the course. Without a course, far
+/// from it or across it, an object keeps its turn rate and speed, or brakes.
 ///
 /// Weights are probabilities. Every `memory` seconds each hypothesis of that time ago is compared with what
 /// the object has done since: w_h <- (1 - f) w_h L_h / sum + f p_h, with L_h the normal density of its error
