@@ -104,8 +104,8 @@ TEST(ParameterEstimator, KeepsTheGivenValuesWithoutTurningAndSaysSo) {
   const ParameterEstimate found = after({.friction = 0.5, .delay = 0.1, .swing = 0.002});
   EXPECT_LT(found.confidence, 0.1);
   EXPECT_NEAR(found.friction, 1.0489, 0.05);
-  EXPECT_LT(found.cautious_friction, 0.75) << "what nobody has measured may be low";
-  EXPECT_GT(found.cautious_friction, 0.55);
+  EXPECT_LT(found.cautious_friction, 0.5) << "what nobody has measured may be low";
+  EXPECT_GT(found.cautious_friction, 0.35);
   EXPECT_NEAR(found.delay, 0.025, 0.02);
   EXPECT_NEAR(found.steering_gain, 1, 0.02);
 }
