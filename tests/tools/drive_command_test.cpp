@@ -35,6 +35,22 @@ TEST_F(DriveCommand, ParksCarsAtGivenPlaces) {
   expect_refused("drive --course wren --obstacle 1,2", {"--obstacle", "'1,2'", "x,y,yaw"});
 }
 
+TEST_F(DriveCommand, DrawsALapAtUtmCoordinates) {
+  std::ofstream line(folder_ / "arc.csv");
+  line << std::fixed;
+  for (double a = 0; a < 4; a += 0.1)
+    line << 450000 + 6 * std::cos(a) << "," << 5400000 + 6 * std::sin(a) << ",1.1,1.1\n";
+  line.close();
+  const auto made = run_program("course arc.csv --no-picture --out arc", folder_.string());
+  ASSERT_EQ(made.status, 0) << made.output;
+  // Within 4 GB of memory.
+  const auto run = testing::run_shell("ulimit -v 4000000; '" SLALOM_PROGRAM
+                                      "' drive --course arc --set samples=256 --plot lap.png",
+                                      folder_.string());
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_GT(fs::file_size(folder_ / "lap.png"), 10000u);
+}
+
 TEST_F(DriveCommand, DrivesACarOfFullSize) {
   // Two straights of 150 m and two half circles of 45 m; the road is 14 m wide.
   std::ofstream line(folder_ / "oval.csv");

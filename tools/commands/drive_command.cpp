@@ -199,8 +199,7 @@ class DriveJob {
     }
     if (!arguments_.json.empty()) write_json(results(total), arguments_.json);
     if (!arguments_.plot.empty()) {
-      // The published evaluation treats unknown cells as free; the picture shows them as unknown.
-      draw_lap(vehicle::load_course(scenario_.folder).map, setup_, driven_, laps_.back(),
+      draw_lap(map_of(scenario_), setup_, driven_, laps_.back(),
                arguments_.method + " on " + scenario_.environment->course.name, arguments_.plot);
       std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
     }

@@ -230,7 +230,7 @@ int replay_against(const AgainstArguments& arguments) {
                  comparison.unknown() + moments.size());
   Json json = report(words, moments);
   if (!arguments.plot.empty()) {
-    draw_plans(vehicle::load_course(scenario.folder).map, setup, comparison.driven(), comparison.plans(),
+    draw_plans(map_of(scenario), setup, comparison.driven(), comparison.plans(),
                formatted("%s beside a recorded drive of %.1f s", arguments.method.c_str(),
                          moments.back().time - moments.front().time),
                arguments.plot);

@@ -10,7 +10,6 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"
-#include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/commands/replay_against.hpp"
@@ -94,7 +93,7 @@ int replay_lap(const ReplayArguments& arguments) {
     std::printf("recording: %s\n", arguments.record.c_str());
   }
   if (!arguments.plot.empty()) {
-    draw_lap(vehicle::load_course(scenario.folder).map, setup, driven, lap,
+    draw_lap(map_of(scenario), setup, driven, lap,
              experiment.label() + " on " + evaluation.environment->course.name, arguments.plot);
     std::printf("picture: %s\n", arguments.plot.c_str());
   }

@@ -215,6 +215,12 @@ std::string folder_without_name(const Scenario& scenario) {
   return fs::weakly_canonical(scenario.folder).string();
 }
 
+maps::OccupancyGrid map_of(const Scenario& scenario) {
+  vehicle::Course course = vehicle::load_course(scenario.folder);
+  vehicle::move_to_local_origin(course);
+  return course.map;
+}
+
 void print_notes(std::FILE* out, const Scenario& scenario) {
   for (const std::string& note : scenario.notes)
     std::fprintf(out, "note: %s: %s\n", scenario.environment->course.name.c_str(), note.c_str());

@@ -71,6 +71,10 @@ struct Scenario {
 /// empty. Results name it, so that a replay finds the course again.
 std::string folder_without_name(const Scenario& scenario);
 
+/// The map of the course for a picture, in the frame of the environment. Cells that the published evaluation
+/// treats as free are unknown, as in the file. Throws IoError.
+maps::OccupancyGrid map_of(const Scenario& scenario);
+
 /// Prints the notes, one a line.
 void print_notes(std::FILE* out, const Scenario& scenario);
 
