@@ -27,7 +27,8 @@ std::string drive(int ticks) {
                             {"odometry_y", y},
                             {"odometry_yaw", yaw},
                             {"odometry_speed", 2.0},
-                            {"command_steer", steer}}
+                            {"command_steer", steer},
+                            {"command_speed", 2.0}}
                            .dump());
     x += 0.1 * std::cos(yaw);
     y += 0.1 * std::sin(yaw);
