@@ -1,4 +1,4 @@
-// What a message tells of a solve: the effective sample size by temperature, and the inputs of each step.
+// The blocks of a message about a solve: effective sample sizes, inputs of each step, costs of each step.
 #include "view/protocol/solve_blocks.hpp"
 
 #include <gtest/gtest.h>
@@ -73,6 +73,13 @@ TEST_P(Solve, TheInputsAreThoseOfPlanNominalAndGuide) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Solve, ::testing::Values("svg_mppi", "mppi"));
+
+TEST(StepCosts, AProblemWithoutTermsHasNone) {
+  FrameWriter to;
+  put_step_costs(to, {}, 0, 5);
+  const std::string message = to.take();
+  EXPECT_EQ(FrameReader(message).block(Block::step_costs).size(), 2 * sizeof(std::uint16_t));
+}
 
 }  // namespace
 }  // namespace slalom::view

@@ -61,7 +61,8 @@ void put_step_costs(FrameWriter& to, std::span<const double> costs, std::size_t 
   to.begin(Block::step_costs);
   to.put(static_cast<std::uint16_t>(terms));
   to.put(static_cast<std::uint16_t>(points));
-  for (std::size_t from = 0; from + points * terms <= costs.size(); from += points * terms)
+  const std::size_t size = points * terms;
+  for (std::size_t from = 0; size > 0 && from + size <= costs.size(); from += size)
     for (std::size_t term = from; term < from + terms; ++term) {
       double low = costs[term], high = low;
       for (std::size_t k = 0; k < points; ++k) {

@@ -186,14 +186,10 @@ void ParameterEstimator::weigh() noexcept {
   const double remembered = std::exp(-period_ / memory * turned_share);
   const double evidence_share = std::min(4 * turned_share, 1.0);
   const double share = 0.5 * evidence_share / window_, most = square(largest_error);
-  const MeasuredMotion &begin = ago(window_).motion, &end = ago(0).motion;
-  const double lateral_deviation =
-      std::sqrt(square(lateral_noise_) + begin.lateral_variance + end.lateral_variance);
-  const double yaw_deviation = std::sqrt(square(yaw_noise) + begin.yaw_variance + end.yaw_variance);
   double best = -INFINITY;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    const double aside = square(lateral_error_[i] / lateral_deviation);
-    const double turned = square(yaw_error_[i] / yaw_deviation);
+    const double aside = square(lateral_error_[i] / lateral_noise_);
+    const double turned = square(yaw_error_[i] / yaw_noise);
     // A prediction that diverges may have an error that is not a number, which counts as the largest.
     const double error = (aside < most ? aside : most) + (turned < most ? turned : most);
     evidence_[i] = remembered * evidence_[i] - share * error;

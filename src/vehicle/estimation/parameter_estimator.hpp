@@ -11,12 +11,10 @@ namespace slalom::vehicle::detail {
 
 /// The motion of the car, one control period after the last.
 struct MeasuredMotion {
-  maps::Pose pose;              ///< pose of the rear axle, map frame
-  double speed = 0;             ///< m/s
-  double yaw_rate = 0;          ///< rad/s, of the observer
-  double slip = 0;              ///< rad, of the observer
-  double lateral_variance = 0;  ///< m^2, of the measured position, across the car
-  double yaw_variance = 0;      ///< rad^2, of the measured yaw
+  maps::Pose pose;      ///< pose of the rear axle, map frame
+  double speed = 0;     ///< m/s
+  double yaw_rate = 0;  ///< rad/s, of the observer
+  double slip = 0;      ///< rad, of the observer
 };
 
 /// Estimates friction, gain, offset and delay of the steering of a car while it drives.
@@ -27,10 +25,9 @@ struct MeasuredMotion {
 /// state, uses the measured speed, and delays and scales the sent commands by the hypothesis. The logarithm
 /// of a hypothesis' weight falls by
 ///
-///     s (period / window) / 2 * ((lateral error)^2 / lateral variance + (yaw error)^2 / yaw variance)
+///     s (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / 0.02 rad)^2)
 ///
-/// with the errors of the predicted pose at the end. The variances are lateral_noise^2 and (0.02 rad)^2, and
-/// those of the poses at both ends in addition, if they are estimates. s = min(1, (a / 1.5 m/s^2)^2) with the
+/// with the errors of the predicted pose at the end, and s = min(1, (a / 1.5 m/s^2)^2) with the
 /// root mean square a of the lateral acceleration in the window. The factor allows for the overlap of
 /// successive windows. Errors beyond five deviations count as five, so that a collision or a jump of the
 /// localisation decides nothing. The estimator forgets within 2 s of turning. On a straight line it can learn

@@ -35,11 +35,7 @@ class CarEstimator {
     observer_.update(model, checked, parameters().friction);
     if (!identify_) return;
     const VehicleStart& car = observer_.now();
-    const PoseCovariance& c = input.covariance;
-    const double s = std::sin(input.pose.yaw), k = std::cos(input.pose.yaw);
-    const double across = s * s * c[0][0] - 2 * s * k * c[0][1] + k * k * c[1][1];
-    parameters_.update(
-        {input.pose, car.speed, car.yaw_rate, car.slip, std::max(across, 0.0), std::max(c[2][2], 0.0)});
+    parameters_.update({input.pose, car.speed, car.yaw_rate, car.slip});
     observer_.set_dead_time(std::max(0.0, parameters_.estimate().delay - latency_));
   }
 
