@@ -43,7 +43,8 @@ const steps: Step[] = [
     layers: 1,
     due: (both) => both.every((each) => modesOf(each)) && modesOf(both[0])!.plan !== "into",
     text: (both) =>
-      "Samples: before each control step, a controller tries many control sequences " +
+      "Samples: before each control step, mppi (model predictive path integral control) and svg_mppi " +
+      "(Stein variational guided mppi) try many control sequences " +
       `(${list(both, (each) => `${method(each)} ${scalar("samples", each.scalars)}`)}). ` +
       "Each line shows where one of them leads.",
   },
@@ -51,25 +52,25 @@ const steps: Step[] = [
     layers: 1,
     text: () =>
       "Weights: the lower the cost of a sample, the more weight it has, and the wider and more opaque is " +
-      "its line. Red samples collide.",
+      "its line. Red samples collide; of the others, dark blue ones cost least.",
   },
   {
     layers: 2,
     text: () =>
-      "Plan: the line with dots is the mean of the samples by their weights. The car drives its beginning.",
+      "Plan: the green line with dots is the weighted average of the samples. The car drives its beginning.",
   },
   {
     layers: 3,
     text: () =>
-      "Guides: svg_mppi first moves a sequence of its own to low cost, the purple line, and fits the " +
-      "variances of its samples to it. mppi has no guide.",
+      "Guides: before it samples, svg_mppi improves one sequence until its cost is low: the purple line. " +
+      "Its samples spread around this line only as far as the cost stays low. mppi has no guide.",
   },
   {
     layers: 3,
     due: (both) => verdicts(both).join() === "commits,averages",
     text: ([car, ghost]) =>
-      `Two ways: ${method(ghost)} gives weight to both, and the plan between them leads into the parked ` +
-      `car. ${method(car)} chooses one.`,
+      `Two ways: left and right of the parked car. ${method(ghost)} gives weight to both, and the plan ` +
+      `between them leads into the car. ${method(car)} chooses one.`,
   },
   {
     layers: 3,

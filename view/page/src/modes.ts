@@ -1,4 +1,5 @@
 import { make } from "./dom";
+import { scalar } from "./page";
 import type { Body, Frame } from "./protocol";
 
 /** On which side of an obstacle something passes: left, right, or into it. */
@@ -105,9 +106,9 @@ export class Caption {
 
   constructor(private readonly line: HTMLElement) {}
 
-  /** Shows what a frame says at a time (s); without a frame nothing. */
+  /** Shows what a frame says at a time (s); nothing without a frame, and of a car in contact. */
   show(method: string, frame: Frame | undefined, time: number) {
-    const modes = frame && modesOf(frame);
+    const modes = frame && !scalar("contact", frame.scalars) ? modesOf(frame) : undefined;
     const now = verdict(modes);
     const isAgain = time === this.time;
     const what = isAgain || now === this.before || now === this.line.dataset.verdict ? now : undefined;

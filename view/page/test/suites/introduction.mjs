@@ -34,7 +34,7 @@ export default async function (h) {
       "nothing moves until the viewer has read",
     );
     await next();
-    await shows("5 of 6. Two ways: mppi gives weight to both");
+    await shows("5 of 6. Two ways: left and right of the parked car. mppi gives weight to both");
     await wait(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
     const texts = await page.locator(".caption").allTextContents();
     assert.match(texts[0], /^svg_mppi commits: /);
