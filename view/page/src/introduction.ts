@@ -52,7 +52,7 @@ const steps: Step[] = [
     layers: 1,
     text: () =>
       "Weights: the lower the cost of a sample, the more weight it has, and the wider and more opaque is " +
-      "its line. Red samples collide; of the others, dark blue ones cost least.",
+      "its line. Red samples collide.",
   },
   {
     layers: 2,
