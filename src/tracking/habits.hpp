@@ -19,7 +19,8 @@ class Habits {
   };
 
   explicit Habits(const CourseLine& course)
-      : cells_(course.closed() ? saturate_cast<std::size_t>(course.length() / spacing) + 1 : 0) {}
+      : cells_(course.closed() ? saturate_cast<std::size_t>(course.length() / 0.5) + 1 : 0),
+        spacing_(course.length() / std::max(static_cast<double>(cells_.size()), 1.0)) {}
 
   void reset() noexcept { std::fill(cells_.begin(), cells_.end(), Habit{}); }
 
@@ -31,24 +32,23 @@ class Habits {
   /// Returns the habit at an arc length, between those of the neighbouring cells.
   Habit at(double arc) const noexcept {
     if (cells_.empty()) return {};
-    const double place = arc / spacing - 0.5;
+    const double place = arc / spacing_ - 0.5;
     const double share = place - std::floor(place);
-    const Habit &here = cells_[cell(arc - 0.5 * spacing)], &next = cells_[cell(arc + 0.5 * spacing)];
+    const Habit &here = cells_[cell(arc - 0.5 * spacing_)], &next = cells_[cell(arc + 0.5 * spacing_)];
     if (here.ratio <= 0 || next.ratio <= 0) return {};
     return {here.offset + share * (next.offset - here.offset),
             here.ratio + share * (next.ratio - here.ratio)};
   }
 
  private:
-  static constexpr double spacing = 0.5;  // m
-
   std::size_t cell(double arc) const noexcept {
-    const double length = spacing * static_cast<double>(cells_.size());
+    const double length = spacing_ * static_cast<double>(cells_.size());
     const double wrapped = arc - length * std::floor(arc / length);
-    return std::min(saturate_cast<std::size_t>(wrapped / spacing), cells_.size() - 1);
+    return std::min(saturate_cast<std::size_t>(wrapped / spacing_), cells_.size() - 1);
   }
 
-  std::vector<Habit> cells_;
+  std::vector<Habit> cells_;  ///< of the whole course, at most 0.5 m each
+  double spacing_;            ///< m, length of a cell
 };
 
 }  // namespace slalom::tracking

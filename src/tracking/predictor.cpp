@@ -252,7 +252,9 @@ std::span<const maps::PredictedObstacle> Predictor::update(std::span<const Track
     const bool room = p.remembered.size() < p.remembered.capacity() || p.find(object.id);
     if (!room) continue;
     Motion motion = motion_of(object, p.course, p.options);
-    if (motion.on_course) motion.habit = p.habits.at(motion.arc);
+    // Behind a car is only what it has just done itself.
+    const double reach = motion.speed * p.options.horizon;
+    if (motion.on_course && p.habits.at(motion.arc + reach).ratio > 0) motion.habit = p.habits.at(motion.arc);
     const Weights& weights = p.weigh(object.id, motion, stamp);
     p.predict(object, motion, weights);
     if (const double there = p.course.empty() ? 0 : p.course.at(motion.arc).speed;

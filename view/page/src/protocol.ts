@@ -112,7 +112,7 @@ const blocks = {
       return { x: x0 + x, y: y0 + y, yaw, speed, steer, spread };
     });
   },
-  /** Kinds: 0 driven, 1 parked car, 2 box, 3 disc, 4 opponent, 5 mover, 6 goal; `touched`: it has collided. */
+  /** Kinds: 0 driven, 1 parked car, 2 box, 3 disc, 4 opponent, 5 mover, 6 goal; `touched`: has collided. */
   bodies: (r: Reader) =>
     Array.from({ length: r.u32() }, () => {
       const [id, kind, touched] = [r.u16(), r.u8(), r.u8() !== 0];

@@ -98,6 +98,18 @@ export class Harness {
     return page.waitForFunction(what, arg, { timeout: patience });
   }
 
+  /** The place on a page of a point of the map frame. */
+  placeOf(page, x, y) {
+    return page.evaluate(
+      ([x, y]) => {
+        const box = document.getElementById("scene").getBoundingClientRect();
+        const [px, py] = slalom.scene.camera.toScreen(x, y);
+        return [box.left + px, box.top + py];
+      },
+      [x, y],
+    );
+  }
+
   /** Starts the drive again and waits until the page has the state of the new one. */
   async restart(page = this.page) {
     await this.until(() => window.slalom?.state, null, page);

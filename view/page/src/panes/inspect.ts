@@ -179,7 +179,8 @@ export class InspectPane {
     const names = page.hello?.problem?.inputs ?? ["steering, rad", "acceleration, m/s²"];
     const count = all?.inputs ?? 0;
     while (this.inputs.length < count) {
-      const title = `Input ${names[this.inputs.length]}: plan solid, nominal dashed, its guide at first dotted`;
+      const name = names[this.inputs.length];
+      const title = `Input ${name}: plan solid, nominal dashed, its guide at first dotted`;
       this.inputs.push(new Chart(get("inspect-charts"), title, []));
     }
     const dashes = [undefined, [6, 3], [2, 3]];

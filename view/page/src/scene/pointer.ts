@@ -8,7 +8,7 @@ const slack = 5; // pixels that a click may move
 const gap = 40; // ms between two messages of a drag
 const longPress = 600; // ms that a finger rests on an obstacle to delete it
 
-/** Whether a body can be dragged: opponents and movers go by themselves, and a problem says what of it can be moved. */
+/** Whether a body can be dragged. Opponents and movers go by themselves; a problem says what can be moved. */
 function isMovable({ kind }: Body) {
   const { can_place, can_move } = page.hello?.problem ?? { can_place: true, can_move: true };
   return !isReplay && kind !== 4 && kind !== 5 && (kind === 0 ? can_place : can_move);

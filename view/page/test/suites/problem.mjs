@@ -2,17 +2,6 @@
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
 
-/** The place on the page of a point of the map frame. */
-const placeOf = (look, x, y) =>
-  look.evaluate(
-    ([x, y]) => {
-      const box = document.getElementById("scene").getBoundingClientRect();
-      const [px, py] = slalom.scene.camera.toScreen(x, y);
-      return [box.left + px, box.top + py];
-    },
-    [x, y],
-  );
-
 export default async function (h) {
   let server = await h.start("view", "--problem", "differential_drive", "--port", "0");
   const look = await h.open(server.address);
@@ -92,11 +81,11 @@ export default async function (h) {
       });
     for (const side of [0.5, -0.5]) {
       const [from, to] = [
-        await placeOf(
+        await h.placeOf(
           look,
           ...(await look.evaluate(() => [slalom.frame.bodies[1].x, slalom.frame.bodies[1].y])),
         ),
-        await placeOf(look, 2, side),
+        await h.placeOf(look, 2, side),
       ];
       await look.mouse.move(...from);
       await look.mouse.down();
@@ -144,7 +133,7 @@ export default async function (h) {
       const k = Math.max(0, i) * c.points + Math.round(0.7 * c.points);
       return [c.xy[2 * k], c.xy[2 * k + 1]];
     });
-    await look.mouse.click(...(await placeOf(look, ...middle)));
+    await look.mouse.click(...(await h.placeOf(look, ...middle)));
     await look.locator("#pane-inspect").waitFor();
     const text = await look.locator("#inspect-text").textContent();
     assert.match(text, /^Rank \d+ of \d+ by cost, weight [\d.e-]+ %\. It (does not collide|collides)/);
@@ -225,14 +214,14 @@ export default async function (h) {
   await h.test("bodies that cannot be moved are not dragged", async () => {
     await h.pause(look);
     const box = await look.evaluate(() => slalom.frame.bodies[1]);
-    const from = await placeOf(look, box.x, box.y);
+    const from = await h.placeOf(look, box.x, box.y);
     await look.mouse.move(...from);
     assert.equal(await look.evaluate(() => document.getElementById("scene").style.cursor), "default");
     await look.mouse.down();
     await look.mouse.move(from[0] + 40, from[1], { steps: 4 });
     await look.mouse.up();
     await h.drawn(look);
-    const [x] = await placeOf(look, box.x, box.y);
+    const [x] = await h.placeOf(look, box.x, box.y);
     assert.ok(x > from[0] + 20, "the scene is moved instead");
     const toast = look.locator("#toast");
     assert.equal((await toast.isVisible()) && (await toast.textContent()), false);

@@ -8,18 +8,9 @@ export default async function (h) {
   const goal = () => look.evaluate(() => slalom.frame.bodies.find((body) => body.kind === 6));
   /** Drags a body by some metres, and waits until it is there. */
   const drag = async (body, dx, dy) => {
-    const place = (x, y) =>
-      look.evaluate(
-        ([x, y]) => {
-          const box = document.getElementById("scene").getBoundingClientRect();
-          const [px, py] = slalom.scene.camera.toScreen(x, y);
-          return [box.left + px, box.top + py];
-        },
-        [x, y],
-      );
-    await look.mouse.move(...(await place(body.x, body.y)));
+    await look.mouse.move(...(await h.placeOf(look, body.x, body.y)));
     await look.mouse.down();
-    await look.mouse.move(...(await place(body.x + dx, body.y + dy)), { steps: 4 });
+    await look.mouse.move(...(await h.placeOf(look, body.x + dx, body.y + dy)), { steps: 4 });
     await look.mouse.up();
     const isThere = ([id, x, y]) =>
       slalom.frame.bodies.some((b) => b.id === id && Math.hypot(b.x - x, b.y - y) < 0.1);
