@@ -47,7 +47,7 @@ class Habits {
     return std::min(saturate_cast<std::size_t>(wrapped / spacing_), cells_.size() - 1);
   }
 
-  std::vector<Habit> cells_;  ///< of the whole course, at most 0.5 m each
+  std::vector<Habit> cells_;  ///< habits along the course, every 0.5 m or less
   double spacing_;            ///< m, length of a cell
 };
 
