@@ -5,7 +5,6 @@
 
 #include "support/adversarial_tries.hpp"
 #include "support/allocation_failures.hpp"
-#include "support/repetitions.hpp"
 #include "tracking/tracker_calls.hpp"
 
 /// Tracker and predictor return finite values, whatever enters them.

@@ -35,7 +35,7 @@ std::map<std::string, MapPair> load_maps(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(folder / (id + "_obstacle.csv"))) continue;
     const double x = about.at("robot_x"), y = about.at("robot_y"), yaw = about.at("robot_yaw");
     maps.emplace(id, MapPair{slalom::testing::load_reference_map(folder, id, x, y),
-                             slalom::testing::load_obstacle_map(folder, id, 0.05, 3, 0, -1), x, y, yaw});
+                             slalom::testing::load_obstacle_map(folder, id), x, y, yaw});
   }
   return maps;
 }

@@ -96,9 +96,6 @@ class SampleSet {
   /// Sets the totals to cost + factor * term and returns the lowest.
   float mix_totals(float factor, ThreadPool& pool) noexcept;
 
-  /// The mean of the finite totals, relative to the lowest, `least`.
-  double mean_excess(float least) const noexcept;
-
   /// Sets the weights to exp((least - total) / temperature), which are not normalised, and returns their
   /// sums.
   WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;

@@ -108,8 +108,7 @@ Json solve_with_both(reference::SvgMppi paper, int horizon, int guides, int solv
     for (int l = 0; l < paper.L; ++l) around_guides.push_back(noise(solve, 2 + l, guides * block));
     Json used = Json::array();  // in the order in which the method draws them
     paper.solve(cost, [&](int l, int k, int i, int r) {
-      const double z = static_cast<double>(
-          k < 0 ? samples.data(r)[i] : around_guides[static_cast<std::size_t>(l)].data(r)[k * block + i]);
+      const double z = k < 0 ? samples.data(r)[i] : around_guides[l].data(r)[k * block + i];
       used.push_back(rounded(z));
       return z;
     });

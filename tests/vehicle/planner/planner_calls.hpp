@@ -13,7 +13,6 @@
 #include "support/adversary.hpp"
 #include "support/any_options.hpp"
 #include "support/any_others.hpp"
-#include "support/call_limits.hpp"
 #include "support/lane.hpp"
 #include "support/promise.hpp"
 
