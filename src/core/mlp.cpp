@@ -15,12 +15,9 @@ namespace {
   throw std::invalid_argument("mlp: " + what);
 }
 
-std::string count_text(std::size_t has, std::size_t must) {
-  return "has " + std::to_string(has) + " values, must have " + std::to_string(must);
-}
-
 void check_values(const std::vector<double>& values, std::size_t count, const std::string& name) {
-  if (values.size() != count) reject(name + ": " + count_text(values.size(), count));
+  if (values.size() != count)
+    reject(name + ": has " + std::to_string(values.size()) + " values, must have " + std::to_string(count));
   for (const double v : values)
     if (!(std::abs(v) <= std::numeric_limits<float>::max()))
       reject(name + ": every value must be a finite float32");

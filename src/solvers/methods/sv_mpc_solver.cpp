@@ -205,7 +205,7 @@ class SvMpcSolver final : public SolverBase {
       for (int k = r.first; k < r.first + r.count; ++k)
         g[k] += options_.published.inverted_prior
                     ? detail::published_prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row])
-                    : detail::prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row]);
+                    : -prior_inverse_[row] * (x.row(row)[k] - mean_[row]);
     }
   }
 
