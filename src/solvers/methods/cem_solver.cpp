@@ -116,9 +116,7 @@ class CemSolver final : public SolverBase {
       std::copy(mean_.begin(), mean_.end(), best_.begin());
     result_.status = status;
     result_.iterations = iteration;
-    const StageTimes times = result_.times;
     detail::report_samples(batch, statistics, batch.sum_weights(batch.samples()), result_);
-    result_.times = times;
     next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());
     return result_;

@@ -66,6 +66,8 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
       samples_.draw_and_evaluate(evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from},
                                  seeks ? nullptr : linear_.data(), pool, deadline);
 
+  result.times.draw += statistics.draw_time;
+  result.times.evaluate += statistics.evaluate_time;
   const auto evaluated = Clock::now();
   WeightSums<double> sums;
   if (statistics.finite > 0) {

@@ -78,8 +78,8 @@ class ReverseMppiSolver final : public SolverBase {
     const Deadline deadline(begin, request.deadline);
     result_.times = {};
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
-    copy(start_, now_);
-    copy(start_rejected_, now_rejected_);
+    now_ = start_;
+    now_rejected_ = start_rejected_;
 
     detail::BatchStatistics statistics;
     Status status = Status::deadline;
@@ -109,11 +109,6 @@ class ReverseMppiSolver final : public SolverBase {
     result_.nominal = zero_;
     result_.variances = now_.variance;
     if (result_.samples) detail::bind_samples(samples_, result_);
-  }
-
-  static void copy(const Gaussian& from, Gaussian& to) noexcept {
-    std::copy(from.mean.begin(), from.mean.end(), to.mean.begin());
-    std::copy(from.variance.begin(), from.variance.end(), to.variance.begin());
   }
 
   void shift(double steps) noexcept {
@@ -236,9 +231,7 @@ class ReverseMppiSolver final : public SolverBase {
 
   void report(const detail::BatchStatistics& statistics) noexcept {
     std::copy_n(evaluated_.begin(), samples_.weights().size(), samples_.weights().begin());
-    const StageTimes times = result_.times;
     detail::report_samples(samples_, statistics, samples_.sum_weights(samples_.samples()), result_);
-    result_.times = times;
     result_.temperature = options_.temperature;
   }
 

@@ -81,6 +81,7 @@ class SvMpcSolver final : public SolverBase {
 
     const detail::BatchStatistics statistics =
         particles_.evaluate(evaluator, control_.data(), pool(), deadline);
+    result_.times.evaluate += statistics.evaluate_time;
     const auto evaluated = detail::Clock::now();
     const bool usable = statistics.finite > 0 && finite_particles();
     detail::WeightSums<double> sums;

@@ -318,8 +318,6 @@ void report_samples(const SampleSet& set, const BatchStatistics& statistics, con
   result.effective_sample_size = sums.effective();
   result.collided_share =
       statistics.evaluated > 0 ? static_cast<double>(statistics.collided) / statistics.evaluated : 0;
-  result.times.draw += statistics.draw_time;
-  result.times.evaluate += statistics.evaluate_time;
 }
 
 }  // namespace slalom::detail

@@ -170,7 +170,7 @@ void control_coefficients(double temperature, double discount, double inverse_va
 /// Points the spans of a result to the samples of `set`.
 void bind_samples(const SampleSet& set, SolveResult& result) noexcept;
 
-/// Writes the samples of `set`, their statistics and the sums of their weights to a result.
+/// Writes the samples of `set`, their statistics but the times, and the sums of their weights to a result.
 void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
                     SolveResult& result) noexcept;
 
