@@ -211,8 +211,7 @@ void ParameterEstimator::learn_offset(double straightness) noexcept {
   offset = std::clamp(offset + share * period_ / offset_time * missing, -largest_offset, largest_offset);
 }
 
-/// Returns the quantile of the friction's logarithm. The density is constant in the interval around a grid
-/// point.
+/// Returns the quantile of the friction's logarithm, whose density is constant around each grid point.
 double ParameterEstimator::log_quantile(const std::array<double, frictions>& shares,
                                         double quantile) const noexcept {
   double below = 0;
