@@ -129,8 +129,7 @@ bool acceptable(const Curve& curve, const TrackGeneratorOptions& options, double
   return min_gap(curve, pi * radius) >= options.width + 2 * options.wall;
 }
 
-/// Turns the curve about the origin so that it is as small as possible in y, so that maps and pictures have
-/// the least empty area.
+/// Turns the curve about the origin to the least extent in y: its map has the least empty area.
 void lay_flat(Curve& curve) {
   double best_height = 0, best_angle = 0;
   for (int k = 0; k < 60; ++k) {

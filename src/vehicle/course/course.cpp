@@ -93,8 +93,7 @@ fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vect
                   ignored);
 }
 
-/// Drops a last row that repeats the first, then requires at least three points, of which successive ones
-/// differ.
+/// Drops a last row that repeats the first; requires at least three points, of which successive ones differ.
 void check_points(std::vector<Waypoint>& points, std::vector<int>& lines, const fs::path& file) {
   if (points.size() > 1 && distance(points.front(), points.back()) == 0) {
     points.pop_back();
@@ -245,13 +244,12 @@ maps::OccupancyGrid reachable_map(const Course& course) {
     const maps::Point cell = in_cells(map, {point.x, point.y});
     const int column = saturate_cast<int>(std::floor(cell.x)), row = saturate_cast<int>(std::floor(cell.y));
     if (!map.contains(column, row)) continue;
-    if (const int region = free.at(column, row); region >= 0) reached[static_cast<std::size_t>(region)] = 1;
+    if (const int region = free.at(column, row); region >= 0) reached[region] = 1;
   }
   for (int row = 0; row < map.height; ++row)
     for (int column = 0; column < map.width; ++column) {
       const int region = free.at(column, row);
-      if (region >= 0 && !reached[static_cast<std::size_t>(region)])
-        map.at(column, row) = maps::Occupancy::unknown;
+      if (region >= 0 && !reached[region]) map.at(column, row) = maps::Occupancy::unknown;
     }
   return map;
 }

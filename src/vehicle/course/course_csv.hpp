@@ -17,9 +17,9 @@ enum class CsvForm { optimised_line, raceline, centre_line, other };
 /// Detects the format of a CSV from its first lines. Throws IoError if it cannot be read.
 CsvForm csv_form(const std::filesystem::path& file);
 
-/// Position and speed of every row; yaw and arc length are left 0. Throws IoError for cells that are not
-/// finite numbers, wrong column counts, negative speeds and speeds that are all 0. `lines` gets the line
-/// number of every row.
+/// Position and speed of every row; yaw and arc length are left 0. `lines` gets the rows' line numbers.
+/// Throws IoError for cells that are not finite, wrong column counts, negative speeds and speeds that are all
+/// 0.
 std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm form,
                                      std::vector<int>& lines);
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "slalom/maps/pose.hpp"
-#include "slalom/vehicle/course/course.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -20,9 +19,6 @@ struct CourseFile {
 
 /// Reads course.yaml. Throws IoError for unknown keys and for values of the wrong type or out of range.
 CourseFile read_course_file(const std::filesystem::path& file);
-
-/// Reads the entry `name` of a table of known courses, if it is there.
-std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, const std::string& name);
 
 /// Whether a yaml file can be a map: it has the key `image`, or it is not valid YAML, so that
 /// loading it as a map reports the error.

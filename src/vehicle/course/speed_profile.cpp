@@ -22,14 +22,6 @@ SpeedLimits grip_limits(double friction, double top_speed, double acceleration, 
   return {top_speed, grip, std::min(grip, acceleration), std::min(grip, braking)};
 }
 
-std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
-                                  const SpeedLimits& limits) {
-  detail::require(step > 0, "step", step, "above 0");
-  const std::size_t n = curvature.size();
-  return feasible_speeds(std::vector<double>(n, limits.top_speed), curvature, std::vector<double>(n, step),
-                         true, limits);
-}
-
 std::vector<double> feasible_speeds(std::span<const double> given, std::span<const double> curvature,
                                     std::span<const double> step, bool closed, const SpeedLimits& limits) {
   detail::require_plausible(limits);
@@ -56,7 +48,8 @@ std::vector<double> feasible_speeds(std::span<const double> given, std::span<con
   return speed;
 }
 
-PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bool> closed, double arm) {
+PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bool> closed) {
+  constexpr double arm = 0.4;  // m, of the chords before and after a point
   PathGeometry path;
   const std::size_t n = points.size();
   path.step.assign(n, 0);

@@ -49,7 +49,6 @@ constexpr double near_place = 0.5, near_yaw = 0.3;
 constexpr double trust_unit = 0.3, max_trust = 5, doubt_keeps = 0.93, min_trust = 0.3;
 constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
 
-/// Whether a pose is a number and as large as that of a car may be.
 /// The pose `to` in the frame of `from`.
 maps::Pose relative(const maps::Pose& from, const maps::Pose& to) {
   const maps::Point p = maps::inverse_transform(from, {to.x, to.y});
@@ -132,8 +131,7 @@ struct Localiser::Implementation {
   bool settled = false;                ///< the place was given, or a search ended with it
   bool lost = false;                   ///< no place is known, and no scan was used since
   double search_until = -1;            ///< s, stamp
-  double place_log_fit =
-      0;  ///< log fit of the particles' place, averaged as those of the search's hypotheses are
+  double place_log_fit = 0;            ///< log fit of the particles' place, averaged as of hypotheses
 };
 
 /// Moves the particles by what the odometry says since the last update.
@@ -196,12 +194,11 @@ void Localiser::Implementation::estimate() noexcept {
 /// Weights the particles by the scan, computes the estimate, and resamples if necessary (Table 8.3).
 void Localiser::Implementation::use_scan() noexcept {
   output.particles = particles.count();
-  output.effective_samples = particles.weigh(*sensor, beams, beam_exponent);
+  const double effective_samples = particles.weigh(*sensor, beams, beam_exponent);
   estimate();
   slow = slow == 0 ? fit : slow + slow_rate * (fit - slow);
   fast = fast == 0 ? fit : fast + fast_rate * (fit - fast);
-  output.resampled = output.effective_samples < resample_below * particles.count();
-  if (output.resampled) particles.resample(next_key());
+  if (effective_samples < resample_below * particles.count()) particles.resample(next_key());
   look_elsewhere();
 }
 
@@ -242,20 +239,17 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   place_log_fit = best->log_fit;
   trust = 0;
   settled = false;
-  output.relocated = true;
   estimate();
 }
 
 void LocaliserOptions::validate() const {
   validate_options(*this, "localiser");
-  if (max_particles < min_particles) {
+  if (max_particles < min_particles)
     throw std::invalid_argument("localiser.max_particles: " + std::to_string(max_particles) +
                                 " must be at least min_particles, " + std::to_string(min_particles));
-  }
-  if (min_beams > beams) {
+  if (min_beams > beams)
     throw std::invalid_argument("localiser.min_beams: " + std::to_string(min_beams) +
                                 " must be at most beams, " + std::to_string(beams));
-  }
 }
 
 Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options)
@@ -292,8 +286,6 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
     out.update_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return out;
   };
-  out.relocated = false;
-  out.resampled = false;
   out.beams = 0;
   if (!maps::is_plausible(input.odometry) || !(std::abs(input.stamp) <= LocaliserInput::latest))
     return finish(LocaliserStatus::bad_odometry);

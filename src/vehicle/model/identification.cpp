@@ -82,8 +82,7 @@ class Model {
   }
 
  private:
-  /// Moves the wheels towards `target` for `dt` (s). Returns the integral of the tangent of their angle, by
-  /// Simpson's rule.
+  /// Moves the wheels towards `target` for `dt` (s). Returns the integral of their tangent (Simpson's rule).
   static double run(double& steer, double target, double lag, double dt) {
     const double half = std::exp(-0.5 * dt / lag);
     const double middle = target + (steer - target) * half, end = target + (steer - target) * half * half;

@@ -20,7 +20,7 @@ std::optional<VectorXd> solve(const MatrixXd& a, const VectorXd& b,
                               std::span<const FitParameter> parameters) {
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < b.size(); ++i)
-    if (parameters[static_cast<std::size_t>(i)].sought && a(i, i) > 0) free.push_back(i);
+    if (parameters[i].sought && a(i, i) > 0) free.push_back(i);
   VectorXd x = VectorXd::Zero(b.size());
   if (free.empty()) return x;
   const Eigen::LDLT<MatrixXd> factors(a(free, free));
@@ -119,7 +119,7 @@ std::vector<double> deviations(const Fit& fit, std::span<const FitParameter> par
   const auto n = static_cast<Eigen::Index>(parameters.size());
   std::vector<double> found;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const bool sought = parameters[static_cast<std::size_t>(i)].sought;
+    const bool sought = parameters[i].sought;
     const auto column =
         fit.normal(i, i) > 0 ? solve(fit.normal, VectorXd::Unit(n, i), parameters) : std::nullopt;
     found.push_back(!sought ? 0 : column ? std::sqrt(std::max(0.0, variance * (*column)[i])) : INFINITY);

@@ -128,8 +128,7 @@ class Drive {
 
   std::vector<Window>& windows() { return windows_; }
 
-  /// The predicted change of yaw and sideways displacement of every window minus the measured ones, over
-  /// these deviations.
+  /// Predicted minus measured change of yaw and sideways displacement of every window, over these deviations.
   void residuals(std::span<const double> p, double yaw_deviation, double sideways_deviation,
                  std::vector<double>& out) const {
     SingleTrackOptions own = own_;
