@@ -9,8 +9,7 @@
 #include "slalom/core/read_file.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/ros_map.hpp"
-#include "vehicle/course/course_csv.hpp"
-#include "vehicle/course/course_yaml.hpp"
+#include "vehicle/course/course_readers.hpp"
 #include "vehicle/racing/cell_regions.hpp"
 
 namespace slalom::vehicle {
@@ -162,15 +161,6 @@ fs::path path_folder(const fs::path& folder) {
   return maps.filename() == "map" && fs::is_directory(path) ? path : folder;
 }
 
-void load_path(Course& course, const fs::path& folder) {
-  detail::CsvForm form = detail::CsvForm::other;
-  const fs::path file = find_waypoints(folder, form, course.notes);
-  std::vector<int> lines;
-  course.waypoints = detail::read_waypoints(file, form, lines);
-  check_points(course.waypoints, lines, file);
-  check_on_map(course, lines, file);
-}
-
 }  // namespace
 
 void complete_course(Course& course, std::optional<bool> closed) {
@@ -198,7 +188,12 @@ Course load_course(const fs::path& folder, maps::MapRule rule) {
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
   course.map = maps::load_ros_map(find_map(folder, course.notes), rule, &course.notes);
-  load_path(course, paths);
+  detail::CsvForm form = detail::CsvForm::other;
+  const fs::path line = find_waypoints(paths, form, course.notes);
+  std::vector<int> rows;
+  course.waypoints = detail::read_waypoints(line, form, rows);
+  check_points(course.waypoints, rows, line);
+  check_on_map(course, rows, line);
   if (const fs::path points = paths / obstacle_file; fs::exists(points))
     course.obstacle_path = detail::read_points(points);
   const fs::path file = folder / course_file;

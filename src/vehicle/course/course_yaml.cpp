@@ -1,9 +1,8 @@
-#include "vehicle/course/course_yaml.hpp"
+#include "vehicle/course/course_readers.hpp"
 
 #include "slalom/core/error.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/yaml_text.hpp"
-#include "slalom/vehicle/course/course.hpp"
 #include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle {

@@ -9,13 +9,6 @@
 #include "vehicle/require.hpp"
 
 namespace slalom::vehicle {
-namespace {
-
-double yaw_of(const maps::Point& from, const maps::Point& to) {
-  return std::atan2(to.y - from.y, to.x - from.x);
-}
-
-}  // namespace
 
 SpeedLimits grip_limits(double friction, double top_speed, double acceleration, double braking) {
   const double grip = friction * gravity;
@@ -61,6 +54,9 @@ PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bo
     if (i + 1 < n) longest = std::max(longest, path.step[i]);
   }
   path.closed = closed.value_or(path.step[n - 1] <= 3 * longest);
+  const auto yaw_of = [&](std::size_t from, std::size_t to) {
+    return std::atan2(points[to].y - points[from].y, points[to].x - points[from].x);
+  };
   for (std::size_t i = 0; i < n; ++i) {
     std::size_t before = i, after = i;
     double way_before = 0, way_after = 0;
@@ -73,8 +69,7 @@ PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bo
       after = (after + 1) % n;
     }
     if (before == i || after == i) continue;  // an end of an open path
-    const double turned =
-        maps::wrap_angle(yaw_of(points[i], points[after]) - yaw_of(points[before], points[i]));
+    const double turned = maps::wrap_angle(yaw_of(i, after) - yaw_of(before, i));
     path.curvature[i] =
         2 * turned / (distance(points[before], points[i]) + distance(points[i], points[after]));
   }

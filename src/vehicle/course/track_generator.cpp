@@ -12,11 +12,7 @@
 namespace slalom::vehicle {
 namespace {
 
-using detail::Curve;
-using detail::dot;
-using detail::operator+;
-using detail::operator-;
-using detail::operator*;
+using namespace detail;  // curves, and the operators of points
 
 constexpr double program_step = 0.25;   // m between the points of the raceline's quadratic program
 constexpr double raceline_step = 0.11;  // m

@@ -60,17 +60,12 @@ maps::Pose compose(const maps::Pose& frame, const maps::Pose& pose) {
   return {p.x, p.y, maps::wrap_angle(frame.yaw + pose.yaw)};
 }
 
-const LocaliserOptions& checked(const LocaliserOptions& options) {
-  options.validate();
-  return options;
-}
-
 }  // namespace
 
 struct Localiser::Implementation {
   Implementation(const maps::OccupancyGrid& map, const LocaliserOptions& o)
-      : options(checked(o)),
-        origin(detail::checked(map).origin),
+      : options(o),
+        origin(map.origin),
         sensor(std::make_shared<SensorTables>(map, options)),
         free_cells(std::make_shared<FreeCells>(map)),
         particles(options, free_cells),
@@ -194,11 +189,11 @@ void Localiser::Implementation::estimate() noexcept {
 /// Weights the particles by the scan, computes the estimate, and resamples if necessary (Table 8.3).
 void Localiser::Implementation::use_scan() noexcept {
   output.particles = particles.count();
-  const double effective_samples = particles.weigh(*sensor, beams, beam_exponent);
+  output.effective_samples = particles.weigh(*sensor, beams, beam_exponent);
   estimate();
   slow = slow == 0 ? fit : slow + slow_rate * (fit - slow);
   fast = fast == 0 ? fit : fast + fast_rate * (fit - fast);
-  if (effective_samples < resample_below * particles.count()) particles.resample(next_key());
+  if (output.effective_samples < resample_below * particles.count()) particles.resample(next_key());
   look_elsewhere();
 }
 
@@ -252,8 +247,11 @@ void LocaliserOptions::validate() const {
                                 " must be at most beams, " + std::to_string(beams));
 }
 
-Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options)
-    : implementation_(std::make_unique<Implementation>(map, options)) {}
+Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
+  options.validate();
+  detail::check_map(map);
+  implementation_ = std::make_unique<Implementation>(map, options);
+}
 Localiser::~Localiser() = default;
 Localiser::Localiser(const Localiser& other)
     : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}

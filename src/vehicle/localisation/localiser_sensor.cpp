@@ -40,9 +40,6 @@ double hit_density(const LocaliserOptions& o) {
 double random_density(const LocaliserOptions& o) {
   return random_weight / o.range_cap;
 }
-double highest_density(const LocaliserOptions& o) {
-  return hit_density(o) + random_density(o);
-}
 
 /// Distance (m, at most `most`) along a direction to the first occupied cell, from a point in cells: steps as
 /// long as the distances of the cells allow (sphere tracing, J. C. Hart, The Visual Computer 12, 1996).
@@ -62,7 +59,7 @@ double cast(const maps::DistanceField& walls, double x, double y, double dx, dou
 
 }  // namespace
 
-const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
+void check_map(const maps::OccupancyGrid& map) {
   maps::check_grid(map);
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("localiser: map: must have ") + what);
@@ -70,7 +67,6 @@ const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
   require(map.width <= 32766 && map.height <= 32766, "at most 32766 cells to a side");
   require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::free) > 0, "a free cell");
   require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied) > 0, "an occupied cell");
-  return map;
 }
 
 bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& options,
@@ -227,15 +223,15 @@ void SensorTables::weigh(const ParticlePoses& particles, const ScanBeams& beams,
   in.beams = &beams;
   in.place = place_.view(geometry_);
   in.log_fit = log_fit;
-  const double highest = highest_density(options_);
+  const double hit = hit_density(options_), random = random_density(options_), highest = hit + random;
   in.rows = table_.rows.view(table_.geometry);
   in.pairs = table_.pairs.data();
   in.range_unit = table_.range_unit;
   in.laser_x = static_cast<float>(options_.laser_x);
   in.laser_y = static_cast<float>(options_.laser_y);
   in.hit_scale = static_cast<float>(-0.5 / (options_.hit_deviation * options_.hit_deviation));
-  in.hit = static_cast<float>(hit_density(options_) / highest);
-  in.random = static_cast<float>(random_density(options_) / highest);
+  in.hit = static_cast<float>(hit / highest);
+  in.random = static_cast<float>(random / highest);
   in.short_scale = static_cast<float>(short_weight * short_rate / highest);
   in.short_rate = static_cast<float>(short_rate);
   in.lost = static_cast<float>(std::log(std::max(1e-3, lost_weight)));

@@ -38,8 +38,8 @@ struct ScanBeams {
   int count = 0;                              ///< number of all beams
 };
 
-/// Returns the map. Throws std::invalid_argument where a localiser cannot use it (see Localiser).
-const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map);
+/// Throws std::invalid_argument where a localiser cannot use the map (see Localiser).
+void check_map(const maps::OccupancyGrid& map);
 
 /// Chooses readings evenly over the scan: of every part of it the first usable one. False where the scan has
 /// an invalid geometry or fewer than `min_beams` usable readings.

@@ -59,7 +59,7 @@ class CommandHistory {
     for (int i = oldest; i >= 0; --i) {
       const double sent = -(i + 1 - newest) * period_;
       const double from = std::max(begin, sent), to = std::min(end, sent + period_);
-      if (to > from + 1e-12) act(sent_[static_cast<std::size_t>(i)], to - from);
+      if (to > from + 1e-12) act(sent_[i], to - from);
     }
   }
   void turn_wheels(double& steer, double command, double duration) const noexcept {

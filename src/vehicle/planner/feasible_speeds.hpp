@@ -92,7 +92,7 @@ class FeasibleSpeeds {
   }
 
   /// The distance of a point along the path, m.
-  double arc(int point) const noexcept { return arc_[static_cast<std::size_t>(point)]; }
+  double arc(int point) const noexcept { return arc_[point]; }
   /// The length of a closed path, m; 0 if it is open.
   double length() const noexcept { return gap_.back() > 0 ? arc_.back() + gap_.back() : 0; }
 

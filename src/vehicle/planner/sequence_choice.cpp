@@ -35,9 +35,8 @@ bool cheaper(const PredictedCost& one, const PredictedCost& other) {
 int cheapest_sample(const SolveResult& result) {
   int cheapest = -1;
   for (int k = 0; result.samples && k < result.samples->samples(); ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (result.collided[i] || !std::isfinite(result.costs[i])) continue;
-    if (cheapest < 0 || result.costs[i] < result.costs[static_cast<std::size_t>(cheapest)]) cheapest = k;
+    if (result.collided[k] || !std::isfinite(result.costs[k])) continue;
+    if (cheapest < 0 || result.costs[k] < result.costs[cheapest]) cheapest = k;
   }
   return cheapest;
 }

@@ -40,7 +40,7 @@ double at(const FeasibleSpeeds& speeds, double arc) {
   while (i + 1 < count && speeds.arc(i + 1) <= arc) ++i;
   const double end = i + 1 < count ? speeds.arc(i + 1) : speeds.length();
   const double share = (arc - speeds.arc(i)) / (end - speeds.arc(i));
-  const auto value = [&](int k) { return speeds.speeds()[static_cast<std::size_t>(k % count)]; };
+  const auto value = [&](int k) { return speeds.speeds()[k % count]; };
   return value(i) + share * (value(i + 1) - value(i));
 }
 

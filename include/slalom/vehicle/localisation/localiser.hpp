@@ -65,6 +65,7 @@ struct LocaliserOutput {
   double fit = 0;                ///< share of beams that the map explains at the estimate, 0 .. 1
   double share = 0;              ///< share of the weight near the estimate, 0 .. 1
   double health = 0;             ///< fit times share
+  double effective_samples = 0;  ///< 1 / sum of squared weights, before resampling
   double update_time = 0;        ///< s of wall clock
   int particles = 0;             ///< particles that weighed this scan
   int beams = 0;                 ///< used of this scan
