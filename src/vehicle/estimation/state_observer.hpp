@@ -35,8 +35,7 @@ class StateObserver {
   /// Forgets everything.
   void reset() noexcept;
 
-  /// Takes the measurements one control period after the last ones. Predictions assume ground of this
-  /// friction.
+  /// Takes the measurements one control period after the last ones. Predictions assume this friction.
   void update(const DynamicVehicleModel& model, const ObserverInput& input, double friction) noexcept;
 
   /// Records the command that is sent now. The next updates use it.

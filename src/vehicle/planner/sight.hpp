@@ -89,8 +89,7 @@ class Sight {
   static constexpr double least_speed = 1;     ///< m/s: at this speed a car sees around any corner in time
 
   /// Returns the longest of the reading in a direction (rad, frame of the laser) and its neighbours, since a
-  /// point is in sight if one of these beams passes it. Returns infinity if a beam hits nothing, and 0
-  /// outside of the scan.
+  /// point is in sight if one of them passes it: infinity if a beam hits nothing, 0 outside of the scan.
   static double reading(const maps::LaserScanView& scan, double bearing) noexcept {
     constexpr double round = 2 * std::numbers::pi;
     double turn = std::fmod(bearing - scan.angle_min, round);

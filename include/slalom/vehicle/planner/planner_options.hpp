@@ -1,9 +1,21 @@
 #pragma once
 
 #include "slalom/core/options.hpp"
-#include "slalom/vehicle/published/planner_options.hpp"
 
 namespace slalom::vehicle {
+
+namespace published {
+
+/// Parts of the planner that follow the published program of Honda et al. (ICRA 2024).
+struct PlannerOptions {
+  bool maps = false;  ///< cost map and reference field as in the paper's program
+  /// Subtract whole turns from the planned steering angle, and limit only the command to `steer_limit`: the
+  /// observer follows the angle itself. It matters where a method leaves its bounds (`clamp_solution`). The
+  /// paper's program sends the angle without a limit; its simulator stops the wheels at 0.4189 rad.
+  bool wrap_steer = false;
+};
+
+}  // namespace published
 
 /// Options of the estimates of state, car and ground that are made while driving, for models whose tyres
 /// slip. `visit_options` below describes the fields.
