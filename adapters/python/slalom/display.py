@@ -15,9 +15,6 @@ from typing import Any, Callable, Dict, Iterable, Tuple
 
 from . import plot
 
-_PARTS = ("dynamics", "cost", "terminal_cost", "states", "inputs", "dt", "input_min", "input_max", "input_rate_max",
-          "sampler")
-
 _option_names: set[str] = set()  # names of the options of all methods
 
 Arguments = Tuple[Tuple[Any, ...], Dict[str, Any]]  # arguments by position and by name
@@ -45,7 +42,8 @@ def install(solvers: ModuleType) -> None:
             setattr(cls, "__repr__", _controller_text)
             setattr(cls, "__setattr__", _refuse_attribute)
         elif cls is solvers.Problem:
-            _constructed(cls, lambda problem: ((), {name: getattr(problem, name) for name in _PARTS}))
+            parts = list(inspect.signature(cls).parameters)
+            _constructed(cls, lambda problem: ((), {name: getattr(problem, name) for name in parts}))
         elif cls is solvers.RiskEvaluator:
             _constructed(cls, lambda risk: ((risk.problem, risk.randomize), risk.options))
         elif cls is solvers.CompiledProblem:

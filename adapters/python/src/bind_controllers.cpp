@@ -2,15 +2,13 @@
 #include <cmath>
 #include <limits>
 
-#include "plan.hpp"
+#include "controller.hpp"
 
 namespace slalom::python {
 namespace {
 
-using Sequences = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 /// Throws std::invalid_argument unless the solver takes proposals of this shape, or there are none.
-void check_proposals(const Solver& solver, const Sequences& proposals) {
+void check_proposals(const Solver& solver, const Numbers& proposals) {
   if (proposals.size() == 0) return;
   if (!solver.takes_proposals())
     throw std::invalid_argument("proposals: the method " + std::string(solver.name()) +
@@ -19,7 +17,7 @@ void check_proposals(const Solver& solver, const Sequences& proposals) {
   if ((first != 0 && first != 1) || proposals.shape(first) != solver.horizon() ||
       proposals.shape(first + 1) != solver.inputs()) {
     const std::string one = std::to_string(solver.horizon()) + ", " + std::to_string(solver.inputs());
-    throw std::invalid_argument("proposals: have the shape " + shape_text(proposals) +
+    throw std::invalid_argument("proposals: have the shape " + shape_text(extents_of(proposals)) +
                                 ", must have (sequences, " + one + ") or (" + one + ")");
   }
   for (py::ssize_t i = 0; i < proposals.size(); ++i)
@@ -52,8 +50,7 @@ py::object state_of(const py::object& self) {
   if (!controller.is_new())
     throw std::runtime_error(
         "controller: has been used, and its state cannot be pickled: pickle it before its first solve, or "
-        "copy "
-        "it with copy.copy");
+        "copy it with copy.copy");
   const std::string method = std::string(controller.on_gpu() ? gpu_prefix : "") + controller.solver().name();
   return py::make_tuple(method, self.attr("problem"), values_of(controller.options()));
 }
@@ -100,7 +97,7 @@ void bind_method(py::module_& module, const py::object& controller, const std::s
       [controller](const py::object& self, const py::object& problem, const py::kwargs& keywords) {
         controller.attr("__init__")(self, self.attr("_method"), problem, **keywords);
       },
-      py::name("__init__"), py::is_method(cls), py::arg("problem"));
+      py::name("__init__"), py::is_method(cls), "problem"_a);
   module.attr(name.c_str()) = cls;
 }
 
@@ -109,11 +106,11 @@ void bind_method(py::module_& module, const py::object& controller, const std::s
 void bind_controllers(py::module_& module) {
   bind_plan(module);
   py::class_<Controller> base(module, "Controller", "Base class of all controllers.");
-  base.def(py::init(&make_controller), py::arg("method"), py::arg("problem"))
+  base.def(py::init(&make_controller), "method"_a, "problem"_a)
       .def(
           "solve",
           [](const py::object& self, std::vector<double> state, double elapsed, double deadline,
-             const Sequences& proposals) {
+             const Numbers& proposals) {
             auto& controller = self.cast<Controller&>();
             check_proposals(controller.solver(), proposals);
             const std::vector<float> values(proposals.data(), proposals.data() + proposals.size());
@@ -122,8 +119,8 @@ void bind_controllers(py::module_& module) {
             controller.solve(self, std::move(state), {elapsed, deadline, {values, count}});
             return Plan{self, controller.solves()};
           },
-          py::arg("state"), py::arg("elapsed") = 0.0,
-          py::arg("deadline") = std::numeric_limits<double>::infinity(), py::arg("proposals") = Sequences(),
+          "state"_a, "elapsed"_a = 0.0, "deadline"_a = std::numeric_limits<double>::infinity(),
+          "proposals"_a = Numbers(),
           "Returns the plan from `state`. The warm start is shifted by `elapsed` (s), the time since the "
           "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
           "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
@@ -131,9 +128,9 @@ void bind_controllers(py::module_& module) {
       .def(py::pickle(&state_of, &from_state))
       .def("__copy__", &copy)
       .def("__deepcopy__", [](const py::object& self, const py::dict&) { return copy(self); })
-      .def("reset", &Controller::reset, py::arg("seed") = 0,
+      .def("reset", &Controller::reset, "seed"_a = 0,
            "Discards all state and starts the random numbers from `seed`.")
-      .def("set_previous_input", &Controller::set_previous_input, py::arg("input"),
+      .def("set_previous_input", &Controller::set_previous_input, "input"_a,
            "Sets the input applied before the next solve, for problems with limits on their input rates. "
            "By default it is the input that the last plan had for that time.")
       .def("prepare", &Controller::prepare,
@@ -164,8 +161,8 @@ void bind_controllers(py::module_& module) {
         for (const py::object& each : controllers) plans.push_back({each, each.cast<Controller&>().solves()});
         return plans;
       },
-      py::arg("controllers"), py::arg("states"), py::arg("elapsed") = 0.0,
-      py::arg("deadline") = std::numeric_limits<double>::infinity(), py::arg("threads") = 1,
+      "controllers"_a, "states"_a, "elapsed"_a = 0.0, "deadline"_a = std::numeric_limits<double>::infinity(),
+      "threads"_a = 1,
       "The plans of many controllers, each from its own state and its own last plan, in parallel on "
       "`threads` threads; with callables on one. Copies of one controller draw the same noise unless each is "
       "reset with a seed of its own.");
@@ -178,7 +175,7 @@ void bind_controllers(py::module_& module) {
       "The names of all methods.");
   module.def(
       "options", [](const std::string& method) { return describe_options(solver_options(method)); },
-      py::arg("method"), "The options of a method: a dictionary for each.");
+      "method"_a, "The options of a method: a dictionary for each.");
 }
 
 }  // namespace slalom::python

@@ -10,13 +10,15 @@ CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom
            slalom.DialMpc]
 
 
+def dynamics(x, u):
+    return np.stack([x[:, 0] + np.float32(0.1) * x[:, 1], x[:, 1] + np.float32(0.1) * u[:, 0]]).T
+
+
+def cost(x, u):
+    return x[:, 0] ** 2 + np.float32(0.1) * x[:, 1] ** 2 + np.float32(0.1) * u[:, 0] ** 2
+
+
 def linear(**changes):
-    def dynamics(x, u):
-        return np.stack([x[:, 0] + np.float32(0.1) * x[:, 1], x[:, 1] + np.float32(0.1) * u[:, 0]]).T
-
-    def cost(x, u):
-        return x[:, 0] ** 2 + np.float32(0.1) * x[:, 1] ** 2 + np.float32(0.1) * u[:, 0] ** 2
-
     return slalom.Problem(**{"dynamics": dynamics, "cost": cost, "states": 2, "inputs": 1, "dt": 0.1, **changes})
 
 
@@ -132,7 +134,7 @@ def test_collisions_of_callables_are_reported():
 
 @pytest.mark.parametrize("changes, error, text", [
     ({"cost": lambda x, u: 1 / 0}, ZeroDivisionError, "division"),
-    ({"cost": lambda x, u: np.zeros(3)}, ValueError, r"cost: returned shape \(3\), must be \(1920,\)"),
+    ({"cost": lambda x, u: np.zeros(3)}, ValueError, r"cost: returned shape \(3,\), must be \(1920,\)"),
     ({"cost": lambda x, u: 0.0}, TypeError, "cost: returned <class 'float'>, must be an array"),
     ({"dynamics": lambda x, u: x[:, :1]}, ValueError, r"dynamics: returned shape \(64, 1\), must be \(64, 2\)"),
 ])
@@ -237,7 +239,7 @@ def test_a_sampler_brings_its_own_noise():
         assert np.allclose(plan.samples, plan.samples[:, :1]) and np.std(plan.samples[:, 0]) > 0.5
         plans.append(plan.inputs.copy())
     assert np.array_equal(*plans)
-    with pytest.raises(ValueError, match=r"sampler: returned shape \(2\), must be \("):
+    with pytest.raises(ValueError, match=r"sampler: returned shape \(2,\), must be \("):
         slalom.Mppi(pushed(sampler=lambda *_: np.zeros(2)), horizon=6).solve([2, 0])
 
 
@@ -286,7 +288,7 @@ def test_proposals_that_do_not_fit_are_errors():
     controller = slalom.Mppi(slalom.Pendulum(), horizon=10)
     with pytest.raises(ValueError, match=r"proposals: have the shape \(9, 1\), must have \(sequences, 10, 1\) or "):
         controller.solve([0, 0], proposals=np.zeros((9, 1)))
-    with pytest.raises(ValueError, match=r"proposals: have the shape \(10\), must have"):
+    with pytest.raises(ValueError, match=r"proposals: have the shape \(10,\), must have"):
         controller.solve([0, 0], proposals=np.zeros(10))
     with pytest.raises(ValueError, match="proposals: must be finite"):
         controller.solve([0, 0], proposals=np.full((10, 1), np.nan))
