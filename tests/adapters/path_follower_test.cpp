@@ -22,21 +22,19 @@ struct Room {
       : width(static_cast<int>(std::lround(length_x / 0.05))),
         height(static_cast<int>(std::lround(length_y / 0.05))),
         costs(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0) {}
+  /// The middle of a cell.
+  maps::Point middle(std::size_t cell) const {
+    const int row = static_cast<int>(cell) / width, column = static_cast<int>(cell) % width;
+    return {x + (column + 0.5) * 0.05, y + (row + 0.5) * 0.05};
+  }
   void fill(double x0, double y0, double x1, double y1, unsigned char cost = lethal) {
-    for (int row = 0; row < height; ++row)
-      for (int column = 0; column < width; ++column) {
-        const double px = x + (column + 0.5) * 0.05, py = y + (row + 0.5) * 0.05;
-        if (px >= x0 && px <= x1 && py >= y0 && py <= y1)
-          costs[static_cast<std::size_t>(row * width + column)] = cost;
-      }
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      if (const maps::Point p = middle(i); p.x >= x0 && p.x <= x1 && p.y >= y0 && p.y <= y1) costs[i] = cost;
   }
   /// Whether an obstacle is nearer than a distance (m).
   bool is_obstacle_within(const maps::Pose& pose, double distance) const {
-    for (int row = 0; row < height; ++row)
-      for (int column = 0; column < width; ++column)
-        if (costs[static_cast<std::size_t>(row * width + column)] == lethal &&
-            std::hypot(x + (column + 0.5) * 0.05 - pose.x, y + (row + 0.5) * 0.05 - pose.y) < distance)
-          return true;
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      if (costs[i] == lethal && maps::distance(middle(i), {pose.x, pose.y}) < distance) return true;
     return false;
   }
   CostGrid grid() const { return {width, height, 0.05, x, y, costs.data()}; }

@@ -98,7 +98,6 @@ class PathFollower {
  private:
   void make_navigator(const std::optional<GoalTolerance>& told);
   double elapsed_until(double time);
-  FollowerAnswer answer(const FollowerInput& input);
   FollowerAnswer judge(const navigation::NavigationResult& result, double elapsed);
   std::uint64_t seed() const;
   void find_share();
