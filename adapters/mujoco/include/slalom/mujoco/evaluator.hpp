@@ -55,16 +55,6 @@ struct State {
   const double* velocities() const noexcept { return values + Positions; }                ///< qvel [nv]
   double* activations() noexcept { return values + Positions + Velocities; }              ///< act [na]
   const double* activations() const noexcept { return values + Positions + Velocities; }  ///< act [na]
-
-  /// The state that a simulation of MuJoCo is in.
-  static State of(const mjData& data) noexcept {
-    State state;
-    state.time = data.time;
-    mju_copy(state.positions(), data.qpos, Positions);
-    mju_copy(state.velocities(), data.qvel, Velocities);
-    mju_copy(state.activations(), data.act, Activations);
-    return state;
-  }
 };
 
 /// Options of the rollouts of a model. `visit_options` below describes the fields.
@@ -159,7 +149,14 @@ class Evaluator final : public BatchEvaluator {
   const Inputs& problem() const noexcept { return inputs_; }  ///< the bounds of the inputs
 
   /// The state that a simulation of the model is in.
-  static State state_of(const mjData& data) noexcept { return State::of(data); }
+  static State state_of(const mjData& data) noexcept {
+    State state;
+    state.time = data.time;
+    mju_copy(state.positions(), data.qpos, T::positions);
+    mju_copy(state.velocities(), data.qvel, T::velocities);
+    mju_copy(state.activations(), data.act, detail::activations_of<T>());
+    return state;
+  }
 
   /// The rollouts since construction.
   RolloutCount rollouts() const noexcept {
@@ -218,7 +215,7 @@ class Evaluator final : public BatchEvaluator {
     ++worker.rollouts.simulated;
     int step = 0;
     for (; step < steps && advance(simulation, input, step, total); ++step)
-      if (x) x[step + 1] = State::of(simulation.data());
+      if (x) x[step + 1] = state_of(simulation.data());
     if (step == steps && simulation.observe()) {
       add(total, task_.terminal_cost(model_.get(), simulation.data()));
       return total;
