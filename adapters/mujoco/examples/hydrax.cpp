@@ -92,8 +92,7 @@ struct Walker {
   bool good(const mjData& d) const { return d.sensordata[2] > 0.9 && d.sensordata[3] > 0.75; }
 };
 
-/// Loads the scene of a task without two attributes that MuJoCo 2 does not know, and with its own number of
-/// iterations.
+/// Loads the scene of a task without the attributes that MuJoCo 2 does not know and the number of iterations.
 slalom::mujoco::Model load(const std::filesystem::path& folder) {
   const auto copies =
       std::filesystem::temp_directory_path() / ("slalom_hydrax_" + folder.filename().string());

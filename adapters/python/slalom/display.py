@@ -57,6 +57,23 @@ def install(solvers: ModuleType) -> None:
     setattr(solvers.Plan, "_repr_png_", lambda plan: plot._png(plot.plan, plan))
 
 
+def add_methods(solvers: ModuleType) -> None:
+    """Adds the class of each method, derived from `Controller`: SvgMppi for svg_mppi."""
+    base = solvers.Controller
+
+    def make(self: Any, problem: Any, **options: Any) -> None:
+        """__init__(self: object, problem: object, **kwargs) -> None"""
+        base.__init__(self, self._method, problem, **options)
+
+    for method in solvers.methods():
+        name = "".join(word.capitalize() for word in method.split("_"))
+        text = (f"A controller that solves its problem by the method `{method}`.\n\nThe problem is copied: `controller.problem` "
+                "is the copy, whose parameters may change between solves. Keyword arguments with their defaults:\n\n")
+        setattr(solvers, name, type(base)(name, (base,), {
+            "__module__": solvers.__name__, "__doc__": text + getattr(solvers, "_options_text")(method), "__init__": make,
+            "_method": method}))
+
+
 def set_pickles(module: ModuleType) -> None:
     """Sets `__reduce__` of the compiled classes: that of Python would make objects without their compiled part, which
     end the interpreter."""

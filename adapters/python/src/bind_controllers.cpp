@@ -1,4 +1,3 @@
-#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -26,8 +25,7 @@ void check_proposals(const Solver& solver, const Numbers& proposals) {
 
 constexpr std::string_view gpu_prefix = "gpu.";
 
-/// `method`: its name, behind `gpu_prefix` for a controller on a GPU. Throws slalom.gpu.DeviceError if the
-/// device fails.
+/// `method`: its name, behind `gpu_prefix` for a GPU. Throws slalom.gpu.DeviceError if the device fails.
 std::unique_ptr<Controller> make_controller(std::string method, const AnyProblem& problem,
                                             const py::kwargs& keywords) {
   const bool on_gpu = method.starts_with(gpu_prefix);
@@ -67,38 +65,6 @@ py::object copy(const py::object& self) {
   py::object made = cls.attr("__new__")(cls);
   made.attr("__setstate__")(self);
   return made;
-}
-
-/// The class of a method: svg_mppi -> SvgMppi.
-std::string class_name(std::string_view method) {
-  std::string name;
-  for (std::size_t i = 0; i < method.size(); ++i) {
-    const bool upper = i == 0 || method[i - 1] == '_';
-    if (method[i] != '_') name += upper ? static_cast<char>(std::toupper(method[i])) : method[i];
-  }
-  return name;
-}
-
-/// Adds the class of a method, derived from `Controller`, whose constructor takes the problem and the
-/// options.
-void bind_method(py::module_& module, const py::object& controller, const std::string& method) {
-  py::dict members;
-  members["__module__"] = module.attr("__name__");
-  members["_method"] = method;
-  members["__doc__"] = "A controller that solves its problem by the method `" + method +
-                       "`.\n\nThe problem is copied: `controller.problem` is the copy, whose parameters may "
-                       "change between solves. Keyword arguments with their defaults:\n\n" +
-                       options_text(solver_options(method));
-  const std::string name = class_name(method);
-  const auto metaclass =
-      py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(Py_TYPE(controller.ptr())));
-  const py::object cls = metaclass(name, py::make_tuple(controller), members);
-  cls.attr("__init__") = py::cpp_function(
-      [controller](const py::object& self, const py::object& problem, const py::kwargs& keywords) {
-        controller.attr("__init__")(self, self.attr("_method"), problem, **keywords);
-      },
-      py::name("__init__"), py::is_method(cls), "problem"_a);
-  module.attr(name.c_str()) = cls;
 }
 
 }  // namespace
@@ -147,7 +113,6 @@ void bind_controllers(py::module_& module) {
   read("options", "the options in use, by name", [](const Controller& c) -> py::dict {
     return py::module_::import("slalom.display").attr("Options")(values_of(c.options()));
   });
-  for (const char* method : solver_names()) bind_method(module, base, method);
   module.def(
       "solve_batch",
       [](const std::vector<py::object>& controllers, std::vector<std::vector<double>> states, double elapsed,
@@ -173,6 +138,7 @@ void bind_controllers(py::module_& module) {
         return std::vector<std::string>(all.begin(), all.end());
       },
       "The names of all methods.");
+  module.def("_options_text", [](const std::string& method) { return options_text(solver_options(method)); });
   module.def(
       "options", [](const std::string& method) { return describe_options(solver_options(method)); },
       "method"_a, "The options of a method: a dictionary for each.");

@@ -93,8 +93,7 @@ py::object look_up(const Field& field, const py::array& x, const py::array& y, b
   return py::make_tuple(result(values), result(dx), result(dy));
 }
 
-/// The value at positions, and with `gradient` its derivatives, in float32 if both arrays are, else in
-/// double.
+/// The value at positions, and with `gradient` its derivatives, in float32 if both arrays are.
 template <bool gradient>
 py::object look_up(const Field& field, const py::object& x_values, const py::object& y_values) {
   const py::array x(x_values), y(y_values);

@@ -113,8 +113,7 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
   RiskOptions options_;
 };
 
-/// Makes the variants: the problem, and those that `randomize` returns; variants 2m and 2m + 1 from mirrored
-/// random numbers.
+/// The problem and the variants that `randomize` makes; 2m and 2m + 1 of them from mirrored random numbers.
 RiskProblem::Variants make_variants(const AnyProblem& problem, const py::object& randomize,
                                     const RiskOptions& options) {
   if (!PyCallable_Check(randomize.ptr()))

@@ -12,8 +12,7 @@ namespace {
 /// Batches of at most this number of samples take longer to call a function than to compute.
 constexpr int small_batch = 256;
 
-/// Columns that lie together in memory, so that callables work on contiguous values: an array [rows, columns]
-/// of zeros.
+/// An array [rows, columns] of zeros whose columns are contiguous, as callables work on columns.
 py::array_t<float> columns(py::ssize_t rows, py::ssize_t count) {
   constexpr py::ssize_t width = sizeof(float);
   py::array_t<float> values({rows, count}, {width, width * rows});
@@ -146,8 +145,7 @@ py::array CallableProblem::next(const py::array& x, const py::array& u, int k) c
                   {x.shape(0), parts_.states});
 }
 
-/// Moves the inputs of all samples, `held` [input][sample], towards those of step `k`, no faster than
-/// allowed.
+/// Moves the inputs of all samples, `held` [input][sample], towards those of step `k` within their rates.
 void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, int count,
                                 std::vector<float>& held) const {
   float* before = held.data();

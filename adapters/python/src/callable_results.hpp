@@ -40,8 +40,7 @@ inline void check_shape(const std::string& what, const py::array& array,
                           ", must be " + shape_text(shape));
 }
 
-/// The array of a shape that a callable returned. Throws TypeError or ValueError if it returned another
-/// thing.
+/// The array that a callable returned. Throws TypeError if it is none, ValueError if its shape is another.
 inline py::array array_of(const char* what, const py::object& result, const std::vector<py::ssize_t>& shape) {
   if (!py::isinstance<py::array>(result))
     throw py::type_error(std::string("Problem.") + what + ": returned " +

@@ -13,8 +13,7 @@ namespace slalom::python {
 
 namespace {
 
-/// The options with their bounds narrowed to those of the problem. Throws std::invalid_argument if the
-/// problem has a bound that is not a number.
+/// The options with bounds narrowed to the problem's. Throws std::invalid_argument if one of these is nan.
 SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
   const auto narrow = [&](PerInput& option, auto&& pick) {
     if (!option.fits(problem.inputs())) return;  // the solver reports the error
@@ -151,8 +150,7 @@ void Controller::rest() {
   previous_known_ = true;
 }
 
-/// Sets the previous input to that of the last plan, `elapsed` (s) after it was made, unless the caller has
-/// set it.
+/// Sets the previous input to that of the last plan `elapsed` (s) after it was made, unless the user set it.
 void Controller::update_previous_input(double elapsed) {
   if (std::exchange(previous_known_, false)) return;
   const double step = problem_->evaluator().time_step(), last = solver_->horizon() - 1;

@@ -25,9 +25,8 @@ class Controller {
   void solve(py::handle owner, std::vector<double> state, const SolveRequest& request) {
     solve({owner}, {std::move(state)}, request, 1);
   }
-  /// Solves with many controllers, each from its own state, on a number of threads. Throws before the first
-  /// solve if a state or a time is not valid or a controller is in use, and afterwards the first exception of
-  /// a callable.
+  /// Solves with many controllers, each from its own state. Throws before the first solve if a state or a
+  /// time is not valid or a controller is in use, and afterwards the first exception of a callable.
   static void solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,
                     const SolveRequest& request, int threads);
   void reset(std::uint64_t seed);
@@ -121,8 +120,7 @@ void bind_view(py::module_& module);
 
 }  // namespace slalom::python
 
-/// The type that Python sees of a problem: for a compiled one, whose own type is in its library,
-/// CompiledProblem.
+/// The type that Python sees: CompiledProblem for a compiled problem, whose own type is in its library.
 template <>
 struct pybind11::polymorphic_type_hook<slalom::python::AnyProblem> {
   /// Returns the address of the whole object and sets its type.

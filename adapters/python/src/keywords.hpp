@@ -21,8 +21,7 @@ using namespace pybind11::literals;
 /// An array of doubles, row by row. Made of an object it is converted as numpy does, or throws.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Throws what a signal handler raised, such as KeyboardInterrupt. Long loops without the interpreter's lock
-/// call it.
+/// Throws what a signal handler raised, such as KeyboardInterrupt; for long loops without the lock.
 inline void check_signals() {
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -59,8 +59,7 @@ class AnyProblem {
   virtual double unit_variance(int /*input*/) const { return 0; }
   /// Limits the rates of u [step][input], where `previous` was applied before, if the problem limits rates.
   virtual void hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {}
-  /// Sets the input applied before the next rollouts, for a problem that limits rates, or the remainder for
-  /// one with levels.
+  /// Sets the input applied before the next rollouts if the problem limits rates; with levels, the remainder.
   virtual void set_previous_input(std::span<const double>) {}
   /// Moves the remainder of a problem with levels on by the applied steps of a plan: `wanted` by the method,
   /// `held` in levels, both [step][input]. Returns false for other problems.

@@ -37,8 +37,7 @@ constexpr Renamed renamed_of_method[] = {{"horizon", "time_steps"},
 /// The standard deviations of samples, as shares of the limits of speeds and yaw rate, where none is set.
 constexpr double usual_share = 0.4, usual_turn_share = 0.2;
 
-/// Returns the name here of an option whose name is `section` + `name` unless it is in a table; empty if it
-/// is no option here.
+/// The name of an option here: that of a table, or `section` + `name`; empty if it is no option here.
 std::string name_here(std::span<const Renamed> table, const std::string& section, std::string_view name) {
   for (const Renamed& each : table)
     if (each.name == name) return each.here ? each.here : "";

@@ -42,8 +42,7 @@ inline bool write_place(const std::string& file, const KnownPlace& place, double
   return stream && std::rename(fresh.c_str(), file.c_str()) == 0;
 }
 
-/// Reads the place in a file. Returns nothing if there is none, a number is not finite, or it was written in
-/// the future or more than 10 s ago.
+/// The place in a file, unless a number is not finite or it was not written within the last 10 s.
 inline std::optional<KnownPlace> read_place(const std::string& file, double time) {
   std::ifstream stream(file);
   std::array<double, 7> n{};

@@ -74,8 +74,7 @@ void visit_options(Options& o, Visit&& visit) {
          1024});
 }
 
-/// The number of control sequences that were simulated, and of those among them that led to a simulation that
-/// is not valid.
+/// The number of control sequences that were simulated, and of those whose simulation became invalid.
 struct RolloutCount {
   long simulated = 0;  ///< all
   long invalid = 0;    ///< those that diverged, or whose contacts or constraints did not fit into the memory
@@ -94,8 +93,7 @@ struct Sizes {
   int positions, velocities, activations, inputs;
 };
 
-/// Throws std::invalid_argument, which names the model's file, if the model has other sizes, or what a
-/// rollout cannot do.
+/// Throws std::invalid_argument with the model's file if it has other sizes, or what a rollout cannot do.
 void check_model(const Model& model, const Sizes& task);
 
 /// The range of an input of a model: infinite where the model does not limit it.
@@ -128,8 +126,7 @@ class Evaluator final : public BatchEvaluator {
     double dt = 0;                              ///< duration of a step, s
   };
 
-  /// Allocates the simulations of all threads. Throws std::invalid_argument if task or options do not fit the
-  /// model, and std::bad_alloc.
+  /// Throws std::invalid_argument if task or options do not fit the model, and std::bad_alloc.
   explicit Evaluator(Model model, T task, const RolloutOptions& options = {})
       : model_(std::move(model)), task_(std::move(task)), physics_steps_(options.physics_steps) {
     validate_options(options, "rollouts");
