@@ -36,23 +36,20 @@ class Options(Dict[str, Any]):
 def install(solvers: ModuleType) -> None:
     """Adds `__repr__` and `__reduce__` to the classes of the compiled module, and signatures to their methods."""
     _option_names.update(option["name"] for method in solvers.methods() for option in solvers.options(method))
+    of_network = _settable(solvers.MlpProblem)
+    arguments: dict[type, Callable[[Any], Arguments]] = {
+        solvers.Problem: lambda problem: ((), {name: getattr(problem, name)
+                                               for name in inspect.signature(solvers.Problem).parameters}),
+        solvers.RiskEvaluator: lambda risk: ((risk.problem, risk.randomize), risk.options),
+        solvers.CompiledProblem: lambda problem: ((problem.file,), problem.parameters),
+        solvers.MlpProblem: lambda problem: ((problem.network,), {name: getattr(problem, name) for name in of_network})}
     for cls in [each for each in vars(solvers).values() if isinstance(each, type)]:
         _add_signatures(solvers, cls)
         if issubclass(cls, solvers.Controller):
             setattr(cls, "__repr__", _controller_text)
             setattr(cls, "__setattr__", _refuse_attribute)
-        elif cls is solvers.Problem:
-            parts = list(inspect.signature(cls).parameters)
-            _constructed(cls, lambda problem: ((), {name: getattr(problem, name) for name in parts}))
-        elif cls is solvers.RiskEvaluator:
-            _constructed(cls, lambda risk: ((risk.problem, risk.randomize), risk.options))
-        elif cls is solvers.CompiledProblem:
-            _constructed(cls, lambda problem: ((problem.file,), problem.parameters))
-        elif cls is solvers.MlpProblem:
-            _constructed(cls, lambda problem: ((problem.network,), {name: getattr(problem, name)
-                                                                    for name in _settable(solvers.MlpProblem)}))
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
-            _constructed(cls, lambda problem: ((), changed(problem)))
+            _constructed(cls, arguments.get(cls, lambda problem: ((), changed(problem))))
     setattr(solvers.Plan, "__repr__", _plan_text)
     setattr(solvers.Plan, "_repr_png_", lambda plan: plot._png(plot.plan, plan))
 

@@ -64,6 +64,12 @@ def test_every_option_is_a_keyword_with_its_default():
     (lambda: setattr(slalom.Mppi(linear()), "temprature", 1e-3), AttributeError, "no attribute 'temprature'"),
     (lambda: slalom.Mppi(linear()).options.update(temperature=1), TypeError, "make another one with"),
     (lambda: slalom.Mppi(linear()).options.__setitem__("temperature", 1), TypeError, "cannot be changed"),
+    *((lambda method=method, wrong=wrong: method(linear(), horizon=10).solve([0, 0], proposals=wrong), ValueError, text)
+      for method, wrong, text in (
+          (slalom.Mppi, np.zeros((9, 1)), r"proposals: have the shape \(9, 1\), must have \(sequences, 10, 1\) or "),
+          (slalom.Mppi, np.zeros(10), r"proposals: have the shape \(10,\), must have"),
+          (slalom.Mppi, np.full((10, 1), np.nan), "proposals: must be finite"),
+          (slalom.SvMpc, np.zeros((10, 1)), "proposals: the method sv_mpc does not accept proposals"))),
     *((lambda theirs=theirs: slalom.Mppi(linear(), **{theirs: 1}), TypeError, f"'{theirs}'; did you mean '{ours}'")
       for theirs, ours in {"num_samples": "samples", "K": "samples", "T": "horizon", "lambda_": "temperature",
                            "noise_sigma": "variance", "u_min": "input_min", "u_max": "input_max"}.items()),
@@ -282,18 +288,6 @@ def test_proposals_compete_with_the_samples():
         assert plan.inputs == pytest.approx(right)
     assert np.all(plan.samples[-2] == 3) and plan.weights[-2] == pytest.approx(1)
     assert np.all(np.abs(slalom.Mppi(problem, **options).solve([0, 0], proposals=[]).inputs) < 1)
-
-
-def test_proposals_that_do_not_fit_are_errors():
-    controller = slalom.Mppi(slalom.Pendulum(), horizon=10)
-    with pytest.raises(ValueError, match=r"proposals: have the shape \(9, 1\), must have \(sequences, 10, 1\) or "):
-        controller.solve([0, 0], proposals=np.zeros((9, 1)))
-    with pytest.raises(ValueError, match=r"proposals: have the shape \(10,\), must have"):
-        controller.solve([0, 0], proposals=np.zeros(10))
-    with pytest.raises(ValueError, match="proposals: must be finite"):
-        controller.solve([0, 0], proposals=np.full((10, 1), np.nan))
-    with pytest.raises(ValueError, match="proposals: the method sv_mpc does not accept proposals"):
-        slalom.SvMpc(slalom.Pendulum(), horizon=10).solve([0, 0], proposals=np.zeros((10, 1)))
 
 
 def test_signatures_name_options_and_arguments():
