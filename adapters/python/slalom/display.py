@@ -174,6 +174,15 @@ def _call(name: str, positional: Iterable[Any], named: dict[str, Any]) -> str:
     return f"slalom.{name}({', '.join(arguments)})"
 
 
+def takes_k(function: Callable[..., Any]) -> bool:
+    """Whether a callable has a parameter `k` without a default. False if it does not tell its parameters."""
+    try:
+        k = inspect.signature(function).parameters.get("k")
+    except (TypeError, ValueError):
+        return False
+    return k is not None and k.default is k.empty
+
+
 def changed(problem: Any) -> dict[str, Any]:
     """The parameters that differ from their defaults."""
     default = type(problem)()

@@ -25,18 +25,8 @@ py::array_t<double> row(std::span<const double> values) {
   return py::array_t<double>({py::ssize_t{1}, static_cast<py::ssize_t>(values.size())}, values.data());
 }
 
-/// Whether a callable has a parameter `k` without a default. False if it does not tell its parameters.
 bool takes_k(const py::object& callable) {
-  try {
-    const py::module_ inspect = py::module_::import("inspect");
-    const py::object parameters = inspect.attr("signature")(callable).attr("parameters");
-    if (!parameters.contains("k")) return false;
-    const py::object k = parameters["k"];
-    return k.attr("default").is(inspect.attr("Parameter").attr("empty"));
-  } catch (py::error_already_set& error) {
-    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
-    return false;
-  }
+  return py::module_::import("slalom.display").attr("takes_k")(callable).cast<bool>();
 }
 
 /// Calls a function of a step, with its index `k` if the function takes it.
