@@ -68,16 +68,9 @@ export class Player implements Link {
     const index = Math.max(0, Math.min(this.frames.length - 1, Math.floor(this.at)));
     const held = this.states.filter((s) => s.from <= index).at(-1) ?? this.states[0];
     if (!held) return;
-    this.handlers.text({
-      ...held.state,
-      paused: this.paused,
-      real_time: false,
-      rate: this.rate,
-      pace: 0,
-      tick: index,
-      newest: this.frames.length - 1,
-      oldest: 0,
-    });
+    const now = { paused: this.paused, real_time: false, rate: this.rate, pace: 0 };
+    const ticks = { tick: index, newest: this.frames.length - 1, oldest: 0 };
+    this.handlers.text({ ...held.state, ...now, ...ticks });
   }
 
   private show() {

@@ -78,11 +78,8 @@ export class InspectPane {
     this.drawHorizon(frame, i);
     const free = order.filter((k) => !c.collided[k]).map((k) => c.terms[c.width * (k + 1) - 2]);
     this.histogram(this.costs, free, "");
-    this.histogram(
-      this.weights,
-      order.map((k) => 100 * c.terms[c.width * (k + 1) - 1]),
-      "%",
-    );
+    const shares = order.map((k) => 100 * c.terms[c.width * (k + 1) - 1]);
+    this.histogram(this.weights, shares, "%");
     this.drawEffective(frame);
     this.drawInputs(frame);
   }
@@ -161,17 +158,11 @@ export class InspectPane {
     this.effective.box.hidden = !effectiveSamples;
     if (!effectiveSamples) return;
     const [x, y] = [0, 1].map((k) => Array.from(effectiveSamples).filter((_, i) => i % 2 === k));
-    this.drawLines(
-      this.effective,
-      "",
-      x.map((v) => +v.toPrecision(3)),
-      [y],
-      () => ({ stroke: css("--blue") }),
-      {
-        scales: { x: { time: false, distr: 3 }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.1)] } },
-        hooks: { draw: [(u) => vertical(u, scalar("temperature", scalars), "--warn", [5, 4])] },
-      },
-    );
+    const temperatures = x.map((v) => +v.toPrecision(3));
+    this.drawLines(this.effective, "", temperatures, [y], () => ({ stroke: css("--blue") }), {
+      scales: { x: { time: false, distr: 3 }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.1)] } },
+      hooks: { draw: [(u) => vertical(u, scalar("temperature", scalars), "--warn", [5, 4])] },
+    });
   }
 
   /** Draws the inputs of each step: those of the plan, and of the nominal sequence before and after. */
