@@ -30,6 +30,56 @@ std::size_t states_of(const vehicle::Planner& planner, std::span<const float> in
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
 }
 
+void put_scan(FrameWriter& to, const ControlStep& tick) {
+  to.begin(Block::scan);
+  to.put_pose(tick.seen.sensor);
+  to.put(static_cast<std::uint32_t>(tick.scan.ranges.size()));
+  for (const float range : tick.scan.ranges) {
+    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
+    to.put(static_cast<std::uint16_t>(millimetres));
+  }
+  to.end();
+}
+
+void put_cost_map(FrameWriter& to, const ControlStep& tick) {
+  const maps::LocalCostMap& map = tick.planner.cost_map();
+  const maps::GridGeometry& geometry = map.geometry();
+  to.begin(Block::cost_map);
+  to.put_pose(tick.odometry.pose);
+  to.put(static_cast<std::uint16_t>(geometry.rows));
+  to.put(static_cast<std::uint16_t>(geometry.columns));
+  to.put_f32({geometry.resolution, geometry.center_x, geometry.center_y});
+  unsigned bits = 0;
+  int filled = 0;
+  for (int row = 0; row < geometry.rows; ++row) {
+    for (int column = 0; column < geometry.columns; ++column) {
+      bits |= static_cast<unsigned>(*map.cells().at(row, column) > 0) << filled;
+      if (++filled < 8) continue;
+      to.put(static_cast<std::uint8_t>(bits));
+      bits = 0;
+      filled = 0;
+    }
+  }
+  if (filled > 0) to.put(static_cast<std::uint8_t>(bits));
+  to.end();
+}
+
+/// Writes the cars that are tracked: the box of now, and the places of all hypotheses.
+void put_others(FrameWriter& to, const ControlStep& tick) {
+  if (tick.others.empty()) return;
+  to.begin(Block::others);
+  to.put(static_cast<std::uint32_t>(tick.others.size()));
+  for (const maps::PredictedObstacle& other : tick.others) {
+    to.put_f32({other.length, other.width, other.poses.front().pose.yaw});
+    to.put(static_cast<std::uint16_t>(other.hypotheses));
+    to.put(static_cast<std::uint16_t>(other.times()));
+    for (int k = 0; k < other.hypotheses; ++k) to.put_f32(other.weights[static_cast<std::size_t>(k)]);
+    to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
+    for (const maps::PredictedPose& place : other.poses) to.put_point({place.pose.x, place.pose.y});
+  }
+  to.end();
+}
+
 }  // namespace
 
 const std::vector<std::string>& scalar_names() {
@@ -124,40 +174,6 @@ void FrameEncoder::put_states(FrameWriter& to, const vehicle::Planner& planner,
   for (const PredictedState& state : predict(planner, inputs)) to.put_point({state.pose.x, state.pose.y});
 }
 
-void FrameEncoder::put_scan(FrameWriter& to, const ControlStep& tick) const {
-  to.begin(Block::scan);
-  to.put_pose(tick.seen.sensor);
-  to.put(static_cast<std::uint32_t>(tick.scan.ranges.size()));
-  for (const float range : tick.scan.ranges) {
-    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
-    to.put(static_cast<std::uint16_t>(millimetres));
-  }
-  to.end();
-}
-
-void FrameEncoder::put_cost_map(FrameWriter& to, const ControlStep& tick) const {
-  const maps::LocalCostMap& map = tick.planner.cost_map();
-  const maps::GridGeometry& geometry = map.geometry();
-  to.begin(Block::cost_map);
-  to.put_pose(tick.odometry.pose);
-  to.put(static_cast<std::uint16_t>(geometry.rows));
-  to.put(static_cast<std::uint16_t>(geometry.columns));
-  to.put_f32({geometry.resolution, geometry.center_x, geometry.center_y});
-  unsigned bits = 0;
-  int filled = 0;
-  for (int row = 0; row < geometry.rows; ++row) {
-    for (int column = 0; column < geometry.columns; ++column) {
-      bits |= static_cast<unsigned>(*map.cells().at(row, column) > 0) << filled;
-      if (++filled < 8) continue;
-      to.put(static_cast<std::uint8_t>(bits));
-      bits = 0;
-      filled = 0;
-    }
-  }
-  if (filled > 0) to.put(static_cast<std::uint8_t>(bits));
-  to.end();
-}
-
 void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   const SolveResult& solve = *tick.output.solve;
   if (!solve.samples || solve.costs.empty()) return;
@@ -246,22 +262,6 @@ void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
     const PredictedState& state = plan[k];
     to.put_f32({state.pose.x - tick.seen.pose.x, state.pose.y - tick.seen.pose.y, state.pose.yaw, state.speed,
                 state.steer, std::sqrt(spread[k])});
-  }
-  to.end();
-}
-
-/// Writes the cars that are tracked: the box of now, and the places of all hypotheses.
-void FrameEncoder::put_others(FrameWriter& to, const ControlStep& tick) {
-  if (tick.others.empty()) return;
-  to.begin(Block::others);
-  to.put(static_cast<std::uint32_t>(tick.others.size()));
-  for (const maps::PredictedObstacle& other : tick.others) {
-    to.put_f32({other.length, other.width, other.poses.front().pose.yaw});
-    to.put(static_cast<std::uint16_t>(other.hypotheses));
-    to.put(static_cast<std::uint16_t>(other.times()));
-    for (int k = 0; k < other.hypotheses; ++k) to.put_f32(other.weights[static_cast<std::size_t>(k)]);
-    to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
-    for (const maps::PredictedPose& place : other.poses) to.put_point({place.pose.x, place.pose.y});
   }
   to.end();
 }

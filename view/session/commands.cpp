@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "src/evaluation/json.hpp"
-#include "view/session/sample_limit.hpp"
 
 namespace slalom::view {
 namespace {
@@ -54,7 +53,7 @@ void set_page_option(vehicle::Configuration& configuration, const std::string& k
                      const std::string& method) {
   vehicle::set_option(configuration, key, value, method);
   if (!key.ends_with("samples") && !key.ends_with("horizon")) return;
-  for (const SolverOptions& each : configuration.methods) check_samples(each);
+  for (const SolverOptions& each : configuration.methods) field::check_samples(each);
 }
 
 bool apply_settings(vehicle::Configuration& configuration, const Json& command, const std::string& method) {

@@ -20,65 +20,41 @@ bool is_among(std::initializer_list<std::string_view> names, const std::string& 
 }  // namespace
 
 void Session::obey(std::uint64_t client, const std::string& what, const Json& command) {
-  if (what == "past")
-    return tell_past(client, field::integer(command, "from"), field::integer(command, "to"));
   if (what == "save") return save(client, field::text(command, "what"));
-  if (what == "take_over") return audience_.take_over(client);
-  audience_.require_driver(client);
-  is_state_changed_ = true;
-  const bool is_of_car = what == "nudge" || what == "place_car";
-  const sim::CarState car = is_of_car ? present().world().state(0) : sim::CarState{};
-  if (const Action action = edit_of(what, command, car)) {
-    const int drag = field::integer(command, "drag", 0), lead = is_of_car ? 0 : scan_lead;
-    std::vector<Body> before = bodies_of(present(lead).world());
-    perform({action}, lead);
-    if (!is_of_car) remember(std::move(before), drag);
-  } else if (!obey_transport(what, command) && !obey_options(what, command)) {
+  if (obey_transport(client, what, command)) {
+    if (what == "play") stop_at_ = -1;
+  } else if (!obey_edit(what, command) && !obey_scenario(what, command) && !obey_options(what, command)) {
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command");
   }
   // Another scenario or another rate ends the introduction.
   const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);
   if (!state_.introduction || !(is_other || is_among({"rate", "real_time", "lap"}, what))) return;
   state_.introduction = false;
-  if (is_other) state_.rate = 1;
+  if (is_other) rate_ = 1;
 }
 
-bool Session::obey_transport(const std::string& what, const Json& command) {
-  if (what == "pause") {
-    if (!state_.paused && timeline_.is_action_due()) tick();
-    state_.paused = true;
-    steps_left_ = 0;
-    publish_newest();
-  } else if (what == "play") {
-    continue_from_shown();
-    stop_at_ = -1;
-    steps_left_ = 0;
-    state_.paused = waiting_ = false;
-    pace_ = {};
-  } else if (what == "step") {
-    const int ticks = field::steps(command);
-    continue_from_shown();
-    waiting_ = false;
-    state_.paused = true;
-    steps_left_ = std::min(steps_left_ + ticks, field::max_steps);
-  } else if (what == "seek") {
-    steps_left_ = 0;
-    show_step(field::integer(command, "tick"));
-  } else if (what == "rate") {
-    state_.rate = field::rate(command);
-    pace_.due = Clock::now();
-  } else if (what == "real_time") {
+bool Session::obey_edit(const std::string& what, const Json& command) {
+  const bool is_of_car = what == "nudge" || what == "place_car";
+  const sim::CarState car = is_of_car ? present().world().state(0) : sim::CarState{};
+  const Action action = edit_of(what, command, car);
+  if (!action) return false;
+  const int drag = field::integer(command, "drag", 0), lead = is_of_car ? 0 : scan_lead;
+  std::vector<Body> before = bodies_of(present(lead).world());
+  perform({action}, lead);
+  if (!is_of_car) remember(std::move(before), drag);
+  return true;
+}
+
+bool Session::obey_scenario(const std::string& what, const Json& command) {
+  if (what == "real_time") {
     state_.real_time = field::flag(command, "on");
-    if (state_.real_time) state_.rate = 1;
-  } else if (what == "restart") {
-    restart();
-    state_.paused = false;
+    if (state_.real_time) rate_ = 1;
   } else if (what == "scenario") {
     ScenarioNames present = state_.names;
     present.method = driver().method;
     const ScenarioNames names = chosen_scenario(present, command, options_.choices);
     install(options_.load(names), names);
-    state_.paused = false;
+    paused_ = false;
   } else if (what == "lap") {
     show_lap(command);
   } else {
@@ -122,7 +98,7 @@ void Session::change_driver(const vehicle::Configuration& configuration, const s
     perform({view::change_driver(changed.driver)});
   else {
     begin({evaluation::LapDrive(changed, state_.names.seed)});
-    if (state_.paused) tick();
+    if (paused_) tick();
   }
 }
 
@@ -197,12 +173,12 @@ void Session::show_lap(const Json& command) {
     while (before.ticks() < hit - lead) before.tick({});
   }
   install(std::move(loaded.scenario), loaded.names);
-  waiting_ = state_.real_time = state_.paused = false;
-  state_.rate = 1;
+  waiting_ = state_.real_time = paused_ = false;
+  rate_ = 1;
   if (hit >= 0) {
     drives_ = std::move(before);
     stop_at_ = hit + static_cast<int>(after_contact / control_period());
-    state_.rate = contact_rate;
+    rate_ = contact_rate;
   }
   state_.contact = {experiment, lap, contact, hit};
   pace_.due = Clock::now();
