@@ -16,7 +16,6 @@ function scalarsOf(frame: ArrayBuffer): Float64Array {
 
 /** Plays a recording: takes the place of a server, and handles the commands that concern time. */
 export class Player implements Link {
-  received = 0;
   readonly waiting = 0;
   private readonly frames: ArrayBuffer[] = [];
   private readonly states: { from: number; state: State }[] = []; // each holds from this frame on
@@ -78,7 +77,6 @@ export class Player implements Link {
     if (index === this.shown || !this.frames[index]) return;
     const before = this.shown;
     this.shown = index;
-    this.received += 1;
     this.handlers.frame(decode(this.frames[index]) as Frame, index);
     if (this.paused || index % 10 === 0 || Math.abs(index - before) > 1) this.tell();
   }

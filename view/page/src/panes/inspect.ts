@@ -22,7 +22,6 @@ function ranked(c: Candidates): number[] {
 export class InspectPane {
   chosen = -1; // index of a candidate of the frame
   private choice = { index: -1, mark: "" as string | undefined }; // with its costs, to know it again
-  private frame?: Frame; // the one that is shown
   private readonly rank = get<HTMLInputElement>("rank");
   private readonly horizon: Chart;
   private readonly inputs: Chart[] = []; // one for each input of a step
@@ -52,21 +51,20 @@ export class InspectPane {
     redraw();
   }
 
-  /** Shows a frame. Later ones may still come before the drive pauses at that of the choice. */
-  update(frame: Frame) {
-    this.frame = frame;
+  /** Shows another frame. Later ones may still come before the drive pauses at that of the choice. */
+  update() {
     const { index, mark } = this.choice;
     this.chosen = this.markOf(index) === mark ? index : -1;
     this.show();
   }
 
   private markOf(i: number) {
-    const c = this.frame?.candidates;
+    const c = page.frame?.candidates;
     return c?.terms.subarray(c.width * i, c.width * (i + 1)).join();
   }
 
   show() {
-    const { frame } = this;
+    const { frame } = page;
     if (get("pane-inspect").hidden || !frame?.candidates) return;
     const c = frame.candidates;
     const i = this.chosen;

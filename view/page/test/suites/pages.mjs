@@ -9,14 +9,14 @@ export default async function (h) {
     await tools.send("Emulation.setCPUThrottlingRate", { rate: 6 });
     await h.play();
     await page.evaluate(() => {
-      Object.assign(window, { from: slalom.received, most: 0 });
+      Object.assign(window, { from: slalom.scalar("tick"), most: 0 });
       const measure = () => {
-        window.most = Math.max(window.most, slalom.waiting);
+        window.most = Math.max(window.most, slalom.waiting());
         requestAnimationFrame(measure);
       };
       measure();
     });
-    await h.until(() => slalom.received > window.from + 10); // long enough that frames would pile up
+    await h.until(() => slalom.scalar("tick") > window.from + 80); // long enough that frames would pile up
     await h.press("play");
     await h.isPaused();
     const seen = await h.state();

@@ -75,17 +75,6 @@ export default async function (h) {
     await look.until(() => slalom.state.method === "svg_mppi");
   });
 
-  await h.test("a past step is shown again, and the drive goes on from there exactly", async () => {
-    await look.restart();
-    await look.until(() => slalom.scalar("tick") > 20);
-    await look.send({ do: "pause" });
-    await look.seek(18);
-    const before = await look.scalar("x");
-    await look.seek(7);
-    await look.step(11);
-    assert.equal(await look.scalar("x"), before);
-  });
-
   await h.test("a click on a candidate shows its rank, weight, cost by term and collision", async () => {
     const middle = await page.evaluate(() => {
       const c = slalom.frame.candidates;
