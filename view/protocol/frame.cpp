@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "slalom/core/gravity.hpp"
@@ -180,10 +181,6 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   const SequenceBatch& batch = *solve.samples;
   const int count = std::min(sent_candidates, batch.samples()), steps = batch.steps();
   const int inputs = batch.inputs();
-  // Evenly spread over the samples, so that the picture is as dense in every region as they are.
-  const auto chosen = [&](int i) {
-    return static_cast<int>(static_cast<long long>(i) * batch.samples() / count);
-  };
   sequence_.resize(static_cast<std::size_t>(steps * inputs));
   FrameWriter points;  // the points follow the terms, and one prediction makes both
   points.begin_points({tick.seen.pose.x, tick.seen.pose.y});
@@ -192,7 +189,8 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   to.put(static_cast<std::uint16_t>(steps + 1));
   std::string collided;  // 1 + the first state that collides, or 1 if that is not known
   for (int i = 0; i < count; ++i) {
-    const int k = chosen(i);
+    // Evenly spread over the samples, so that the picture is as dense in every region as they are.
+    const auto k = static_cast<int>(std::int64_t{i} * batch.samples() / count);
     for (int row = 0; row < steps * inputs; ++row)
       sequence_[static_cast<std::size_t>(row)] = batch.at(row / inputs, row % inputs, k);
     const States states = predict(tick.planner, sequence_);

@@ -92,16 +92,15 @@ Verdict judge(const Connections& all, const http::request<http::empty_body>& req
 }  // namespace
 
 void Connections::deliver(Received received) {
-  const bool is_message = received.kind == Received::Kind::message;
-  {
-    const std::lock_guard lock(mutex);
-    if (is_message && inbox.size() >= max_received) {
+  const std::lock_guard lock(mutex);
+  if (received.kind == Received::Kind::message) {
+    if (inbox.size() >= max_received) {
       ++refused;
       return;
     }
-    inbox.push_back(std::move(received));
+    ++messages;
   }
-  if (is_message) ++messages;
+  inbox.push_back(std::move(received));
   arrived.notify_all();
 }
 
