@@ -24,9 +24,6 @@ using State = DifferentialDrive::State<double>;
 class OwnProblem : public ::testing::Test {
  protected:
   OwnProblem() {
-    client_.get("/ws", true);
-    for (int i = 0; i < 1000 && server_.clients() == 0; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     session_.turn({});
     tell({R"({"do": "pause"})"});
   }
@@ -93,7 +90,7 @@ class OwnProblem : public ::testing::Test {
 
   int moves_ = 0;  ///< calls of the drawing's `move`
   Server server_{{.messages_per_second = 1e6, .burst = 1e6}, {}};
-  testing::WebClient client_{server_.port()};
+  testing::PageClient client_{server_};
   ProblemSession session_{subject(), server_};
   std::map<std::string, json> last_;  ///< the last message of each type
 };
@@ -175,12 +172,6 @@ TEST_F(OwnProblem, OnlyTheLastStepOfADragIsPlannedFor) {
   tell({place + "-90}", place + "-1}"});
   EXPECT_EQ(figure("x", 0), -1);
   EXPECT_GT(last("state")["bounds"][0], -10) << "the first place was not drawn";
-}
-
-TEST_F(OwnProblem, AChangeJustBeforeAPauseIsShown) {
-  tell({R"({"do": "rate", "rate": 10})", R"({"do": "play"})"});
-  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})", R"({"do": "pause"})"});
-  EXPECT_LT(figure("samples", last("state")["newest"]), figure("samples", 0));
 }
 
 TEST_F(OwnProblem, ResetsWhatWasChangedAlsoWithAnotherMethod) {

@@ -66,9 +66,6 @@ class ViewSession : public ::testing::Test {
   explicit ViewSession(SessionOptions options = session_options()) : session_(std::move(options), server_) {}
 
   void SetUp() override {
-    client_.get("/ws", true);
-    for (int i = 0; i < 1000 && server_.clients() == 0; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     session_.turn();
     tell({{"do", "pause"}});
   }
@@ -132,7 +129,7 @@ class ViewSession : public ::testing::Test {
   }
 
   Server server_{{.messages_per_second = 1e6, .burst = 1e6}, {}};
-  testing::WebClient client_{server_.port()};
+  testing::PageClient client_{server_};
   Session session_;
   std::vector<std::string> skipped_;  ///< frames that `next` has read since the last command
 };

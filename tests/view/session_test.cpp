@@ -285,10 +285,7 @@ TEST_F(ViewSessionPaused, AChangeJustBeforeAPauseIsShown) {
 }
 
 TEST_F(ViewSession, OneClientDrivesAndAnotherTakesOver) {
-  testing::WebClient other(server_.port());
-  other.get("/ws", true);
-  for (int i = 0; i < 1000 && server_.clients() < 2; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  testing::PageClient other(server_, 2);
   session_.turn();
   EXPECT_EQ(next(other, "role")["drives"], false);
   const auto tell_from_other = [&](const json& command) {

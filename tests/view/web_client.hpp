@@ -8,11 +8,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
+
+#include "view/server/server.hpp"
 
 namespace slalom::testing {
 
@@ -123,15 +127,6 @@ class WebClient {
     return {};
   }
 
-  /// The code of the close frame with which the server ends the connection; 0 if it ends without one.
-  unsigned close_code() {
-    while (const auto frame = next_frame())
-      if (frame->opcode == 8 && frame->payload.size() >= 2)
-        return static_cast<unsigned char>(frame->payload[0]) * 256u +
-               static_cast<unsigned char>(frame->payload[1]);
-    return 0;
-  }
-
   /// All that comes until the server closes the connection.
   std::string rest() {
     while (more()) {
@@ -169,6 +164,18 @@ class WebClient {
 
   int socket_;
   std::string received_;
+};
+
+/// A WebSocket that is open.
+struct PageClient : WebClient {
+  /// Opens it, and waits until the server has `clients`.
+  explicit PageClient(const view::Server& server, int clients = 1, const std::string& target = "/ws",
+                      int receive_buffer = 0)
+      : WebClient(server.port(), receive_buffer) {
+    get(target, true);
+    for (int i = 0; i < 1000 && server.clients() < clients; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 };
 
 }  // namespace slalom::testing

@@ -5,8 +5,7 @@
 #include "slalom/core/version.hpp"
 #include "slalom/view/serve.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/live_view/problems.hpp"
-#include "tools/live_view/rooms.hpp"
+#include "tools/live_view/subjects.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
@@ -75,7 +74,7 @@ int view(const ViewArguments& arguments) {
   view::Session session(std::move(session_of), server);
   const InterruptFlag interrupt;
   print_address(view::address_of(server, options));
-  session.run(interrupt.raised());
+  while (!interrupt.raised()) session.turn(std::chrono::milliseconds(50));
   return 0;
 }
 

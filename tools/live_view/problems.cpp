@@ -1,5 +1,3 @@
-#include "tools/live_view/problems.hpp"
-
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -11,6 +9,7 @@
 #include "slalom/problems/quadrotor.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/view/serve.hpp"
+#include "tools/live_view/subjects.hpp"
 #include "view/problem/differential_drive.hpp"
 
 namespace slalom::tools {

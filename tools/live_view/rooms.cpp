@@ -1,10 +1,9 @@
-#include "tools/live_view/rooms.hpp"
-
 #include <algorithm>
 
 #include "slalom/navigation/navigation_problem.hpp"
 #include "slalom/view/serve.hpp"
 #include "src/evaluation/rooms/room_world.hpp"
+#include "tools/live_view/subjects.hpp"
 
 namespace slalom::tools {
 namespace {

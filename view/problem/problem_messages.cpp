@@ -3,37 +3,33 @@
 
 #include "src/evaluation/json.hpp"
 #include "view/problem/problem_session.hpp"
-#include "view/protocol/grid_block.hpp"
-#include "view/protocol/option_json.hpp"
-#include "view/protocol/symptom_json.hpp"
+#include "view/protocol/page_json.hpp"
 
 namespace slalom::view {
 void ProblemSession::join(std::uint64_t client) {
-  audience_.join(client);
   if (std::exchange(waiting_, false)) {
     pace_.due = Clock::now();
     tick();
   }
   audience_.tell(client, hello());
-  if (const auto& map = run_->subject->facts().map) {
+  if (const auto& map = drives_->subject->facts().map) {
     FrameWriter scene;
-    put_grid(scene, *map);
+    scene.put_grid(*map);
     server_.send(client, {shared(scene.take()), true});
   }
   audience_.tell(client, options());
   audience_.tell(client, state());
-  audience_.tell_roles();
   if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
 }
 
-/// Sends the scalars of past steps, of as many as a message holds and as are still known.
-void ProblemSession::tell_past(std::uint64_t client, int from, int to) {
-  const std::size_t scalars = problem_scalars(run_->subject->facts()).size();
-  server_.send(client, {shared(timeline_.past(from, to, scalars)), true});
+void ProblemSession::tell() {
+  audience_.tell(0, state());
+  std::string now = json_text(options());
+  if (now != std::exchange(told_options_, now)) audience_.tell_text(0, std::move(now));
 }
 
 Json ProblemSession::hello() const {
-  const SubjectFacts& facts = run_->subject->facts();
+  const SubjectFacts& facts = drives_->subject->facts();
   return {{"type", "hello"},
           {"protocol", 1},
           {"scalars", problem_scalars(facts)},
@@ -52,13 +48,13 @@ Json ProblemSession::hello() const {
             {"can_place", facts.can_place},
             {"can_move", facts.can_move}}},
           {"history_seconds", stored_seconds},
-          {"control_period", run_->period}};
+          {"control_period", drives_->period}};
 }
 
 Json ProblemSession::state() {
-  const SolverOptions* options = shown().subject->options();
+  const SolverOptions* options = shown().options();
   return {{"type", "state"},
-          {"course", run_->subject->facts().title},
+          {"course", drives_->subject->facts().title},
           {"description", ""},
           {"length", 0},
           {"method", options ? options->method() : ""},
@@ -74,8 +70,8 @@ Json ProblemSession::state() {
           {"tick", shown_tick()},
           {"newest", timeline_.newest()},
           {"oldest", timeline_.oldest()},
-          {"time", run_->steps * run_->period},
-          {"control_period", run_->period},
+          {"time", drives_->steps * drives_->period},
+          {"control_period", drives_->period},
           {"laps", Json::array()},
           {"ghost", ""},
           {"ghost_label", ""},
@@ -85,7 +81,7 @@ Json ProblemSession::state() {
 }
 
 Json ProblemSession::options() {
-  const Subject& subject = *shown().subject;
+  const Subject& subject = shown();
   Json sections = Json::array(), changed = Json::array();
   std::string yaml, section_yaml;
   const auto add = [&](const std::string& name, const std::vector<OptionEntry>& now, const auto& loaded) {

@@ -5,7 +5,6 @@
 
 #include "slalom/solvers/registry.hpp"
 #include "src/evaluation/json.hpp"
-#include "view/session/sample_limit.hpp"
 
 namespace slalom::view {
 namespace {
@@ -37,66 +36,31 @@ void Run::advance() {
   elapsed = subject->time_step() > 0 ? period : 0;
 }
 
-ProblemSession::ProblemSession(std::unique_ptr<Subject> subject, Server& server)
-    : server_(server), audience_(server) {
+ProblemSession::ProblemSession(std::unique_ptr<Subject> subject, Server& server) : Playback(server) {
   for (const char* name : solver_names()) methods_.emplace_back(name);
   if (const SolverOptions* options = subject->options()) loaded_.emplace(options->method(), *options);
   for (const OptionEntry& each : subject->parameters())
     parameters_.emplace(each.declaration.name, to_text(each.value));
-  run_ = Run{std::move(subject), {}};
+  drives_ = Run{std::move(subject), {}};
   restart();
 }
 
 /// Begins at the start, with the present options and scene.
 void ProblemSession::restart() {
-  Polymorphic<Subject> subject(run_->subject->clone());
+  Polymorphic<Subject> subject(drives_->subject->clone());
   if (const SolverOptions* options = subject->options()) subject->set_options(SolverOptions(*options));
   subject->restart();
   std::vector<double> start = subject->start();
   const double period = period_of(*subject);
-  run_ = Run{std::move(subject), std::move(start), period};
-  timeline_ = Timeline(period);
-  held_.reset();
-  viewed_ = -1;
-  steps_left_ = 0;
+  begin({std::move(subject), std::move(start), period});
   collided_.clear();
-  ++generation_;
-  pace_ = {};
-  is_state_changed_ = true;
   if (paused_) tick();
 }
 
-void ProblemSession::turn(std::chrono::nanoseconds at_most) {
-  const auto wait = std::min<Clock::duration>(until_due(), at_most);
-  if (wait > Clock::duration::zero()) server_.wait(wait);
-  audience_.turn([this](auto client) { join(client); },
-                 [this](auto client, const auto& what, const Json& command) { obey(client, what, command); });
-  if (until_due() <= Clock::duration::zero()) {
-    if (steps_left_ > 0) --steps_left_;
-    tick();
-  }
-  if (paused_ && is_held()) present();  // the first change after a pause need not wait for it
-  const auto now = Clock::now();
-  if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
-  last_state_ = now;
-  is_state_changed_ = false;
-  measured_rate_ = pace_.measure(measured_rate_, run_->period, paused_);
-  audience_.tell(0, state());
-  std::string now_options = json_text(options());
-  if (now_options != std::exchange(told_options_, now_options))
-    audience_.tell_text(0, std::move(now_options));
-}
-
-ProblemSession::Clock::duration ProblemSession::until_due() const {
-  if (steps_left_ > 0) return Clock::duration::zero();
-  if (waiting_ || paused_) return std::chrono::hours(1);
-  return pace_.until_due(rate_);
-}
-
 void ProblemSession::tick() {
-  pace_.step(run_->period, rate_);
-  timeline_.checkpoint(*run_, copy_bytes_, solve_time_);
-  keep(drive(*run_));
+  pace_.step(drives_->period, rate_);
+  timeline_.checkpoint(*drives_, copy_bytes_, solve_time_);
+  keep(drive(*drives_));
 }
 
 /// Drives a run one step further and returns the frame of the step.
@@ -122,53 +86,14 @@ ProblemFrame ProblemSession::drive(Run& run) {
 
 /// Keeps and shows the last step of the present run.
 void ProblemSession::keep(ProblemFrame frame) {
-  const int number = run_->steps - 1;
+  const int number = drives_->steps - 1;
   collided_.erase(std::lower_bound(collided_.begin(), collided_.end(), number), collided_.end());
   if (frame.collides) collided_.push_back(number);
   if (number == 0) bounds_ = frame.bounds;
   bounds_.include(frame.bounds.x0, frame.bounds.y0);
   bounds_.include(frame.bounds.x1, frame.bounds.y1);
   timeline_.keep({number, {}, shared(std::move(frame.message))});
-  if (paused_ || Clock::now() - last_frame_ >= min_frame_gap) publish(number);
-}
-
-void ProblemSession::publish(int tick) {
-  last_frame_ = Clock::now();
-  server_.publish(0, timeline_.at(tick).frame);
-}
-
-/// Pauses and shows a stored step.
-void ProblemSession::show_step(int tick) {
-  steps_left_ = 0;
-  if (timeline_.empty()) return;
-  tick = std::clamp(tick, timeline_.oldest(), timeline_.newest());
-  viewed_ = tick == timeline_.newest() ? -1 : tick;
-  paused_ = is_state_changed_ = true;
-  publish(tick);
-}
-
-/// Makes the step that is shown the newest one.
-void ProblemSession::continue_from_shown() {
-  if (viewed_ < 0) return;
-  Run run = present();
-  run.tick({});
-  run_ = std::move(run);
-  timeline_.forget_after(viewed_, viewed_);
-  viewed_ = -1;
-  pace_.due = Clock::now();
-}
-
-/// Whether a change is to be shown before the next step: the drive is paused, or in slow motion.
-bool ProblemSession::is_held() const {
-  return (paused_ || Pace::is_slow(run_->period, rate_)) && steps_left_ == 0 && !timeline_.empty();
-}
-
-/// Returns the run that a change applies to: while nothing moves, as it was when the step that is shown
-/// began.
-const Run& ProblemSession::present() {
-  if (!is_held()) return *run_;
-  if (!held_ || held_->steps != shown_tick()) held_ = timeline_.before(shown_tick());
-  return *held_;
+  offer_newest();
 }
 
 /// Applies a change from the step that is shown on. While nothing moves, this step is driven again, so that
@@ -188,48 +113,23 @@ void ProblemSession::perform(const Timeline::Action& change) {
   if (is_driven_again) frame = drive(run);
   edited_ = is_state_changed_ = true;
   if (period_of(*before.subject) != before.period) {
-    run_ = std::move(before);
+    drives_ = std::move(before);
     return restart();
   }
-  if (is_driven_again) timeline_.forget_after(shown - 1, shown);
+  if (is_driven_again) forget_after(shown - 1, shown);
   timeline_.note(before.steps, action);
-  run_ = std::move(run);
+  drives_ = std::move(run);
   if (!is_driven_again) return;
   timeline_.checkpoint(before, copy_bytes_, 1);  // a copy in any case: going back need not repeat the changes
   held_ = std::move(before);
-  viewed_ = -1;
   keep(std::move(frame));
-  publish(shown);
+  publish_newest();
 }
 
 void ProblemSession::obey(std::uint64_t client, const std::string& what, const Json& command) {
-  if (what == "past")
-    return tell_past(client, field::integer(command, "from"), field::integer(command, "to"));
-  if (what == "take_over") return audience_.take_over(client);
-  audience_.require_driver(client);
-  is_state_changed_ = true;
-  const SubjectFacts& facts = run_->subject->facts();
-  if (what == "pause") {
-    if (!paused_ && timeline_.is_action_due()) tick();
-    paused_ = true;
-    steps_left_ = 0;
-    if (!timeline_.empty()) publish(shown_tick());
-  } else if (what == "play" || what == "step") {
-    const int steps = what == "step" ? field::steps(command) : 0;
-    continue_from_shown();
-    waiting_ = false;
-    paused_ = steps > 0;
-    steps_left_ = paused_ ? std::min(steps_left_ + steps, field::max_steps) : 0;
-    pace_ = {};
-  } else if (what == "seek") {
-    show_step(field::integer(command, "tick"));
-  } else if (what == "rate") {
-    rate_ = field::rate(command);
-    pace_.due = Clock::now();
-  } else if (what == "restart") {
-    paused_ = false;
-    restart();
-  } else if (what == "place_car" && facts.can_place) {
+  if (obey_transport(client, what, command)) return;
+  const SubjectFacts& facts = drives_->subject->facts();
+  if (what == "place_car" && facts.can_place) {
     const maps::Pose to{field::number(command, "x"), field::number(command, "y"),
                         field::number(command, "yaw", 0)};
     perform([to](Run& run) { run.subject->place(run.state, to); });
@@ -270,7 +170,7 @@ void ProblemSession::set(const std::string& key, const std::string& value) {
     require(present_options && section == present_options->method());
     SolverOptions changed = *present_options;
     require(set_option(changed, name, value));
-    check_samples(changed);
+    field::check_samples(changed);
     perform([changed](Run& run) { run.subject->set_options(changed); });
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "slalom/core/gravity.hpp"
@@ -28,6 +29,56 @@ constexpr int sent_candidates = 160;  // samples that are sent
 /// Returns the number of states that a sequence of inputs leads through.
 std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
+}
+
+void put_scan(FrameWriter& to, const ControlStep& tick) {
+  to.begin(Block::scan);
+  to.put_pose(tick.seen.sensor);
+  to.put(static_cast<std::uint32_t>(tick.scan.ranges.size()));
+  for (const float range : tick.scan.ranges) {
+    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
+    to.put(static_cast<std::uint16_t>(millimetres));
+  }
+  to.end();
+}
+
+void put_cost_map(FrameWriter& to, const ControlStep& tick) {
+  const maps::LocalCostMap& map = tick.planner.cost_map();
+  const maps::GridGeometry& geometry = map.geometry();
+  to.begin(Block::cost_map);
+  to.put_pose(tick.odometry.pose);
+  to.put(static_cast<std::uint16_t>(geometry.rows));
+  to.put(static_cast<std::uint16_t>(geometry.columns));
+  to.put_f32({geometry.resolution, geometry.center_x, geometry.center_y});
+  unsigned bits = 0;
+  int filled = 0;
+  for (int row = 0; row < geometry.rows; ++row) {
+    for (int column = 0; column < geometry.columns; ++column) {
+      bits |= static_cast<unsigned>(*map.cells().at(row, column) > 0) << filled;
+      if (++filled < 8) continue;
+      to.put(static_cast<std::uint8_t>(bits));
+      bits = 0;
+      filled = 0;
+    }
+  }
+  if (filled > 0) to.put(static_cast<std::uint8_t>(bits));
+  to.end();
+}
+
+/// Writes the cars that are tracked: the box of now, and the places of all hypotheses.
+void put_others(FrameWriter& to, const ControlStep& tick) {
+  if (tick.others.empty()) return;
+  to.begin(Block::others);
+  to.put(static_cast<std::uint32_t>(tick.others.size()));
+  for (const maps::PredictedObstacle& other : tick.others) {
+    to.put_f32({other.length, other.width, other.poses.front().pose.yaw});
+    to.put(static_cast<std::uint16_t>(other.hypotheses));
+    to.put(static_cast<std::uint16_t>(other.times()));
+    for (int k = 0; k < other.hypotheses; ++k) to.put_f32(other.weights[static_cast<std::size_t>(k)]);
+    to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
+    for (const maps::PredictedPose& place : other.poses) to.put_point({place.pose.x, place.pose.y});
+  }
+  to.end();
 }
 
 }  // namespace
@@ -124,50 +175,12 @@ void FrameEncoder::put_states(FrameWriter& to, const vehicle::Planner& planner,
   for (const PredictedState& state : predict(planner, inputs)) to.put_point({state.pose.x, state.pose.y});
 }
 
-void FrameEncoder::put_scan(FrameWriter& to, const ControlStep& tick) const {
-  to.begin(Block::scan);
-  to.put_pose(tick.seen.sensor);
-  to.put(static_cast<std::uint32_t>(tick.scan.ranges.size()));
-  for (const float range : tick.scan.ranges) {
-    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
-    to.put(static_cast<std::uint16_t>(millimetres));
-  }
-  to.end();
-}
-
-void FrameEncoder::put_cost_map(FrameWriter& to, const ControlStep& tick) const {
-  const maps::LocalCostMap& map = tick.planner.cost_map();
-  const maps::GridGeometry& geometry = map.geometry();
-  to.begin(Block::cost_map);
-  to.put_pose(tick.odometry.pose);
-  to.put(static_cast<std::uint16_t>(geometry.rows));
-  to.put(static_cast<std::uint16_t>(geometry.columns));
-  to.put_f32({geometry.resolution, geometry.center_x, geometry.center_y});
-  unsigned bits = 0;
-  int filled = 0;
-  for (int row = 0; row < geometry.rows; ++row) {
-    for (int column = 0; column < geometry.columns; ++column) {
-      bits |= static_cast<unsigned>(*map.cells().at(row, column) > 0) << filled;
-      if (++filled < 8) continue;
-      to.put(static_cast<std::uint8_t>(bits));
-      bits = 0;
-      filled = 0;
-    }
-  }
-  if (filled > 0) to.put(static_cast<std::uint8_t>(bits));
-  to.end();
-}
-
 void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   const SolveResult& solve = *tick.output.solve;
   if (!solve.samples || solve.costs.empty()) return;
   const SequenceBatch& batch = *solve.samples;
   const int count = std::min(sent_candidates, batch.samples()), steps = batch.steps();
   const int inputs = batch.inputs();
-  // Evenly spread over the samples, so that the picture is as dense in every region as they are.
-  const auto chosen = [&](int i) {
-    return static_cast<int>(static_cast<long long>(i) * batch.samples() / count);
-  };
   sequence_.resize(static_cast<std::size_t>(steps * inputs));
   FrameWriter points;  // the points follow the terms, and one prediction makes both
   points.begin_points({tick.seen.pose.x, tick.seen.pose.y});
@@ -176,7 +189,8 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   to.put(static_cast<std::uint16_t>(steps + 1));
   std::string collided;  // 1 + the first state that collides, or 1 if that is not known
   for (int i = 0; i < count; ++i) {
-    const int k = chosen(i);
+    // Evenly spread over the samples, so that the picture is as dense in every region as they are.
+    const auto k = static_cast<int>(std::int64_t{i} * batch.samples() / count);
     for (int row = 0; row < steps * inputs; ++row)
       sequence_[static_cast<std::size_t>(row)] = batch.at(row / inputs, row % inputs, k);
     const States states = predict(tick.planner, sequence_);
@@ -246,22 +260,6 @@ void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
     const PredictedState& state = plan[k];
     to.put_f32({state.pose.x - tick.seen.pose.x, state.pose.y - tick.seen.pose.y, state.pose.yaw, state.speed,
                 state.steer, std::sqrt(spread[k])});
-  }
-  to.end();
-}
-
-/// Writes the cars that are tracked: the box of now, and the places of all hypotheses.
-void FrameEncoder::put_others(FrameWriter& to, const ControlStep& tick) {
-  if (tick.others.empty()) return;
-  to.begin(Block::others);
-  to.put(static_cast<std::uint32_t>(tick.others.size()));
-  for (const maps::PredictedObstacle& other : tick.others) {
-    to.put_f32({other.length, other.width, other.poses.front().pose.yaw});
-    to.put(static_cast<std::uint16_t>(other.hypotheses));
-    to.put(static_cast<std::uint16_t>(other.times()));
-    for (int k = 0; k < other.hypotheses; ++k) to.put_f32(other.weights[static_cast<std::size_t>(k)]);
-    to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
-    for (const maps::PredictedPose& place : other.poses) to.put_point({place.pose.x, place.pose.y});
   }
   to.end();
 }

@@ -31,13 +31,10 @@ class FrameEncoder {
   using States = std::span<vehicle::PredictedState>;
   States predict(const vehicle::Planner& planner, std::span<const float> inputs);
   void put_states(class FrameWriter& to, const vehicle::Planner& planner, std::span<const float> inputs);
-  void put_scan(FrameWriter& to, const evaluation::ControlStep& tick) const;
-  void put_cost_map(FrameWriter& to, const evaluation::ControlStep& tick) const;
   void put_candidates(FrameWriter& to, const evaluation::ControlStep& tick);
   void put_guides(FrameWriter& to, const evaluation::ControlStep& tick);
   void put_plan(FrameWriter& to, const evaluation::ControlStep& tick);
   void add_step_costs(States states);
-  static void put_others(FrameWriter& to, const evaluation::ControlStep& tick);
 
   std::vector<vehicle::PredictedState> states_;
   std::vector<float> sequence_;

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "slalom/maps/pose.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
 
 namespace slalom::view {
 
@@ -92,6 +92,26 @@ class FrameWriter {
   void put_covariance(std::span<const float> variances, std::size_t inputs) {
     begin(Block::covariance);
     for (std::size_t row = 0; row < variances.size(); row += inputs) put(variances[row]);
+    end();
+  }
+
+  /// Writes the block with a map: runs of equal cells, the value in the upper 8 bits, the length in the
+  /// lower 24.
+  void put_grid(const maps::OccupancyGrid& grid) {
+    std::vector<std::uint32_t> runs;
+    for (const maps::Occupancy cell : grid.cells) {
+      const auto value = static_cast<std::uint32_t>(cell);
+      if (runs.empty() || runs.back() >> 24 != value || (runs.back() & 0xffffffu) == 0xffffffu)
+        runs.push_back(value << 24);
+      ++runs.back();
+    }
+    begin(Block::grid);
+    put(static_cast<std::uint32_t>(grid.width));
+    put(static_cast<std::uint32_t>(grid.height));
+    put(grid.resolution);
+    put_pose(grid.origin);
+    put(static_cast<std::uint32_t>(runs.size()));
+    for (const std::uint32_t run : runs) put(run);
     end();
   }
 

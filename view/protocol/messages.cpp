@@ -7,8 +7,7 @@
 #include "slalom/vehicle/planner/planner.hpp"
 #include "src/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
-#include "view/protocol/option_json.hpp"
-#include "view/protocol/symptom_json.hpp"
+#include "view/protocol/page_json.hpp"
 
 namespace slalom::view {
 namespace {
@@ -31,17 +30,6 @@ std::vector<std::string> changed_options(const OptionsFacts& facts) {
   return changed;
 }
 
-std::string line_of(const OptionsFacts& facts, const std::vector<std::string>& changed) {
-  const ScenarioNames& names = facts.names;
-  std::string line = "slalom drive --course " + names.course + " --method " + names.method + " --config " +
-                     names.config + " --seed " + std::to_string(names.seed) + " --obstacles " +
-                     std::to_string(names.obstacles) +
-                     (names.opponents > 0 ? " --opponents " + std::to_string(names.opponents) : "") +
-                     facts.further_arguments;
-  for (const std::string& each : changed) line += " --set '" + each + "'";
-  return line;
-}
-
 std::string changed_yaml(const OptionsFacts& facts, const std::vector<std::string>& changed) {
   std::string yaml = "base: " + facts.names.config + "\n", section;
   for (const std::string& each : changed) {
@@ -62,7 +50,14 @@ int Choices::method_index(const std::string& method) const {
 }
 
 std::string command_line(const OptionsFacts& facts) {
-  return line_of(facts, changed_options(facts));
+  const ScenarioNames& names = facts.names;
+  std::string line = "slalom drive --course " + names.course + " --method " + names.method + " --config " +
+                     names.config + " --seed " + std::to_string(names.seed) + " --obstacles " +
+                     std::to_string(names.obstacles) +
+                     (names.opponents > 0 ? " --opponents " + std::to_string(names.opponents) : "") +
+                     facts.further_arguments;
+  for (const std::string& each : changed_options(facts)) line += " --set '" + each + "'";
+  return line;
 }
 
 std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
@@ -152,7 +147,7 @@ std::string options_message(const OptionsFacts& facts) {
   return json_text({{"type", "options"},
                     {"sections", sections},
                     {"changed", changed},
-                    {"command_line", line_of(facts, changed)},
+                    {"command_line", command_line(facts)},
                     {"yaml", changed_yaml(facts, changed)},
                     {"undo", facts.undo},
                     {"redo", facts.redo}});

@@ -5,7 +5,6 @@
 #include "slalom/sim/shapes.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/frame_writer.hpp"
-#include "view/protocol/grid_block.hpp"
 
 namespace slalom::view {
 
@@ -63,7 +62,7 @@ std::string encode_ghost_frame(std::string_view frame) {
 
 std::string encode_scene(const evaluation::Environment& environment) {
   FrameWriter to;
-  put_grid(to, environment.course.map);
+  to.put_grid(environment.course.map);
   to.begin(Block::path);
   to.put(static_cast<std::uint32_t>(environment.path.size()));
   to.put(static_cast<std::uint32_t>(environment.course.closed));

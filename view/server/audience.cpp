@@ -63,12 +63,17 @@ int steps(const Json& command) {
   return std::clamp(integer(command, "ticks", 1), 1, max_steps);
 }
 
-}  // namespace field
-
-void Audience::join(std::uint64_t client) {
-  clients_.push_back(client);
-  if (driving_client_ == 0) driving_client_ = client;
+void check_samples(const SolverOptions& options) {
+  constexpr std::int64_t most = std::int64_t{1} << 22;
+  const int* samples = options.find<int>("samples");
+  const int* horizon = options.find<int>("horizon");
+  if (!samples || !horizon || std::int64_t{*samples} * *horizon <= most) return;
+  throw std::invalid_argument("samples: " + std::to_string(*samples) + " must be at most " +
+                              std::to_string(most / *horizon) + " in the live view, for " +
+                              std::to_string(*horizon) + " steps");
 }
+
+}  // namespace field
 
 void Audience::leave(std::uint64_t client) {
   std::erase(clients_, client);
@@ -87,6 +92,7 @@ void Audience::require_driver(std::uint64_t client) const {
     throw std::invalid_argument("another page drives this car; take over to change it");
 }
 
+/// Tells each client whether it drives or watches.
 void Audience::tell_roles() {
   for (const std::uint64_t client : clients_)
     tell(client, {{"type", "role"}, {"drives", client == driving_client_}});
@@ -105,12 +111,16 @@ void Audience::turn(const std::function<void(std::uint64_t client)>& open, const
   for (std::size_t i = 0; i < received.size(); ++i) {
     const Received& each = received[i];
     if (i + 1 < received.size() && replaces(received[i + 1], each)) continue;
-    if (each.kind == Received::Kind::joined)
+    if (each.kind == Received::Kind::joined) {
+      clients_.push_back(each.client);
+      if (driving_client_ == 0) driving_client_ = each.client;
       open(each.client);
-    else if (each.kind == Received::Kind::left)
+      tell_roles();
+    } else if (each.kind == Received::Kind::left) {
       leave(each.client);
-    else
+    } else {
       execute(each, obey);
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "slalom/solvers/solver_options.hpp"
 #include "view/server/server.hpp"
 
 namespace slalom::view {
@@ -34,6 +35,9 @@ double rate(const nlohmann::ordered_json& command);
 /// Returns the number of steps of a command, at most `max_steps`.
 int steps(const nlohmann::ordered_json& command);
 constexpr int max_steps = 400;
+/// Throws std::invalid_argument for options with more samples times steps than a page can wait for: 2^22 take
+/// about 0.05 s.
+void check_samples(const SolverOptions& options);
 
 }  // namespace field
 
@@ -45,25 +49,22 @@ class Audience {
 
   explicit Audience(Server& server) : server_(server) {}
 
-  /// Adds a client; the first one drives.
-  void join(std::uint64_t client);
-  /// If the client that drives has left, the one that has watched longest drives.
-  void leave(std::uint64_t client);
   void take_over(std::uint64_t client);
   /// Throws std::invalid_argument unless the client drives.
   void require_driver(std::uint64_t client) const;
-  /// Tells each client whether it drives or watches.
-  void tell_roles();
 
   /// Sends a message to one client, or to all with 0.
   void tell(std::uint64_t client, const Json& message);
   void tell_text(std::uint64_t client, std::string text);
   /// Executes what has come: a page that is opened by `open`, a command by `obey`. A command is answered by
   /// an error with the reason, and by `done` if it has an `id`. Of a drag, only the last step is executed.
+  /// The first client drives; if it leaves, the one that has watched longest.
   void turn(const std::function<void(std::uint64_t client)>& open, const Obey& obey);
   std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were not valid commands
 
  private:
+  void leave(std::uint64_t client);
+  void tell_roles();
   void execute(const Received& message, const Obey& obey);
 
   Server& server_;

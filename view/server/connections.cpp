@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "view/server/access.hpp"
-
 namespace slalom::view {
 namespace {
 
@@ -22,29 +20,87 @@ std::string_view view_of(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-/// Whether a text whose characters are otherwise valid UTF-8 ends within one.
-bool ends_within_character(std::string_view text) {
-  for (std::size_t bytes = 1; bytes <= std::min<std::size_t>(3, text.size()); ++bytes) {
-    const auto last = static_cast<unsigned char>(text[text.size() - bytes]);
-    if ((last & 0xC0u) != 0x80u)
-      return bytes < (last >= 0xF0u ? 4u : last >= 0xE0u ? 3u : last >= 0xC0u ? 2u : 1u);
+/// The path of a target, without its query.
+std::string path_of(std::string_view target) {
+  return std::string(target.substr(0, target.find('?')));
+}
+
+/// The value of a key in the query of a target; empty if there is none.
+std::string_view query_value(std::string_view target, std::string_view key) {
+  std::size_t at = target.find('?');
+  while (at != std::string_view::npos) {
+    const std::size_t end = target.find('&', at + 1);
+    const std::string_view pair = target.substr(at + 1, end == std::string_view::npos ? end : end - at - 1);
+    const std::size_t equals = pair.find('=');
+    if (pair.substr(0, equals) == key && equals != std::string_view::npos) return pair.substr(equals + 1);
+    at = end;
   }
-  return false;
+  return {};
+}
+
+/// Compares in a time that does not depend on how many characters are right.
+bool same_secret(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  int difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) difference |= a[i] ^ b[i];
+  return difference == 0;
+}
+
+/// Whether a name in a request is one of this server. If the server can be reached from elsewhere, any name
+/// may lead to it, and the token decides.
+bool is_own_host(const ServerOptions& options, std::string_view host) {
+  const bool is_v6 = host.starts_with('[');
+  const std::string_view name = host.substr(0, is_v6 ? host.find(']') + 1 : host.find(':'));
+  return !is_loopback(options.host) || name == "localhost" || name == "127.0.0.1" || name == "[::1]" ||
+         name == options.host;
+}
+
+/// The status of the answer to a request, and the reason if it is refused.
+struct Verdict {
+  unsigned status = 200;  ///< status of HTTP; 101: the connection becomes a WebSocket
+  std::string_view reason{};
+};
+
+/// Decides who may have what: host name, token and origin must be those of this server, and the path must be
+/// one of its resources, or /ws for a WebSocket.
+Verdict judge(const Connections& all, const http::request<http::empty_body>& request) {
+  using http::field;
+  // A second Host or Origin could hide the one that is checked.
+  if (request.count(field::host) > 1 || request.count(field::origin) > 1)
+    return {400, "Host and Origin must not be repeated\n"};
+  const std::string_view target = view_of(request.target()), host = view_of(request[field::host]);
+  if (!is_own_host(all.options, host)) return {403, "this host name is not served here\n"};
+  if (!all.options.token.empty() && !same_secret(query_value(target, "token"), all.options.token))
+    return {401, "open the printed address, which contains the token\n"};
+  const bool is_upgrade = websocket::is_upgrade(request);
+  if (is_upgrade && path_of(target) == "/ws") {
+    // A browser always sends an Origin with a WebSocket; a client that sends none is not a page of another
+    // site.
+    const std::string_view origin = view_of(request[field::origin]);
+    if (!origin.empty() && origin != "http://" + std::string(host) &&
+        origin != "https://" + std::string(host))
+      return {403, "pages of another origin are not served\n"};
+    if (all.client_count >= all.options.max_clients) return {503, "too many clients\n"};
+    return {101};
+  }
+  if (request.method() != http::verb::get && request.method() != http::verb::head)
+    return {405, "only GET and HEAD are supported\n"};
+  if (is_upgrade || !all.resources.contains(path_of(target))) return {404, "not found\n"};
+  return {};
 }
 
 }  // namespace
 
 void Connections::deliver(Received received) {
-  const bool is_message = received.kind == Received::Kind::message;
-  {
-    const std::lock_guard lock(mutex);
-    if (is_message && inbox.size() >= max_received) {
+  const std::lock_guard lock(mutex);
+  if (received.kind == Received::Kind::message) {
+    if (inbox.size() >= max_received) {
       ++refused;
       return;
     }
-    inbox.push_back(std::move(received));
+    ++messages;
   }
-  if (is_message) ++messages;
+  inbox.push_back(std::move(received));
   arrived.notify_all();
 }
 
@@ -71,15 +127,7 @@ void HttpConnection::begin() {
 void HttpConnection::answer() {
   const auto& request = parser_.get();
   const std::string_view target = view_of(request.target());
-  const Verdict verdict =
-      judge(all_.options, all_.resources,
-            {.method = view_of(request.method_string()),
-             .target = target,
-             .host = view_of(request[http::field::host]),
-             .origin = view_of(request[http::field::origin]),
-             .is_upgrade = websocket::is_upgrade(request),
-             .is_ambiguous = request.count(http::field::host) > 1 || request.count(http::field::origin) > 1},
-            all_.client_count);
+  const Verdict verdict = judge(all_, request);
   if (verdict.status == 101) {
     const bool acknowledges = query_value(target, "acknowledge") == "1";
     stream_.expires_never();  // the WebSocket has its own timeouts
@@ -181,31 +229,20 @@ void WebSocketClient::read() {
         ++self->all_.refused;
       return self->leave();
     }
-    if (self->got_message()) {
-      self->buffer_.clear();
-      return self->read();
-    }
-    ++self->all_.refused;
-    self->leave();
-    self->socket_.async_close(websocket::close_code::bad_payload, [self](error_code) {});
+    self->take_message();
+    self->buffer_.clear();
+    self->read();
   });
 }
 
-/// Takes a message. False if it is a text that is not UTF-8.
-bool WebSocketClient::got_message() {
+void WebSocketClient::take_message() {
   // Acknowledgements do not count as messages: there are never more of them than frames.
-  if (socket_.got_binary() && acknowledge()) {
+  if (socket_.got_binary() && acknowledge())
     write_next();
-    return true;
-  }
-  std::string message = beast::buffers_to_string(buffer_.data());
-  // Beast does not check the end of a message whose last frame is empty.
-  if (socket_.got_text() && ends_within_character(message)) return false;
-  if (is_within_rate() && socket_.got_text())
-    all_.deliver({Received::Kind::message, id_, std::move(message)});
+  else if (is_within_rate() && socket_.got_text())
+    all_.deliver({Received::Kind::message, id_, beast::buffers_to_string(buffer_.data())});
   else
     ++all_.refused;
-  return true;
 }
 
 /// Takes an acknowledgement: the number of frames shown so far, little-endian. False if it is none.

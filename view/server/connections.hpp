@@ -89,7 +89,7 @@ class WebSocketClient : public std::enable_shared_from_this<WebSocketClient> {
 
  private:
   void read();
-  bool got_message();
+  void take_message();
   bool acknowledge();
   bool is_within_rate();
   void write_next();

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "src/evaluation/json.hpp"
 #include "view/protocol/frame_reader.hpp"
 
 namespace slalom::view {
@@ -20,11 +19,10 @@ constexpr double behind = 0.6;          // m from the centre of a car to that of
 constexpr int max_passing_ticks = 120;  // a car may be blocked
 
 /// The message of a tick: the blocks of the car, the bodies of its world, and the same of the ghost.
-std::string frame_of(std::string_view car, std::string_view ghost, const Drives& drives) {
-  std::string frame = std::string(car) + encode_bodies(drives.world());
-  if (drives.ghost && !ghost.empty())
-    frame += encode_ghost_frame(std::string(ghost) + encode_bodies(drives.ghost->world()));
-  return frame;
+std::string frame_of(const std::string& car, const std::string& ghost, const Drives& drives) {
+  const std::string frame = car + encode_bodies(drives.world());
+  if (!drives.ghost || ghost.empty()) return frame;
+  return frame + encode_ghost_frame(ghost + encode_bodies(drives.ghost->world()));
 }
 
 /// Whether a body that does not drive lies ahead of the first car of a world, or beside it.
@@ -38,45 +36,11 @@ bool has_obstacle_near(const sim::World& world) {
 
 }  // namespace
 
-Session::Session(SessionOptions options, Server& server)
-    : options_(std::move(options)), server_(server), audience_(server) {
+Session::Session(SessionOptions options, Server& server) : Playback(server), options_(std::move(options)) {
   install(options_.load(options_.scenario), options_.scenario);
   if (!options_.against.empty()) set_ghost(options_.against);
   state_.introduction = options_.introduction;
   slow_down();
-}
-
-void Session::run(const std::atomic<bool>& stop) {
-  while (!stop) {
-    const auto wait = std::min<Clock::duration>(until_due(), std::chrono::milliseconds(50));
-    if (wait > Clock::duration::zero()) server_.wait(wait);
-    turn();
-  }
-}
-
-void Session::turn() {
-  audience_.turn([this](auto client) { join(client); },
-                 [this](auto client, const auto& what, const Json& command) { obey(client, what, command); });
-  if (until_due() <= Clock::duration::zero()) {
-    if (steps_left_ > 0) --steps_left_;
-    tick();
-  }
-  // The first change after a pause need not wait for these.
-  if (state_.paused && is_held() && (!held_ || std::abs(held_->ticks() - shown_tick()) > scan_lead))
-    present(scan_lead);
-  if (std::exchange(are_options_changed_, false)) audience_.tell_text(0, options_message(options_facts()));
-  const auto now = Clock::now();
-  if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
-  last_state_ = now;
-  is_state_changed_ = false;
-  state_.pace = pace_.measure(state_.pace, control_period(), state_.paused);
-  audience_.tell_text(0, state());
-}
-
-Session::Clock::duration Session::until_due() const {
-  if (steps_left_ > 0) return Clock::duration::zero();
-  if (waiting_ || state_.paused) return std::chrono::hours(1);
-  return pace_.until_due(state_.rate);
 }
 
 /// Drives a scenario from its start, without a ghost.
@@ -101,30 +65,25 @@ void Session::restart() {
 }
 
 void Session::begin(Drives drives) {
-  drives_ = std::move(drives);
-  timeline_ = Timeline(control_period());
+  Playback::begin(std::move(drives));
   state_.laps.clear();
   state_.contact.fill(-1);
-  ++state_.generation;
   // Options can still be set back; the bodies of another world cannot.
   for (auto* changes : {&undo_, &redo_}) {
     std::erase_if(*changes, [](const Change& each) { return each.before.index() == 1; });
     for (Change& each : *changes) each.ticks = 0;
   }
-  viewed_ = stop_at_ = passing_ticks_ = -1;
-  steps_left_ = 0;
-  held_.reset();
+  stop_at_ = passing_ticks_ = -1;
   slow_down();
-  pace_.due = Clock::now();
-  is_state_changed_ = are_options_changed_ = true;
+  are_options_changed_ = true;
 }
 
-void Session::tick(bool is_shown) {
-  pace_.step(control_period(), state_.rate);
+void Session::drive_tick(bool is_shown) {
+  pace_.step(control_period(), rate_);
   Drives& drives = *drives_;
   timeline_.checkpoint(drives, copy_bytes_, last_updates_.car + last_updates_.ghost);
   copy_bytes_ = 0;
-  std::string car, ghost_car, ghost;
+  std::string ghost_car, ghost, frame;
   const Delays delays = state_.real_time ? last_updates_ : Delays{};
   const auto on_ghost = [&](const evaluation::ControlStep& step) {
     std::vector<maps::Pose> plan;
@@ -135,12 +94,10 @@ void Session::tick(bool is_shown) {
     copy_bytes_ += bytes_of(step.output.solve);
   };
   const int number = drives.ticks();
-  std::string frame;
   const auto on_car = [&](const evaluation::ControlStep& step) {
-    car = encoder_.encode(step, facts_of(drives.car)) + ghost_car;
+    frame = frame_of(encoder_.encode(step, facts_of(drives.car)) + ghost_car, ghost, drives);
     last_updates_.car = step.output.tick_time;
     copy_bytes_ += bytes_of(step.output.solve);
-    frame = frame_of(car, ghost, drives);
   };
   drives.tick(delays, on_car, on_ghost);
   timeline_.keep({number, delays, shared(std::move(frame))});
@@ -148,11 +105,10 @@ void Session::tick(bool is_shown) {
   if (drives.ghost) note_laps(*drives.ghost, drives.ghost_label, true);
   slow_down();
   if (number == stop_at_) {
-    state_.paused = is_state_changed_ = true;
+    paused_ = is_state_changed_ = true;
     stop_at_ = -1;
   }
-  is_newest_sent_ = false;
-  if (is_shown && (Clock::now() - last_frame_ >= min_frame_gap || state_.paused)) publish_newest();
+  if (is_shown) offer_newest();
 }
 
 StepFacts Session::facts_of(const evaluation::LapDrive& drive) const {
@@ -160,12 +116,6 @@ StepFacts Session::facts_of(const evaluation::LapDrive& drive) const {
   return {.deadline = drive.setup().control_period(),
           .prediction_step = driver.configuration.vehicle.time_step,
           .method = options_.choices.method_index(driver.method)};
-}
-
-void Session::publish_newest() {
-  if (std::exchange(is_newest_sent_, true) || timeline_.empty()) return;
-  last_frame_ = Clock::now();
-  server_.publish(0, timeline_.steps().back().frame);
 }
 
 void Session::note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost) {
@@ -186,15 +136,6 @@ void Session::note_laps(const evaluation::LapDrive& drive, const std::string& me
   is_state_changed_ = true;
 }
 
-/// Pauses and shows a stored tick.
-void Session::show_step(int tick) {
-  if (timeline_.empty()) return;
-  tick = std::clamp(tick, timeline_.oldest(), timeline_.newest());
-  viewed_ = tick == timeline_.newest() ? -1 : tick;
-  state_.paused = is_newest_sent_ = is_state_changed_ = true;
-  server_.publish(0, timeline_.at(tick).frame);
-}
-
 /// Keeps the introduction in slow motion until both cars have passed the obstacle.
 void Session::slow_down() {
   if (!state_.introduction || passing_ticks_ > max_passing_ticks) return;
@@ -206,43 +147,21 @@ void Session::slow_down() {
     passing_ticks_ = max_passing_ticks + 1;
   const bool is_over = passing_ticks_ > max_passing_ticks;
   const double rate = is_over ? 1 : passing_ticks_ >= 0 ? passing_rate : approaching_rate;
-  is_state_changed_ = is_state_changed_ || rate != state_.rate;
-  state_.rate = rate;
+  is_state_changed_ = is_state_changed_ || rate != rate_;
+  rate_ = rate;
 }
 
-/// Whether a change is to be shown before the next tick: the drive is paused, or in slow motion.
-bool Session::is_held() const {
-  return (state_.paused || Pace::is_slow(control_period(), state_.rate)) && steps_left_ == 0 &&
-         !timeline_.empty();
+/// Goes back for the first change after a pause, unless a change is shown there already.
+void Session::prepare_change() {
+  if (!held_ || std::abs(held_->ticks() - shown_tick()) > scan_lead) present(scan_lead);
 }
 
-/// Returns the drives that a change applies to. While nothing moves these are the drives when the tick that
-/// is shown began, or with `lead` the tick before it; else the present ones.
-const Drives& Session::present(int lead) {
-  if (!is_held()) return *drives_;
-  const int tick = std::max(shown_tick() - lead, timeline_.oldest());
-  if (!held_ || held_->ticks() != tick) held_ = timeline_.before(tick);
-  return *held_;
-}
-
-/// Makes the tick that is shown the newest one.
-void Session::continue_from_shown() {
-  if (viewed_ < 0) return;
-  Drives drives = present();
-  drives.tick(timeline_.at(viewed_).delays);
-  drives_ = std::move(drives);
-  forget_after(viewed_, viewed_);
-  pace_.due = Clock::now();
-}
-
-/// Forgets what was driven after a tick, and what was changed after `ticks` ticks.
 void Session::forget_after(int tick, int ticks) {
-  timeline_.forget_after(tick, ticks);
+  Playback::forget_after(tick, ticks);
   std::erase_if(state_.laps, [&](const LapNote& lap) { return lap.tick > tick + 1; });
   for (auto* changes : {&undo_, &redo_})
     std::erase_if(*changes, [&](const Change& each) { return each.ticks > ticks; });
-  viewed_ = -1;
-  is_state_changed_ = are_options_changed_ = true;
+  are_options_changed_ = true;
 }
 
 /// Applies actions to the drives, from the tick that is shown on. While nothing moves, this tick is driven
@@ -263,7 +182,7 @@ void Session::perform(const std::vector<Action>& actions, int lead) {
   held_ = *drives_;
   const Clock::time_point due = pace_.due;
   if (acted_ < shown) {
-    tick(false);
+    drive_tick(false);
     timeline_.act(*drives_);
   }
   tick();

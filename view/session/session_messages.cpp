@@ -27,20 +27,18 @@ std::string file_message(const std::string& name, const std::string& content) {
 }  // namespace
 
 void Session::join(std::uint64_t client) {
-  audience_.join(client);
   audience_.tell_text(client, hello());
   server_.send(client, {scene_, true});
   audience_.tell_text(client, options_message(options_facts()));
   audience_.tell_text(client, state());
   if (!options_.evaluation.empty()) audience_.tell_text(client, options_.evaluation);
-  audience_.tell_roles();
   if (std::exchange(waiting_, false)) pace_.due = Clock::now();
   if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
 }
 
-/// Sends the scalars of past ticks, of as many as a message holds and as are still known.
-void Session::tell_past(std::uint64_t client, int from, int to) {
-  server_.send(client, {shared(timeline_.past(from, to, scalar_names().size())), true});
+void Session::tell() {
+  if (std::exchange(are_options_changed_, false)) audience_.tell_text(0, options_message(options_facts()));
+  audience_.tell_text(0, state());
 }
 
 std::string Session::hello() const {
@@ -50,6 +48,10 @@ std::string Session::hello() const {
 std::string Session::state() const {
   DriveState now = state_;
   now.names.method = driver().method;
+  now.rate = rate_;
+  now.pace = measured_rate_;
+  now.paused = paused_;
+  now.generation = generation_;
   now.time = drives_->world().time();
   now.tick = shown_tick();
   now.newest = timeline_.newest();

@@ -115,12 +115,6 @@ class TimelineOf {
     for (; drives.ticks() < tick; act(drives)) drives.tick(at(drives.ticks()).delays);
     return drives;
   }
-  /// Returns the drives as they were right after a stored tick.
-  Drives after(int tick) const {
-    Drives drives = before(tick);
-    drives.tick(at(tick).delays);
-    return drives;
-  }
   /// Forgets what was driven after a tick (with -1, everything), and the actions after `ticks` ticks.
   void forget_after(int tick, int ticks) {
     for (; newest() > tick; steps_.pop_back()) bytes_ -= steps_.back().frame->size();

@@ -135,7 +135,9 @@ class ControllerSubject final : public Subject {
     Inputs u;
     std::copy_n(input.begin(), P::inputs, u.value);
     const State x = state_of(state.data());
-    return values(drawing_->plant ? drawing_->plant(x, u) : next(x, u, 0));
+    if (drawing_->plant) return values(drawing_->plant(x, u));
+    const P& p = controller_.problem();
+    return values(slalom::detail::step<P, double>(p, x, slalom::detail::look_up<P, double>(p, x), u, 0));
   }
 
   std::vector<maps::Pose> poses(std::span<const double> states) override {
@@ -173,10 +175,6 @@ class ControllerSubject final : public Subject {
     std::vector<double> all(state_size);
     std::memcpy(all.data(), &state, sizeof state);
     return all;
-  }
-  State next(const State& x, const Inputs& u, int k) const {
-    const P& p = controller_.problem();
-    return slalom::detail::step<P, double>(p, x, slalom::detail::look_up<P, double>(p, x), u, k);
   }
   maps::Pose pose(const State& x) const {
     const Drawing<P>& d = *drawing_;

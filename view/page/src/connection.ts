@@ -8,9 +8,8 @@ export class Connection implements Link {
   private socket?: WebSocket | WorkerSocket;
   private attempts = 0;
   private timer = 0;
-  received = 0;
   private arrived = 0; // frames of this socket
-  private acknowledged = 0; // acknowledged frames
+  waiting = 0;
 
   constructor(private readonly handlers: Handlers) {
     this.open();
@@ -37,28 +36,20 @@ export class Connection implements Link {
 
   /** Whether a message answers a command; the asker deals with it then. */
   private answers(message: Text) {
-    const question =
-      message.type === "done" || message.type === "error" ? this.questions.get(message.id ?? 0) : undefined;
-    if (!question) return false;
-    this.questions.delete((message as { id: number }).id);
-    if (message.type === "error") question.fail(new Error(message.message));
-    else question.done();
-    return true;
-  }
-
-  get waiting() {
-    return this.arrived - this.acknowledged;
+    if (message.type !== "done" && message.type !== "error") return false;
+    const question = this.questions.get(message.id ?? 0);
+    this.questions.delete(message.id ?? 0);
+    if (message.type === "done") question?.done();
+    else question?.fail(new Error(message.message));
+    return question !== undefined;
   }
 
   /** Acknowledges the frames: the server has at most two under way that are not acknowledged. */
   drawn() {
-    if (this.connected && this.waiting > 0) this.acknowledge(this.arrived);
-  }
-
-  private acknowledge(frames: number) {
-    this.acknowledged = frames;
+    if (!this.connected || this.waiting === 0) return;
+    this.waiting = 0;
     const message = new DataView(new ArrayBuffer(4));
-    message.setUint32(0, frames, true);
+    message.setUint32(0, this.arrived, true);
     this.socket!.send(message);
   }
 
@@ -73,7 +64,7 @@ export class Connection implements Link {
     this.socket = socket;
     socket.onopen = () => {
       this.attempts = 0;
-      this.arrived = this.acknowledged = 0;
+      this.arrived = this.waiting = 0;
       this.handlers.status(true, 0);
     };
     socket.onmessage = (event: { data: string | ArrayBuffer }) => this.got(event.data);
@@ -98,8 +89,8 @@ export class Connection implements Link {
     else if (message.past) this.handlers.past(message.past);
     else if (message.grid) this.handlers.scene(message);
     else if (message.scalars) {
-      this.received += 1;
       this.arrived += 1;
+      this.waiting += 1;
       this.handlers.frame(message as Frame);
     }
   }

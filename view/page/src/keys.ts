@@ -55,7 +55,6 @@ export function returnFocus(scene: HTMLElement) {
 
 /** Shows the pane of the tab that is chosen by pointer or keys. Returns a function that shows a pane. */
 export function attachPanes(list: HTMLElement, changed: (pane: string) => void) {
-  const tabs = () => [...list.querySelectorAll<HTMLElement>('[role="tab"]:not([hidden])')];
   const show = (name: string) => {
     for (const tab of list.querySelectorAll<HTMLElement>('[role="tab"]')) {
       const isShown = tab.dataset.pane === name;
@@ -71,7 +70,7 @@ export function attachPanes(list: HTMLElement, changed: (pane: string) => void) 
     if (tab) show(tab.dataset.pane!);
   });
   list.addEventListener("keydown", (event) => {
-    const all = tabs();
+    const all = [...list.querySelectorAll<HTMLElement>('[role="tab"]:not([hidden])')];
     const at = all.indexOf(document.activeElement as HTMLElement);
     const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: all.length - 1 }[event.key];
     if (to === undefined) return;

@@ -19,6 +19,5 @@ export interface Link {
   ask(command: Command): Promise<void>;
   /** Tells that what was received has been drawn. */
   drawn(): void;
-  readonly received: number; // frames
   readonly waiting: number; // frames received and not yet drawn
 }

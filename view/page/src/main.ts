@@ -206,7 +206,7 @@ function showFrame(at?: number) {
   lanes.show(frame, position * period());
   introduction.show(frame);
   controls.showData(frame);
-  inspect.update(frame);
+  inspect.update();
   if (!isPaused) showTimeline();
   redraw();
 }
@@ -343,8 +343,6 @@ requestAnimationFrame(draw);
 // For tests, and for debugging in the console.
 const names = ["frame", "state", "hello"] as const;
 const getters = names.map((name) => [name, { get: () => page[name] }]);
-const counters = (["received", "waiting"] as const).map((name) => [name, { get: () => page.link[name] }]);
-const known = { replay: isReplay, scalar: (name: string) => scalar(name), scene, past, best, send, ask };
-Object.assign(window, {
-  slalom: Object.defineProperties(known, Object.fromEntries([...getters, ...counters])),
-});
+const figures = { scalar: (name: string) => scalar(name), waiting: () => page.link.waiting };
+const known = { ...figures, replay: isReplay, scene, past, best, send, ask };
+Object.assign(window, { slalom: Object.defineProperties(known, Object.fromEntries(getters)) });

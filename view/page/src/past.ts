@@ -6,43 +6,40 @@ import { page, scalar, send } from "./page";
  */
 export class Past {
   private rows: (Float64Array | undefined)[] = [];
-  private first = 0; // position of the first row
+  oldest = 0; // position of the first row
 
   /** `most`: the number of steps that are kept. */
   constructor(public most: number) {}
 
-  get oldest() {
-    return this.first;
-  }
   get newest() {
-    return this.first + this.rows.length - 1;
+    return this.oldest + this.rows.length - 1;
   }
   at(position: number): Float64Array | undefined {
-    return this.rows[position - this.first];
+    return this.rows[position - this.oldest];
   }
 
   set(position: number, scalars: Float64Array) {
     if (!this.rows.length || position > this.newest + this.most) {
       this.rows = [];
-      this.first = position;
+      this.oldest = position;
     }
-    if (position < this.first) {
+    if (position < this.oldest) {
       if (this.newest - position >= this.most) return;
-      this.rows = [...new Array<undefined>(this.first - position), ...this.rows];
-      this.first = position;
+      this.rows = [...new Array<undefined>(this.oldest - position), ...this.rows];
+      this.oldest = position;
     }
     while (this.newest < position) this.rows.push(undefined);
-    this.rows[position - this.first] = scalars;
+    this.rows[position - this.oldest] = scalars;
     const surplus = this.rows.length - this.most;
     if (surplus > 0) {
       this.rows.splice(0, surplus);
-      this.first += surplus;
+      this.oldest += surplus;
     }
   }
 
   /** Forgets the steps after a position: the drive went back and continues from there. */
   forgetAfter(position: number) {
-    this.rows.length = Math.max(0, Math.min(this.rows.length, position - this.first + 1));
+    this.rows.length = Math.max(0, Math.min(this.rows.length, position - this.oldest + 1));
   }
   clear() {
     this.rows = [];
@@ -53,7 +50,7 @@ export class Past {
     const line: number[] = [];
     const [x0, y0, x1, y1] = page.state?.bounds ?? [0, 0, 8, 8];
     const longest = Math.max(x1 - x0, y1 - y0) / 4; // m that a step can be
-    for (const row of this.rows.slice(0, Math.max(0, position - this.first + 1))) {
+    for (const row of this.rows.slice(0, Math.max(0, position - this.oldest + 1))) {
       if (!row) continue;
       const [x, y] = [scalar("x", row), scalar("y", row)];
       const [dx, dy] = [x - line[line.length - 2], y - line[line.length - 1]];

@@ -16,7 +16,6 @@ function scalarsOf(frame: ArrayBuffer): Float64Array {
 
 /** Plays a recording: takes the place of a server, and handles the commands that concern time. */
 export class Player implements Link {
-  received = 0;
   readonly waiting = 0;
   private readonly frames: ArrayBuffer[] = [];
   private readonly states: { from: number; state: State }[] = []; // each holds from this frame on
@@ -68,16 +67,9 @@ export class Player implements Link {
     const index = Math.max(0, Math.min(this.frames.length - 1, Math.floor(this.at)));
     const held = this.states.filter((s) => s.from <= index).at(-1) ?? this.states[0];
     if (!held) return;
-    this.handlers.text({
-      ...held.state,
-      paused: this.paused,
-      real_time: false,
-      rate: this.rate,
-      pace: 0,
-      tick: index,
-      newest: this.frames.length - 1,
-      oldest: 0,
-    });
+    const now = { paused: this.paused, real_time: false, rate: this.rate, pace: 0 };
+    const ticks = { tick: index, newest: this.frames.length - 1, oldest: 0 };
+    this.handlers.text({ ...held.state, ...now, ...ticks });
   }
 
   private show() {
@@ -85,7 +77,6 @@ export class Player implements Link {
     if (index === this.shown || !this.frames[index]) return;
     const before = this.shown;
     this.shown = index;
-    this.received += 1;
     this.handlers.frame(decode(this.frames[index]) as Frame, index);
     if (this.paused || index % 10 === 0 || Math.abs(index - before) > 1) this.tell();
   }

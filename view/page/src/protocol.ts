@@ -158,25 +158,11 @@ const blocks = {
     return { name, content: r.rest() };
   },
 };
-const kinds: Record<number, keyof typeof blocks> = {
-  ...{ 1: "scalars", 2: "scan", 3: "costMap", 4: "candidates", 5: "guides", 6: "nominal", 7: "plan" },
-  ...{
-    8: "bodies",
-    9: "covariance",
-    10: "ghost",
-    12: "others",
-    13: "figure",
-    14: "polygons",
-    16: "stepCosts",
-    17: "inputs",
-    18: "effectiveSamples",
-    19: "lines",
-    20: "grid",
-    21: "path",
-    22: "past",
-  },
-  30: "file",
-};
+/** The names of the blocks by their kinds; "-" where there is none. */
+const kinds =
+  "- scalars scan costMap candidates guides nominal plan bodies covariance ghost - others figure polygons - " +
+  "stepCosts inputs effectiveSamples lines grid path past - - - - - - - file";
+const names = kinds.split(" ") as (keyof typeof blocks)[];
 type Blocks = { [Name in keyof typeof blocks]: ReturnType<(typeof blocks)[Name]> };
 
 /** A binary message. `ghostFrame`: the frame of the ghost's controller, in the ghost's world. */
@@ -207,9 +193,9 @@ export function decode(buffer: ArrayBuffer): Message {
     const length = view.getUint32(at + 4, true);
     const r = new Reader(view, at + 8, Math.min(at + 8 + length, view.byteLength));
     at += 8 + ((length + 3) & ~3);
-    const name = kinds[kind];
+    const name = names[kind];
     if (kind === ghostFrame) message.ghostFrame = decode(buffer.slice(r.at, r.end)) as Frame;
-    else if (name) Object.assign(message, { [name]: blocks[name](r) });
+    else if (name in blocks) Object.assign(message, { [name]: blocks[name](r) });
   }
   return message;
 }
@@ -249,18 +235,9 @@ export interface LapRow extends Numbers<"lap" | "time" | "contacts"> {
   ghost?: boolean;
 }
 type Names = "course" | "description" | "method" | "config" | "evaluation" | "seed" | "ghost" | "ghost_label";
-type Counts =
-  | "length"
-  | "obstacles"
-  | "opponents"
-  | "rate"
-  | "pace"
-  | "tick"
-  | "newest"
-  | "oldest"
-  | "time"
-  | "generation";
-export interface State extends Texts<Names>, Numbers<Counts | "control_period"> {
+type Counts = "length" | "obstacles" | "opponents" | "rate" | "pace" | "time" | "control_period";
+type Ticks = "tick" | "newest" | "oldest" | "generation";
+export interface State extends Texts<Names>, Numbers<Counts | Ticks> {
   type: "state";
   paused: boolean;
   real_time: boolean;

@@ -25,14 +25,11 @@ export function attachSaveMenu(scene: SceneView): Popover {
       const name = `slalom-${page.state?.course}-${page.state?.tick}.${format}`;
       void picture(scene, format).then((blob) => download(name, blob, blob.type));
     });
-  on("save-replay", () => {
-    toast("Saving a replay of the last minute …");
-    send({ do: "save", what: "replay" });
-  });
-  on("save-recording", () => {
-    toast("Saving a recording of the last minute …");
-    send({ do: "save", what: "recording" });
-  });
+  for (const what of ["replay", "recording"])
+    on("save-" + what, () => {
+      toast(`Saving a ${what} of the last minute …`);
+      send({ do: "save", what });
+    });
   on("save-link", () => copy(location.href, "a link"));
   return menu;
 }

@@ -1,8 +1,10 @@
+import { get, make } from "./dom";
+
 let timer = 0;
 
 /** Shows a short message over the page; errors stay longer. */
 export function toast(message: string, bad = false) {
-  const box = document.getElementById("toast")!;
+  const box = get("toast");
   box.textContent = message;
   box.className = "card" + (bad ? " bad" : "");
   box.hidden = false;
@@ -23,9 +25,7 @@ export function copy(text: string, what: string) {
 
 /** Offers bytes to the user as a file. */
 export function download(name: string, content: BlobPart, type: string) {
-  const link = document.createElement("a");
-  link.download = name;
-  link.href = URL.createObjectURL(new Blob([content], { type }));
+  const link = make("a", { download: name, href: URL.createObjectURL(new Blob([content], { type })) });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }

@@ -30,14 +30,13 @@ if (!isIntroduction) {
 
 /** The step of the introduction in which mppi averages and svg_mppi commits. */
 async function drawIntroduction() {
-  const says = (step) =>
-    h.until((s) => document.getElementById("introduction-text").textContent.startsWith(s), step);
-  await says("1 of 6");
-  for (const step of ["2 of 6", "3 of 6", "4 of 6", "5 of 6"]) {
+  const says = (step) => h.says("introduction-text", `${step} of 6. `);
+  await says(1);
+  for (let step = 2; step <= 5; ++step) {
     await page.click("#introduction-next");
     await says(step);
   }
-  await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
+  await h.isPaused();
   await h.drawn();
   return page.screenshot();
 }
@@ -115,9 +114,8 @@ async function filmTwoWays() {
   const driven = await h.scalar("tick");
   if (driven < end) await h.step(end - driven);
   await page.click("#save-open");
-  const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#save-recording")]);
   const recording = join(h.folder, "two-ways.mcap");
-  await saved.saveAs(recording);
+  await (await h.saved("#save-recording")).saveAs(recording);
   const span = ["--from", "0.95", "--to", "1.6", "--speed", "0.2"];
   execFileSync(program, ["replay", recording, "--video", file, ...span], { stdio: "inherit" });
 }

@@ -32,7 +32,7 @@ await new Promise((done) => files.listen(0, "127.0.0.1", done));
 const h = new Harness();
 await h.launch();
 const site = `http://127.0.0.1:${files.address().port}/`;
-h.page = await h.open(site + "demo/index.html");
+h.page = (await h.open(site + "demo/index.html")).page;
 
 await h.test("the demonstration drives by itself", async () => {
   await h.until(() => window.slalom?.state && slalom.scalar("tick") > 5);
@@ -57,29 +57,7 @@ await h.test("an obstacle is dragged while the drive is paused, and the plan goe
   const before = await h.page.evaluateHandle(() => slalom.frame);
   await h.until((frame) => slalom.frame !== frame && slalom.scalar("tick") > 7, before);
   await h.seek(7);
-  const place = (x, y) =>
-    h.page.evaluate(
-      ([x, y]) => {
-        const box = document.getElementById("scene").getBoundingClientRect();
-        const [px, py] = slalom.scene.camera.toScreen(x, y);
-        return [box.left + px, box.top + py];
-      },
-      [x, y],
-    );
-  for (const side of [0.5, -0.5]) {
-    const { x, y } = await h.page.evaluate(() => slalom.frame.bodies[1]);
-    await h.page.mouse.move(...(await place(x, y)));
-    await h.page.mouse.down();
-    await h.page.mouse.move(...(await place(2, side)), { steps: 4 });
-    await h.page.mouse.up();
-    await h.until((at) => Math.abs(slalom.frame.bodies[1].y - at) < 0.1, side);
-    const gap = await h.page.evaluate(() => {
-      const disc = slalom.frame.bodies[1];
-      const gaps = slalom.frame.plan.map((p) => Math.hypot(p.x - disc.x, p.y - disc.y));
-      return Math.min(...gaps) / (disc.length / 2);
-    });
-    assert.ok(gap > 0.98, `the plan passes the disc at ${gap} of its radius`);
-  }
+  await h.dragThroughPlan();
 });
 
 await h.test("methods and options change, and a wrong option is refused", async () => {
@@ -97,7 +75,7 @@ await h.test("pages of the site fit a phone, are found, and have no violation in
   const found = [];
   for (const colorScheme of ["light", "dark"])
     for (const path of ["index.html", "docs/getting-started.html", "docs/results.html"]) {
-      const page = await h.open(site + path, { viewport: { width: 360, height: 740 }, colorScheme });
+      const { page } = await h.open(site + path, { viewport: { width: 360, height: 740 }, colorScheme });
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 360), path);
       const width = await page.evaluate(() => document.querySelector("article p").clientWidth);
       assert.ok(width > 300, `${path}: a paragraph is ${width} px wide`);
@@ -105,7 +83,7 @@ await h.test("pages of the site fit a phone, are found, and have no violation in
       await page.close();
     }
   assert.deepEqual(found, []);
-  const page = await h.open(site + "index.html");
+  const { page } = await h.open(site + "index.html");
   await page.frameLocator(".demo").locator("#cost").filter({ hasText: /\d/ }).waitFor();
   await page.locator("[name=query]").fill("costmap");
   await page.locator(".md-search-result__item").first().waitFor();

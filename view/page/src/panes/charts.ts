@@ -88,16 +88,9 @@ export class Charts {
   }
 
   private rebuildStrip(p: Plotted) {
+    const usual = { width: 1.6, points: { show: false } };
     const series = p.strip.lines.map(({ colour, dash, right }, i) => {
-      const show = p.chart.shown[i];
-      return {
-        stroke: css(colour),
-        width: 1.6,
-        dash,
-        scale: right ? "r" : "y",
-        points: { show: false },
-        show,
-      };
+      return { ...usual, stroke: css(colour), dash, scale: right ? "r" : "y", show: p.chart.shown[i] };
     });
     const isTwofold = p.strip.lines.some((line) => line.right);
     p.chart.draw("s", this.data(p), {

@@ -22,7 +22,6 @@ function ranked(c: Candidates): number[] {
 export class InspectPane {
   chosen = -1; // index of a candidate of the frame
   private choice = { index: -1, mark: "" as string | undefined }; // with its costs, to know it again
-  private frame?: Frame; // the one that is shown
   private readonly rank = get<HTMLInputElement>("rank");
   private readonly horizon: Chart;
   private readonly inputs: Chart[] = []; // one for each input of a step
@@ -52,21 +51,20 @@ export class InspectPane {
     redraw();
   }
 
-  /** Shows a frame. Later ones may still come before the drive pauses at that of the choice. */
-  update(frame: Frame) {
-    this.frame = frame;
+  /** Shows another frame. Later ones may still come before the drive pauses at that of the choice. */
+  update() {
     const { index, mark } = this.choice;
     this.chosen = this.markOf(index) === mark ? index : -1;
     this.show();
   }
 
   private markOf(i: number) {
-    const c = this.frame?.candidates;
+    const c = page.frame?.candidates;
     return c?.terms.subarray(c.width * i, c.width * (i + 1)).join();
   }
 
   show() {
-    const { frame } = this;
+    const { frame } = page;
     if (get("pane-inspect").hidden || !frame?.candidates) return;
     const c = frame.candidates;
     const i = this.chosen;
@@ -78,11 +76,8 @@ export class InspectPane {
     this.drawHorizon(frame, i);
     const free = order.filter((k) => !c.collided[k]).map((k) => c.terms[c.width * (k + 1) - 2]);
     this.histogram(this.costs, free, "");
-    this.histogram(
-      this.weights,
-      order.map((k) => 100 * c.terms[c.width * (k + 1) - 1]),
-      "%",
-    );
+    const shares = order.map((k) => 100 * c.terms[c.width * (k + 1) - 1]);
+    this.histogram(this.weights, shares, "%");
     this.drawEffective(frame);
     this.drawInputs(frame);
   }
@@ -161,17 +156,11 @@ export class InspectPane {
     this.effective.box.hidden = !effectiveSamples;
     if (!effectiveSamples) return;
     const [x, y] = [0, 1].map((k) => Array.from(effectiveSamples).filter((_, i) => i % 2 === k));
-    this.drawLines(
-      this.effective,
-      "",
-      x.map((v) => +v.toPrecision(3)),
-      [y],
-      () => ({ stroke: css("--blue") }),
-      {
-        scales: { x: { time: false, distr: 3 }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.1)] } },
-        hooks: { draw: [(u) => vertical(u, scalar("temperature", scalars), "--warn", [5, 4])] },
-      },
-    );
+    const temperatures = x.map((v) => +v.toPrecision(3));
+    this.drawLines(this.effective, "", temperatures, [y], () => ({ stroke: css("--blue") }), {
+      scales: { x: { time: false, distr: 3 }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.1)] } },
+      hooks: { draw: [(u) => vertical(u, scalar("temperature", scalars), "--warn", [5, 4])] },
+    });
   }
 
   /** Draws the inputs of each step: those of the plan, and of the nominal sequence before and after. */

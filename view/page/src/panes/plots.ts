@@ -25,12 +25,8 @@ export class Chart {
       const ends = `var(${colour}) 0 ${on}px, transparent ${on}px ${on + off}px`;
       mark.style.background = `repeating-linear-gradient(90deg, ${ends})`;
       if (!colour) return make("em", { className: "value" }, this.values[i]);
-      const button = make(
-        "button",
-        { className: "value", title: "Show or hide this line" },
-        mark,
-        this.values[i],
-      );
+      const title = "Show or hide this line";
+      const button = make("button", { className: "value", title }, mark, this.values[i]);
       button.setAttribute("aria-pressed", "true");
       button.onclick = () => {
         this.shown[i] = !this.shown[i];

@@ -14,13 +14,7 @@ export function collisionPoint({ candidates }: Frame, i: number): number | undef
   return at > (page.hello?.problem ? 0 : 1) ? at - 1 : undefined;
 }
 
-const kindNames: Record<number, string> = {
-  1: "a parked car",
-  2: "a box",
-  3: "a pole",
-  4: "another car",
-  5: "somebody",
-};
+const kindNames = ["", "a parked car", "a box", "a pole", "another car", "somebody"];
 
 /** Names what a candidate meets at one of its points: a body whose edge is within reach, or a wall. */
 export function bodyHit({ bodies, candidates: c }: Frame, i: number, point: number): string {
@@ -30,10 +24,8 @@ export function bodyHit({ bodies, candidates: c }: Frame, i: number, point: numb
   const distance = (b: Body) => {
     const [cos, sin, dx, dy] = [Math.cos(b.yaw), Math.sin(b.yaw), x - b.x, y - b.y];
     if (b.kind === 3 || b.kind === 5) return Math.hypot(dx, dy) - b.length / 2;
-    const [u, v] = [
-      Math.abs(cos * dx + sin * dy) - b.length / 2,
-      Math.abs(cos * dy - sin * dx) - b.width / 2,
-    ];
+    const u = Math.abs(cos * dx + sin * dy) - b.length / 2;
+    const v = Math.abs(cos * dy - sin * dx) - b.width / 2;
     return Math.hypot(Math.max(0, u), Math.max(0, v));
   };
   const nearest = bodies.filter((b) => b.kind > 0 && b.kind < 6).sort((a, b) => distance(a) - distance(b))[0];
@@ -48,9 +40,8 @@ export function candidateAt({ candidates: c }: Frame, x: number, y: number, reac
     if (k % c.points === 0) continue;
     const [ax, ay, bx, by] = c.xy.subarray(2 * k - 2, 2 * k + 2);
     const length = (bx - ax) ** 2 + (by - ay) ** 2;
-    const share = length
-      ? Math.min(1, Math.max(0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / length))
-      : 0;
+    const along = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / (length || 1);
+    const share = Math.min(1, Math.max(0, along));
     const distance = Math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y);
     if (distance < reach) [reach, found] = [distance, Math.floor(k / c.points)];
   }

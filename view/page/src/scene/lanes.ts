@@ -43,12 +43,10 @@ export class Lanes {
     });
     const divider = get("divider");
     const c = scene.stage.ghostCamera;
-    const isBelow = c.top > 0;
     divider.hidden = !on;
     if (on)
-      divider.style.cssText = isBelow
-        ? `top:${c.top}px;left:0;right:0;height:1px`
-        : `left:${c.left}px;top:0;bottom:0;width:1px`;
+      divider.style.cssText =
+        c.top > 0 ? `top:${c.top}px;left:0;right:0;height:1px` : `left:${c.left}px;top:0;bottom:0;width:1px`;
   }
 
   /** The middle of what panels leave free of a lane. */

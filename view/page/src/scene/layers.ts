@@ -12,12 +12,7 @@ export const layers = [
   ["spread", "Spread", "two standard deviations of the plan, from the solver's covariance", "spread"],
   ["driven", "Driven line", "the path of the car", "driven"],
   ["obstacles", "Obstacles", "parked cars, boxes and poles", "obstacle"],
-  [
-    "opponents",
-    "Opponents",
-    "other cars; outlines and dots: where the planner tracks and expects them",
-    "opponent",
-  ],
+  ["opponents", "Opponents", "other cars; outlines and dots: where the planner expects them", "opponent"],
   ["modes", "Caption", "which way around the next obstacle the samples and the plan take", "nominal"],
   ["ghost", "Ghost", "the second controller, in a world of its own; as an outline, the best lap", "ghost"],
 ] as const;

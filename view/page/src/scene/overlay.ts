@@ -17,12 +17,8 @@ export function coveredByPanels(): Camera["covered"] {
     Math.max(figures.width ? figures.bottom : box.top, layers.open ? 0 : panel.bottom) - box.top + margin;
   if (box.width - left - right > 0.5 * box.width && box.width > box.height)
     return { left, right, top: left ? 0 : panel.bottom - box.top + margin, bottom: 0 };
-  return {
-    left: left < 0.5 * box.width ? left : 0,
-    right: 0,
-    top: Math.min(top, 0.4 * box.height),
-    bottom: captionRoom,
-  };
+  const aside = left < 0.5 * box.width ? left : 0;
+  return { left: aside, right: 0, top: Math.min(top, 0.4 * box.height), bottom: captionRoom };
 }
 
 /** Puts a label behind its car, so that it does not hide the plan; `further` lengths of the label away. */

@@ -1,3 +1,4 @@
+import { make } from "../dom";
 import type { Pose } from "../protocol";
 import type { Camera } from "./camera";
 import { css, type Rgba } from "./palette";
@@ -5,7 +6,7 @@ import { css, type Rgba } from "./palette";
 /** A canvas, with as much of it as pictures need. */
 export type Pen = Pick<
   CanvasRenderingContext2D,
-  | ("fillStyle" | "strokeStyle" | "lineWidth" | "lineJoin" | "imageSmoothingQuality" | "font" | "textAlign")
+  | ("fillStyle" | "strokeStyle" | "lineWidth" | "lineJoin" | "imageSmoothingQuality" | "font")
   | ("save" | "restore" | "scale" | "rotate" | "translate" | "clip" | "fill" | "stroke")
   | ("beginPath" | "closePath" | "moveTo" | "lineTo" | "arc" | "rect" | "fillRect" | "fillText")
 > & {
@@ -127,7 +128,7 @@ export function painterOf(canvas: HTMLCanvasElement): Painter {
 
 /** An image of these pixels, four bytes each. */
 export function imageOf(width: number, height: number, colourOf: (x: number, y: number) => Rgba) {
-  const image = Object.assign(document.createElement("canvas"), { width, height });
+  const image = make("canvas", { width, height });
   const data = new ImageData(width, height);
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {

@@ -1,4 +1,4 @@
-import { all, counted, get } from "../dom";
+import { all, counted, get, make } from "../dom";
 import { page, period, scalar } from "../page";
 import type { Camera } from "./camera";
 import { layers, type Layer } from "./layers";
@@ -138,10 +138,7 @@ export async function picture(scene: SceneView, format: "png" | "svg"): Promise<
   end += margin;
 
   const ratio = format === "png" ? 2 : 1;
-  const canvas = Object.assign(document.createElement("canvas"), {
-    width: ratio * width,
-    height: ratio * end,
-  });
+  const canvas = make("canvas", { width: ratio * width, height: ratio * end });
   const pen = format === "png" ? canvas.getContext("2d")! : new SvgPen(width, end);
   scene.draw(new Painter(pen, ratio));
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);

@@ -138,15 +138,8 @@ export function attachPointer(
   const drop = (x: number, y: number) => {
     const kind = tool();
     const car = page.frame?.bodies[0];
-    send({
-      do: "add",
-      kind,
-      x,
-      y,
-      yaw: kind === "car" && car ? car.yaw : 0,
-      length: kind === "disc" ? 0.3 : 0.4,
-      width: 0.4,
-    });
+    const yaw = kind === "car" && car ? car.yaw : 0;
+    send({ do: "add", kind, x, y, yaw, length: kind === "disc" ? 0.3 : 0.4, width: 0.4 });
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);
@@ -157,8 +150,7 @@ export function attachPointer(
   canvas.addEventListener("contextmenu", (e) => {
     e.preventDefault();
     const p = place(e);
-    const [x, y] = scene.camera.toMap(p.x, p.y);
-    remove(bodyAt(x, y));
+    remove(bodyAt(...scene.camera.toMap(p.x, p.y)));
   });
   canvas.addEventListener(
     "wheel",

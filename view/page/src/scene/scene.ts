@@ -6,17 +6,7 @@ import * as draw from "./drawings";
 import { layers, type Layer } from "./layers";
 import { painterOf, type Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
-import {
-  carSize,
-  circle,
-  corners,
-  drawCar,
-  drawFigure,
-  drawObstacle,
-  drawPolygon,
-  drawTracked,
-  faded,
-} from "./shapes";
+import * as shapes from "./shapes";
 import { Stage } from "./stage";
 
 /** The place of a collision of an evaluation. */
@@ -73,14 +63,11 @@ export class SceneView {
   setScene(scene: Scene) {
     this.scene = scene;
     if (!scene.path) return;
-    const [x, y] = [0, 1].map((k) => scene.path!.xyv.filter((_, i) => i % 3 === k));
     const room = 1.5; // m
-    this.bounds = [
-      Math.min(...x) - room,
-      Math.min(...y) - room,
-      Math.max(...x) + room,
-      Math.max(...y) + room,
-    ];
+    const axes = [0, 1].map((k) => scene.path!.xyv.filter((_, i) => i % 3 === k));
+    const [x0, y0] = axes.map((all) => Math.min(...all) - room);
+    const [x1, y1] = axes.map((all) => Math.max(...all) + room);
+    this.bounds = [x0, y0, x1, y1];
   }
 
   /** Sets what `fit` shows, with some room around it. */
@@ -157,11 +144,8 @@ export class SceneView {
   draw(painter = painterOf(this.canvas)) {
     this.painter = painter;
     const [width, height] = this.size;
-    painter.begin(
-      width,
-      height,
-      page.hello?.problem && !this.scene.grid ? this.theme.free : this.theme.ground,
-    );
+    const isEmpty = page.hello?.problem && !this.scene.grid;
+    painter.begin(width, height, isEmpty ? this.theme.free : this.theme.ground);
     if (this.isSideBySide) this.stage.splitLanes();
     else this.stage.joinLanes();
     this.drawLane(this.camera, page.frame, this.driven);
@@ -201,10 +185,10 @@ export class SceneView {
     if (visible.has("ghost") && !this.isSideBySide) this.drawGhost(frame);
     if (this.best && visible.has("ghost") && frame === page.frame) this.drawOutline(this.best, theme.driven);
     if (this.probe) this.drawOutline(this.probe, theme.selected);
-    if (frame.figure && car) drawFigure(painter, theme, car, frame.figure);
+    if (frame.figure && car) shapes.drawFigure(painter, theme, car, frame.figure);
     else if (car) {
       const steer = scalar("steer", frame.scalars) || 0;
-      drawCar(painter, theme, car, steer, theme.car, car.touched ? theme.collided : theme.carEdge);
+      shapes.drawCar(painter, theme, car, steer, theme.car, car.touched ? theme.collided : theme.carEdge);
     }
     this.drawMarks(frame !== page.frame);
   }
@@ -221,30 +205,30 @@ export class SceneView {
     const { painter, theme, visible } = this;
     for (const body of frame.bodies) {
       if (body.kind === opponent && visible.has("opponents"))
-        drawCar(painter, theme, body, 0, theme.opponent, theme.carEdge);
+        shapes.drawCar(painter, theme, body, 0, theme.opponent, theme.carEdge);
       else if (body.kind !== 0 && body.kind !== opponent && visible.has("obstacles"))
-        drawObstacle(painter, theme, body, this.selected === body.id);
+        shapes.drawObstacle(painter, theme, body, this.selected === body.id);
     }
     for (const polygon of frame.polygons ?? [])
-      if (visible.has("obstacles")) drawPolygon(painter, theme, polygon);
-    if (visible.has("opponents")) drawTracked(painter, theme, frame.others ?? []);
+      if (visible.has("obstacles")) shapes.drawPolygon(painter, theme, polygon);
+    if (visible.has("opponents")) shapes.drawTracked(painter, theme, frame.others ?? []);
   }
 
   private drawGhost({ ghost }: Frame) {
     if (!ghost) return;
     const { painter, theme } = this;
-    painter.dashed(ghost.plan, ghost.plan.length / 2, faded(theme.ghost, 0.9), 2.4);
-    drawCar(painter, theme, ghost, ghost.steer, faded(theme.ghost, 0.75), theme.carEdge);
+    painter.dashed(ghost.plan, ghost.plan.length / 2, shapes.faded(theme.ghost, 0.9), 2.4);
+    shapes.drawCar(painter, theme, ghost, ghost.steer, shapes.faded(theme.ghost, 0.75), theme.carEdge);
   }
 
   private drawPreview({ x, y, kind }: { x: number; y: number; kind: number }) {
     const size = kind === 1 ? { length: 0.58, width: 0.31 } : { length: 0.4, width: 0.4 };
-    const points = kind === 3 ? circle(x, y, 0.15) : corners({ x, y, yaw: 0, ...size });
+    const points = kind === 3 ? shapes.circle(x, y, 0.15) : shapes.corners({ x, y, yaw: 0, ...size });
     this.painter.outline(points, this.theme.obstacle, 1.5);
   }
 
   private drawOutline(at: Pose, colour: Rgba) {
-    this.painter.outline(corners({ ...carSize(), ...at }), colour, 2);
+    this.painter.outline(shapes.corners({ ...shapes.carSize(), ...at }), colour, 2);
     this.painter.dot(at.x, at.y, 5, colour);
   }
 

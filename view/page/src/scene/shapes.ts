@@ -66,14 +66,8 @@ export function drawFigure(painter: Painter, theme: Theme, body: Body, lines: Fl
   const [l, w] = [body.length / 2, body.width / 2];
   painter.fill(corners(body), theme.car);
   painter.outline(corners(body), edge, body.touched ? 4 : 1.2);
-  painter.fill(
-    placed(body, [
-      [0.8 * l, 0],
-      [0.2 * l, 0.6 * w],
-      [0.2 * l, -0.6 * w],
-    ]),
-    faded(theme.carEdge, 0.85),
-  );
+  const front = placed(body, mirrored(0.8 * l, 0, 0.2 * l, 0.6 * w));
+  painter.fill(front, faded(theme.carEdge, 0.85));
 }
 
 /** Cars that are tracked: outlines, and a dot for each place where they may be, as opaque as it is likely. */

@@ -11,7 +11,6 @@ export class SvgPen implements Pen {
   lineJoin: CanvasLineJoin = "miter";
   imageSmoothingQuality: ImageSmoothingQuality = "low"; // the viewer's choice
   font = "13px sans-serif";
-  textAlign: CanvasTextAlign = "left";
   private matrix = new DOMMatrix();
   private path = "";
   private readonly parts: string[] = [];
@@ -86,9 +85,7 @@ export class SvgPen implements Pen {
   }
   fillText(text: string, x: number, y: number) {
     const [px, py] = this.place(x, y).split(" ");
-    const anchor = this.textAlign === "center" ? "middle" : this.textAlign === "right" ? "end" : "start";
-    const fill = this.colour("fill", this.fillStyle);
-    const look = `${fill} text-anchor="${anchor}" style="font:${escaped(this.font)}"`;
+    const look = `${this.colour("fill", this.fillStyle)} style="font:${escaped(this.font)}"`;
     this.parts.push(`<text x="${px}" y="${py}" ${look}>${escaped(text)}</text>`);
   }
   drawImage(image: CanvasImageSource, x: number, y: number, width: number, height: number) {

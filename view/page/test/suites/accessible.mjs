@@ -18,7 +18,6 @@ export async function violations(page) {
 
 export default async function (h) {
   const { page } = h;
-  const click = (id) => page.evaluate((i) => document.getElementById(i).click(), id);
 
   await h.test("axe-core finds no violation in either theme, with every pane and dialog", async () => {
     await h.pause();
@@ -27,20 +26,20 @@ export default async function (h) {
     for (const theme of ["dark", "light"]) {
       await h.until((name) => document.documentElement.dataset.theme === name, theme);
       for (const pane of ["options", "inspect", "laps", "charts"]) {
-        await click("tab-" + pane);
+        await h.press("tab-" + pane);
         await check(`${theme}, ${pane}`);
       }
       for (const dialog of ["help", "fork"]) {
-        await click(dialog);
+        await h.press(dialog);
         await check(`${theme}, ${dialog}`);
         await page.evaluate((id) => document.getElementById(id).close(), dialog + "-box");
       }
       for (const menu of ["save-open", "scenario-open"]) {
-        await click(menu);
+        await h.press(menu);
         await check(`${theme}, ${menu}`);
-        await click(menu);
+        await h.press(menu);
       }
-      await click("theme");
+      await h.press("theme");
     }
     assert.deepEqual([...new Set(found)], []);
   });
@@ -73,27 +72,24 @@ export default async function (h) {
 
   await h.test("a long press deletes an obstacle", async () => {
     const server = await h.start(..."view --course stag --obstacles 4 --seed 3 --port 0".split(" "));
-    const touch = await h.open(server.address, { hasTouch: true, viewport: { width: 400, height: 800 } });
-    await h.until(() => window.slalom?.frame?.bodies.length > 1 && slalom.state, null, touch);
-    await h.pause(touch);
+    const look = await h.open(server.address, { hasTouch: true, viewport: { width: 400, height: 800 } });
+    const touch = look.page;
+    await look.until(() => window.slalom?.frame?.bodies.length > 1 && slalom.state);
+    await look.pause();
     await touch.evaluate(() => slalom.scene.fit());
     const tools = await touch.context().newCDPSession(touch);
     const bodies = await touch.evaluate(() => slalom.frame.bodies.length);
     const isDeleted = (n) => slalom.frame.bodies.length === n - 1; // the others are numbered anew
     // Panels that open may move the scene between a look and a touch: then the press is repeated.
     for (let press = 0; press < 5 && !(await touch.evaluate(isDeleted, bodies)); ++press) {
-      await h.drawn(touch);
-      const point = await touch.evaluate(() => {
-        const body = slalom.frame.bodies.find((o) => o.kind !== 0);
-        const [x, y] = slalom.scene.camera.toScreen(body.x, body.y);
-        const box = document.getElementById("scene").getBoundingClientRect();
-        return { x: box.x + x, y: box.y + y };
-      });
-      await tools.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [point] });
+      await look.drawn();
+      const body = await touch.evaluate(() => slalom.frame.bodies.find((o) => o.kind !== 0));
+      const [x, y] = await look.placeOf(body);
+      await tools.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [{ x, y }] });
       await touch.waitForFunction(isDeleted, bodies, { timeout: 15_000 }).catch(() => undefined);
       await tools.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
     }
-    await h.until(isDeleted, bodies, touch);
+    await look.until(isDeleted, bodies);
     await touch.close();
     await server.stop();
   });

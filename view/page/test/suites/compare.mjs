@@ -18,7 +18,7 @@ export default async function (h) {
     await page.selectOption("#fork-method", "mppi");
     await page.fill("#fork-options", "samples=-5");
     await page.click("#fork-go");
-    await h.until(() => /samples/.test(document.getElementById("fork-error").textContent));
+    await h.says("fork-error", "samples");
     assert.equal(await page.inputValue("#fork-options"), "samples=-5", "the dialog keeps what was typed");
     await page.fill("#fork-options", "samples=640");
     await page.click("#fork-go");

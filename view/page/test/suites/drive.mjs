@@ -3,18 +3,16 @@ import assert from "node:assert/strict";
 
 export default async function (h) {
   const { page } = h;
-  /** A place of the map as it is on the screen. */
-  const onScreen = (place) =>
-    page.evaluate(({ x, y }) => {
-      slalom.scene.draw();
-      const [left, top] = slalom.scene.camera.toScreen(x, y);
-      const box = document.getElementById("scene").getBoundingClientRect();
-      return [box.x + left, box.y + top];
-    }, place);
+  /** Drags a slider to a value. */
+  const slide = (selector, value) =>
+    page.locator(selector).evaluate((slider, to) => {
+      slider.value = String(to);
+      for (const type of ["input", "change"]) slider.dispatchEvent(new Event(type));
+    }, value);
 
   await h.test("shows a moving labelled car", async () => {
     await h.until(() => window.slalom?.frame && slalom.scalar("speed") > 0.1);
-    await h.until(() => document.getElementById("label").textContent.includes("svg_mppi"));
+    await h.says("label", "svg_mppi");
     const first = await h.scalar("x");
     await h.until((x) => Math.abs(slalom.scalar("x") - x) > 0.2, first);
   });
@@ -22,18 +20,14 @@ export default async function (h) {
   await h.test("pauses, steps one tick, goes back and on again to the same place, bit for bit", async () => {
     await h.until(() => slalom.scalar("tick") > 60);
     await page.click("#play");
-    await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
+    await h.isPaused();
     const tick = await h.scalar("tick");
     await page.click("#step");
     await h.until((t) => slalom.scalar("tick") === t + 1, tick);
     const there = await h.scalar("x");
-    await page.evaluate((value) => {
-      const slider = document.getElementById("timeline");
-      slider.value = String(value);
-      for (const type of ["input", "change"]) slider.dispatchEvent(new Event(type));
-    }, tick - 29);
+    await slide("#timeline", tick - 29);
     await h.until((t) => slalom.scalar("tick") === t, tick - 29);
-    await h.until(() => /earlier/.test(document.getElementById("mode-text").textContent));
+    await h.says("mode-text", "earlier");
     await h.step(30);
     assert.equal(await h.scalar("x"), there);
   });
@@ -52,50 +46,20 @@ export default async function (h) {
     const without = await nearest();
     await h.seek(120);
     const bodies = await page.evaluate(() => slalom.frame.bodies.length);
-    await page.mouse.click(...(await onScreen(place)));
+    await page.mouse.click(...(await h.placeOf(place)));
     await h.until((n) => slalom.frame.bodies.length === n + 1, bodies);
     await h.step(2); // the scan of a control step may be from before the edit
     const body = await page.evaluate(() => slalom.frame.bodies.at(-1));
     const distance = await nearest();
     assert.ok(distance > without + body.length / 2, `the plan leads within ${distance} m of the obstacle`);
 
-    const [x, y] = await onScreen(body);
-    await page.mouse.move(x, y);
-    await page.mouse.down();
-    await page.mouse.move(x + 40, y + 10, { steps: 6 });
-    await page.mouse.up();
+    const [x, y] = await h.placeOf(body);
+    await h.drag([x, y], [x + 40, y + 10]);
     const isMoved = (b) => Math.abs(slalom.frame.bodies.find((o) => o.id === b.id).x - b.x) > 0.1;
     await h.until(isMoved, body);
     const moved = await page.evaluate((id) => slalom.frame.bodies.find((o) => o.id === id), body.id);
-    await page.mouse.click(...(await onScreen(moved)), { button: "right" });
+    await page.mouse.click(...(await h.placeOf(moved)), { button: "right" });
     await h.until((id) => !slalom.frame.bodies.some((o) => o.id === id), body.id);
-  });
-
-  await h.test("a change while paused is planned for at once, from the state that is shown", async () => {
-    await h.pause();
-    const facts = () =>
-      page.evaluate(() => ["tick", "x", "y", "collided_share"].map((name) => slalom.scalar(name)));
-    const [tick, x, y, share] = await facts();
-    const count = await page.evaluate(() => slalom.frame.bodies.length);
-    const took = await page.evaluate(async () => {
-      const { plan, bodies } = slalom.frame;
-      const { x, y } = plan[Math.round(plan.length / 3)];
-      const begin = performance.now();
-      slalom.send({ do: "add", kind: "disc", x, y, length: 0.3 });
-      while (slalom.frame.bodies.length === bodies.length) await new Promise((f) => setTimeout(f));
-      return performance.now() - begin;
-    });
-    const now = await facts();
-    assert.deepEqual(now.slice(0, 3), [tick, x, y]);
-    assert.ok(now[3] > share, `${now[3]} of the samples collide, ${share} before`);
-    console.log(`      from the edit to the new plan: ${took.toFixed(0)} ms`);
-    const plan = () => page.evaluate(() => JSON.stringify(slalom.frame.plan));
-    const [before, options] = [await plan(), { do: "set", key: "svg_mppi.temperature", value: "30" }];
-    await h.send(options);
-    await h.until((p) => JSON.stringify(slalom.frame.plan) !== p, before);
-    assert.deepEqual((await facts()).slice(0, 3), [tick, x, y]);
-    for (let i = 0; i < 2; ++i) await h.send({ do: "undo" });
-    await h.until((n) => slalom.frame.bodies.length === n, count);
   });
 
   await h.test("Play and Pause answer before the server does", async () => {
@@ -105,7 +69,7 @@ export default async function (h) {
       ["Pause", "Play"],
     ]) {
       assert.equal(await words(), before);
-      await page.evaluate(() => document.getElementById("play").click());
+      await h.press("play");
       assert.equal(await words(), after);
     }
     await h.pause();
@@ -128,36 +92,23 @@ export default async function (h) {
     }
   });
 
-  await h.test("switches to mppi and back", async () => {
-    await h.play();
-    await page.selectOption("#method", "mppi");
-    await h.until(() => slalom.hello.methods[slalom.scalar("method")] === "mppi" && !slalom.frame.guides);
-    await page.selectOption("#method", "svg_mppi");
-    await h.until(() => slalom.hello.methods[slalom.scalar("method")] === "svg_mppi" && slalom.frame.guides);
-  });
-
   await h.test("a slider changes the option in the solver, and undo takes it back", async () => {
+    await h.play();
     const before = await h.scalar("samples");
     await page.click("#tab-options");
-    await page.evaluate(() => {
-      const slider = document.querySelector('[data-key="svg_mppi.samples"] input[type=range]');
-      slider.value = "0.4";
-      for (const type of ["input", "change"]) slider.dispatchEvent(new Event(type));
-    });
+    await slide('[data-key="svg_mppi.samples"] input[type=range]', 0.4);
     await h.until((n) => slalom.scalar("samples") !== n, before);
-    const command = /--set 'svg_mppi\.samples=\d+'/.source;
-    await h.until((c) => new RegExp(c).test(document.getElementById("command").textContent), command);
+    await h.says("command", "--set 'svg_mppi.samples=");
     await page.click("#undo");
     await h.until((n) => slalom.scalar("samples") === n, before);
     await h.send({ do: "set", key: "svg_mppi.samples", value: "0" });
-    await h.until(() => /must be in/.test(document.getElementById("toast").textContent));
+    await h.says("toast", "must be in");
     await page.click("#tab-charts");
   });
 
   await h.test("says why plans are poor", async () => {
-    const says = (words) => h.until((w) => document.getElementById("label").textContent.includes(w), words);
     await h.send({ do: "set", key: "svg_mppi.temperature", value: "1e-6" });
-    await says("few samples");
+    await h.says("label", "few samples");
     assert.match(await page.getAttribute("#label", "title"), /effective sample size/);
     await h.send({ do: "undo" });
     await h.until(() => !document.getElementById("label").textContent.includes("few samples"));

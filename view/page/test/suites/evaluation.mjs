@@ -10,34 +10,27 @@ export default async function (h) {
     execFileSync(h.program, ["eval", "--course", "hare", ...drives, ...settings], { stdio: "ignore" });
     const shown = await h.start("view", "--eval", out, "--port", "0");
     const look = await h.open(shown.address);
-    const wait = (what, arg) => h.until(what, arg, look);
-    await wait(() => document.querySelector("#evaluation [data-contact]"));
-    await look.click("#evaluation [data-contact]");
-    await wait(() => slalom.state.contact?.tick >= 0);
-    const tick = await look.evaluate(() => slalom.state.contact.tick);
-    await wait((t) => slalom.scalar("tick") > 0 && slalom.scalar("tick") < t, tick);
-    await wait(
-      (t) => slalom.state.paused && slalom.scalar("tick") >= t && slalom.scalar("contacts") > 0,
-      tick,
-    );
-    const { generation } = await h.state(look);
+    await look.until(() => document.querySelector("#evaluation [data-contact]"));
+    await look.page.click("#evaluation [data-contact]");
+    await look.until(() => slalom.state.contact?.tick >= 0);
+    const { tick } = (await look.state()).contact;
+    await look.until((t) => slalom.scalar("tick") > 0 && slalom.scalar("tick") < t, tick);
+    const isHit = (t) => slalom.state.paused && slalom.scalar("tick") >= t && slalom.scalar("contacts") > 0;
+    await look.until(isHit, tick);
+    const { generation } = await look.state();
     // The mark on the map: a message that comes or goes above the scene moves it.
-    const place = () =>
-      look.evaluate(() => {
-        slalom.scene.fit();
-        slalom.scene.draw();
-        const [x, y] = slalom.scene.camera.toScreen(slalom.scene.marks.at(-1).x, slalom.scene.marks.at(-1).y);
-        const box = document.querySelector("#scene").getBoundingClientRect();
-        return [box.x + x, box.y + y];
-      });
+    const place = async () => {
+      await look.page.evaluate(() => slalom.scene.fit());
+      return look.placeOf(await look.page.evaluate(() => slalom.scene.marks.at(-1)));
+    };
     let at = await place();
     for (let before; String(before) !== String(at); at = await place()) {
       before = at;
-      await h.drawn(look);
+      await look.drawn();
     }
-    await look.mouse.click(...at);
-    await wait((g) => slalom.state.generation > g && slalom.state.contact, generation);
-    await look.close();
+    await look.page.mouse.click(...at);
+    await look.until((g) => slalom.state.generation > g && slalom.state.contact, generation);
+    await look.page.close();
     await shown.stop();
   });
 }

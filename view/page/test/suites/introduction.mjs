@@ -6,42 +6,36 @@ export default async function (h) {
   await h.test("without arguments two controllers stand side by side", async () => {
     await h.pause(); // the other page needs the processor too
     const server = await h.start("view", "--port", "0");
-    const page = await h.open(server.address);
-    const wait = (what, arg) => h.until(what, arg, page);
-    await wait(() => window.slalom?.frame?.ghostFrame && slalom.scene.isSideBySide);
-    const shows = (text) =>
-      wait((t) => document.getElementById("introduction-text").textContent.includes(t), text);
+    const tab = await h.open(server.address);
+    const { page } = tab;
+    await tab.until(() => window.slalom?.frame?.ghostFrame && slalom.scene.isSideBySide);
+    const shows = (text) => tab.says("introduction-text", text);
     const layers = () =>
       page.locator("#layer-list :checked").evaluateAll((all) => all.map((e) => e.dataset.layer));
     const next = () => page.click("#introduction-next");
     await shows("1 of 6. Samples: ");
-    await wait(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
-    assert.equal((await h.state(page)).rate, 0.1, "in slow motion");
+    await tab.isPaused();
+    assert.equal((await tab.state()).rate, 0.1, "in slow motion");
     const [tick, plan] = await page.evaluate(() => [slalom.scalar("tick"), slalom.frame.plan.length]);
     assert.ok(tick > 0 && plan > 0);
-    assert.deepEqual(
-      (await layers()).filter((each) => ["candidates", "plan", "guides"].includes(each)),
-      ["candidates"],
-    );
+    const explained = ["candidates", "plan", "guides"];
+    const first = (await layers()).filter((each) => explained.includes(each));
+    assert.deepEqual(first, ["candidates"]);
     for (const text of ["2 of 6. Weights: ", "3 of 6. Plan: ", "4 of 6. Guides: "]) {
       await next();
       await shows(text);
     }
-    for (const each of ["candidates", "plan", "guides"]) assert.ok((await layers()).includes(each), each);
-    assert.equal(
-      await page.evaluate(() => slalom.scalar("tick")),
-      tick,
-      "nothing moves until the viewer has read",
-    );
+    for (const each of explained) assert.ok((await layers()).includes(each), each);
+    assert.equal(await tab.scalar("tick"), tick, "nothing moves until the viewer has read");
     await next();
     await shows("5 of 6. Two ways: left and right of the parked car. mppi gives weight to both");
-    await wait(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
+    await tab.isPaused();
     const texts = await page.locator(".caption").allTextContents();
     assert.match(texts[0], /^svg_mppi commits: /);
     assert.match(texts[1], /^mppi averages: /);
     await next();
     await shows("6 of 6. mppi has hit the parked car");
-    await wait(() => slalom.state.paused && slalom.scene.marks.length === 1);
+    await tab.until(() => slalom.state.paused && slalom.scene.marks.length === 1);
     const [mark, hit] = await page.evaluate(() => [slalom.scene.marks[0], slalom.frame.ghostFrame.bodies[0]]);
     assert.ok(mark.isGhost && Math.hypot(mark.x - hit.x, mark.y - hit.y) < 0.1);
     await next();
@@ -49,27 +43,26 @@ export default async function (h) {
     await shows("mppi hits 22 % of the cars");
     // Back at the decision, before the collision.
     await page.click("#introduction-drag");
-    await wait(() => document.getElementById("introduction").hidden && slalom.scene.isSideBySide);
-    await wait(
-      () =>
-        slalom.state.paused &&
-        slalom.frame.ghostFrame.scalars[slalom.hello.scalars.indexOf("contacts")] === 0,
-    );
+    await tab.until(() => document.getElementById("introduction").hidden && slalom.scene.isSideBySide);
+    await tab.until(() => {
+      const { scalars } = slalom.frame.ghostFrame;
+      return slalom.state.paused && scalars[slalom.hello.scalars.indexOf("contacts")] === 0;
+    });
     // Without guides, from the beginning and still side by side.
-    await page.evaluate(() => document.getElementById("introduction-without").click());
-    await wait(() => slalom.state.rate === 0.25 && !slalom.state.paused);
-    await wait(() => slalom.scalar("tick") > 5 && slalom.frame.ghostFrame && slalom.scene.isSideBySide);
-    await page.evaluate(() => document.getElementById("tab-options").click());
+    await tab.press("introduction-without");
+    await tab.until(() => slalom.state.rate === 0.25 && !slalom.state.paused);
+    await tab.until(() => slalom.scalar("tick") > 5 && slalom.frame.ghostFrame && slalom.scene.isSideBySide);
+    await tab.press("tab-options");
     const option = (key) => page.locator(`[data-key="svg_mppi.${key}"] input`);
     for (const key of ["use_nominal", "adapt_covariance"])
       assert.equal(await option(key).isChecked(), false, key);
     // After a reload the address holds the scenario, and the view is the ordinary one.
     await page.reload();
-    await wait(() => window.slalom?.frame?.ghost && slalom.state);
+    await tab.until(() => window.slalom?.frame?.ghost && slalom.state);
     const isOrdinary = () => !slalom.scene.isSideBySide && document.getElementById("introduction").hidden;
     assert.equal(await page.evaluate(isOrdinary), true);
     await page.click("#split");
-    await wait(() => slalom.scene.isSideBySide && !document.getElementById("lane-title").hidden);
+    await tab.until(() => slalom.scene.isSideBySide && !document.getElementById("lane-title").hidden);
     const distance = await page.evaluate(() => {
       slalom.scene.draw();
       const { camera, stage } = slalom.scene;
@@ -79,7 +72,7 @@ export default async function (h) {
     });
     assert.ok(distance < 1e-6, "a point of the ghost's lane is the same place in the car's");
     await page.keyboard.press("g");
-    await wait(() => !slalom.scene.isSideBySide);
+    await tab.until(() => !slalom.scene.isSideBySide);
     await page.close();
     await server.stop();
     await h.play();

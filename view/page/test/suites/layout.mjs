@@ -49,7 +49,6 @@ function covering() {
 
 export default async function (h) {
   const { page } = h;
-  const click = (id) => page.evaluate((i) => document.getElementById(i).click(), id);
 
   await h.test("no control is outside the window or covered, nor is the fitted course", async () => {
     await h.pause();
@@ -64,14 +63,14 @@ export default async function (h) {
       const panels = await page.evaluate(covering);
       if (panels.length) found.push(`${width}: ${panels} on the fitted course`);
       for (const pane of ["options", "laps", "inspect", "charts"]) {
-        await click("tab-" + pane);
+        await h.press("tab-" + pane);
         await check(`${width}, ${pane}`, smallest);
       }
       for (const menu of ["save", "scenario"]) {
         if (!(await page.isVisible(`#${menu}-open`))) continue;
-        await click(menu + "-open");
+        await h.press(menu + "-open");
         await check(`${width}, ${menu}`, smallest, "#" + menu);
-        await click(menu + "-open");
+        await h.press(menu + "-open");
       }
     }
     await page.setViewportSize({ width: 1280, height: 720 });

@@ -50,32 +50,29 @@ export default async function (h) {
     const replaced = (_, tag, text) => tag + taintedSegment(Buffer.from(text, "base64")).toString("base64");
     writeFileSync(html, readFileSync(html, "utf8").replace(segment, replaced));
     const look = await h.open("file://" + html);
-    await h.until(() => slalom.frame && document.querySelector("#command")?.textContent, null, look);
-    await look.evaluate(() => document.getElementById("all-options").click());
+    await look.until(() => slalom.frame && document.querySelector("#command")?.textContent);
+    await look.press("all-options");
     for (const id of ["caption", "about", "laps", "label", "option-list", "command"])
-      await h.until(([i, text]) => document.getElementById(i).textContent.includes(text), [id, name], look);
-    await h.drawn(look);
-    await look.evaluate(() => new Promise((done) => setTimeout(done, 200))); // images report late
-    assert.equal(
-      await look.evaluate(() => window.broken ?? "nothing"),
-      "nothing",
-      "no script of a name runs",
-    );
-    assert.equal(await look.locator("img[src=x], script:not([type])").count(), 0);
-    await look.close();
+      await look.says(id, name);
+    await look.drawn();
+    await look.page.evaluate(() => new Promise((done) => setTimeout(done, 200))); // images report late
+    const broken = await look.page.evaluate(() => window.broken ?? "nothing");
+    assert.equal(broken, "nothing", "no script of a name runs");
+    assert.equal(await look.page.locator("img[src=x], script:not([type])").count(), 0);
+    await look.page.close();
   });
 
   await h.test("no script but the page's own runs", async () => {
-    const look = await h.open(h.server.address);
+    const { page } = await h.open(h.server.address);
     const problems = h.problems.length;
-    const ran = await look.evaluate(() => {
+    const ran = await page.evaluate(() => {
       const violation = new Promise((done) => document.addEventListener("securitypolicyviolation", done));
       document.body.insertAdjacentHTML("beforeend", "<img src='data:,' onerror='window.broken = 1'>");
       return violation.then(() => window.broken ?? "nothing");
     });
     h.problems.length = problems; // Chromium reports the violation in the console
     assert.equal(ran, "nothing");
-    await look.close();
+    await page.close();
     if (process.env.SLALOM_PAGE) return;
     const answer = await fetch(h.server.address);
     assert.equal(answer.headers.get("content-security-policy"), "frame-ancestors 'none'");

@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { patience } from "../harness.mjs";
 
 /** The shares of the pixels of a PNG and of an SVG that have the colour of the plan; runs in the page. */
 async function share([png, svg]) {
@@ -42,7 +41,7 @@ export default async function (h) {
   /** Saves with a button of the menu; the path of the file. */
   async function saved(id) {
     await page.click("#save-open");
-    const [file] = await Promise.all([page.waitForEvent("download", { timeout: patience }), page.click(id)]);
+    const file = await h.saved(id);
     const path = join(h.folder, file.suggestedFilename());
     await file.saveAs(path);
     return path;
@@ -60,7 +59,7 @@ export default async function (h) {
     const time = `${((await h.scalar("tick")) * 0.025).toFixed(2)} s`;
     for (const text of ["stag", "svg_mppi", "seed ", time, " m<", "Driven line", "Candidates, by total cost"])
       assert.ok(drawing.includes(text), text);
-    const look = await h.open("file://" + svg, { viewport: { width: 400, height: 300 } });
+    const look = (await h.open("file://" + svg, { viewport: { width: 400, height: 300 } })).page;
     assert.equal(await look.locator("parsererror").count(), 0);
     // Both drawings show the same: as large a share of their pixels has the colour of the plan.
     const shares = await page.evaluate(share, [png.toString("base64"), drawing]);
@@ -72,28 +71,27 @@ export default async function (h) {
   /** Checks that a replay plays, at the speed that is chosen, and can be scrubbed. */
   async function plays(address) {
     const replay = await h.open(address);
-    const wait = (what, arg) => h.until(what, arg, replay);
-    await wait(() => window.slalom?.replay && slalom.frame && slalom.state.newest > 40);
-    const first = await replay.evaluate(() => slalom.state.tick);
-    await wait((t) => slalom.state.tick > t, first);
-    await replay.click("#play");
-    await wait(() => slalom.state.paused);
-    await replay.evaluate(() => slalom.send({ do: "seek", tick: 30 }));
-    await wait(() => slalom.state.tick === 30);
-    const there = await replay.evaluate(() => slalom.scalar("tick"));
-    await replay.click("#step");
-    await wait((t) => slalom.scalar("tick") === t + 2, there);
-    await replay.selectOption("#rate", "4");
-    await replay.click("#play");
-    await wait(() => slalom.state.tick > 35);
-    assert.equal(await replay.isVisible("[data-tool=disc]"), false);
+    await replay.until(() => window.slalom?.replay && slalom.frame && slalom.state.newest > 40);
+    const first = (await replay.state()).tick;
+    await replay.until((t) => slalom.state.tick > t, first);
+    await replay.page.click("#play");
+    await replay.until(() => slalom.state.paused);
+    await replay.send({ do: "seek", tick: 30 });
+    await replay.until(() => slalom.state.tick === 30);
+    const there = await replay.scalar("tick");
+    await replay.page.click("#step");
+    await replay.until((t) => slalom.scalar("tick") === t + 2, there);
+    await replay.page.selectOption("#rate", "4");
+    await replay.page.click("#play");
+    await replay.until(() => slalom.state.tick > 35);
+    assert.equal(await replay.page.isVisible("[data-tool=disc]"), false);
     // Recordings of earlier versions have no symptoms.
-    await replay.evaluate(() => {
+    await replay.page.evaluate(() => {
       delete slalom.hello.symptoms;
       slalom.send({ do: "seek", tick: 20 });
     });
-    await wait(() => slalom.state.tick === 20);
-    await replay.close();
+    await replay.until(() => slalom.state.tick === 20);
+    await replay.page.close();
   }
 
   await h.test("the exported replay opens from disk and plays", async () => {
