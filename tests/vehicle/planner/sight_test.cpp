@@ -45,6 +45,7 @@ Sight sight(double reach = 12) {
   PlannerOptions options;
   options.laser_x = laser_x;
   options.control_period = period;
+  options.sight_deceleration = 6;
   BodyOptions body;
   body.front = front;
   return {left_turn(), false, reach, options, body};
@@ -118,11 +119,11 @@ TEST(Sight, WhatIsBesideTheScanIsNotInSight) {
 TEST(Sight, ACarStopsFromTheStoppingSpeed) {
   const Sight made = sight();
   for (const double way : {2.0, 5.0, 12.0}) {
-    const double speed = made.stopping_speed(way, 6);
+    const double speed = made.stopping_speed(way);
     EXPECT_NEAR(speed * 2 * period + speed * speed / 12, way - front - 0.1, 1e-9) << way;
   }
-  EXPECT_GT(made.stopping_speed(0, 6), 0) << "it looks around the corner";
-  EXPECT_TRUE(std::isinf(made.stopping_speed(PathInSight::all, 6)));
+  EXPECT_GT(made.stopping_speed(0), 0) << "it looks around the corner";
+  EXPECT_TRUE(std::isinf(made.stopping_speed(PathInSight::all)));
 }
 
 }  // namespace

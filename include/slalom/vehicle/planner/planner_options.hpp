@@ -119,8 +119,8 @@ void visit_options(Options& o, Visit&& visit) {
                         "loses time; 0: no cost",
                         0, 1000});
   visit(o.sight_deceleration, {"sight_deceleration", "m/s^2",
-                               "with a model whose tyres slip: a car that brakes with it, or with all the "
-                               "grip that the ground has, stops on the path that the scan shows; 0: no limit",
+                               "with objective lap_time: a car that brakes with it stops on the path that "
+                               "the scan shows; 0: no limit",
                                0, 100});
   visit(o.grip_shares, {"grip_shares", "",
                         "with objective lap_time: share of usable_grip for the path's speeds; one value, or "
