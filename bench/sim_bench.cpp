@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "sim/lidar/scan.hpp"
-#include "slalom/maps/ros_map.hpp"
-#include "slalom/sim/placement.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/world.hpp"
 

@@ -48,30 +48,17 @@ Verdict arm(const Arm& p, const Arm::State<double>& x, int) {
 
 void add_example_tasks(std::vector<Task>& tasks) {
   const double down = std::numbers::pi;
-  tasks.push_back(
-      {"pendulum", Ways::one, 60, {{-5, 5}}, closed_loop(Pendulum{}, {down, 0}, swing_steps, pendulum)});
-  tasks.push_back({"cart_pole",
-                   Ways::one,
-                   60,
-                   {{-10, 10}},
-                   closed_loop(CartPole{}, {0, 0, down, 0}, swing_steps, cart_pole)});
-  tasks.push_back({"two_ways_round",
-                   Ways::several,
-                   25,
-                   {{0, 1.5}, {-2, 2}},
-                   closed_loop(DifferentialDrive{}, {0, 0, 0}, 120, robot)});
-  tasks.push_back({"quadrotor_gaps",
-                   Ways::several,
-                   40,
-                   {{-6, 6}, {-20, 20}},
-                   closed_loop(Quadrotor{}, {0, 0, 0, 0, 0, 0}, flight_steps, quadrotor)});
-  tasks.push_back({"parked_cars",
-                   Ways::several,
-                   30,
-                   {{-0.5, 0.5}, {-6, 3}},
-                   closed_loop(Car{}, {0, 0, 0, 5}, drive_steps, car)});
-  tasks.push_back(
-      {"arm_past_ball", Ways::several, 20, joint_rates(), closed_loop(Arm{}, arm_start(), reach_steps, arm)});
+  add(tasks, "pendulum", Ways::one, 60, {{-5, 5}}, closed_loop(Pendulum{}, {down, 0}, swing_steps, pendulum));
+  add(tasks, "cart_pole", Ways::one, 60, {{-10, 10}},
+      closed_loop(CartPole{}, {0, 0, down, 0}, swing_steps, cart_pole));
+  add(tasks, "two_ways_round", Ways::several, 25, {{0, 1.5}, {-2, 2}},
+      closed_loop(DifferentialDrive{}, {0, 0, 0}, 120, robot));
+  add(tasks, "quadrotor_gaps", Ways::several, 40, {{-6, 6}, {-20, 20}},
+      closed_loop(Quadrotor{}, {0, 0, 0, 0, 0, 0}, flight_steps, quadrotor));
+  add(tasks, "parked_cars", Ways::several, 30, {{-0.5, 0.5}, {-6, 3}},
+      closed_loop(Car{}, {0, 0, 0, 5}, drive_steps, car));
+  add(tasks, "arm_past_ball", Ways::several, 20, joint_rates(),
+      closed_loop(Arm{}, arm_start(), reach_steps, arm));
 }
 
 }  // namespace slalom::suite

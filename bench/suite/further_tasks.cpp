@@ -296,43 +296,40 @@ struct Chargers {
 }  // namespace
 
 void add_further_tasks(std::vector<Task>& tasks) {
-  const auto add = [&](const char* name, Ways ways, int horizon, std::vector<TaskInput> inputs, auto run) {
-    tasks.push_back({name, ways, horizon, std::move(inputs), run});
-  };
-  add("crane", Ways::one, 40, {{-1.5, 1.5}},
+  add(tasks, "crane", Ways::one, 40, {{-1.5, 1.5}},
       closed_loop(Crane{}, {0, 0, 0, 0}, 110, [](const auto& p, const auto& s, int k) {
         return at_end(k, 110, std::abs(s.x - p.goal) < 0.1 && std::hypot(s.angle, s.rate) < 0.05);
       }));
-  add("flexible_joint", Ways::one, 40, {{-8, 8}},
+  add(tasks, "flexible_joint", Ways::one, 40, {{-8, 8}},
       closed_loop(FlexibleJoint{}, {0, 0, 0, 0}, 100, [](const auto& p, const auto& s, int k) {
         return at_end(k, 100, std::abs(s.arm - p.goal) < 0.05 && std::abs(s.arm_rate) < 0.2);
       }));
-  add("mountain_car", Ways::one, 80, {{-1, 1}},
+  add(tasks, "mountain_car", Ways::one, 80, {{-1, 1}},
       closed_loop(MountainCar{}, {-0.5, 0}, 200,
                   [](const auto& p, const auto& s, int) { return reached(s.x<-1.2, s.x> p.goal); }));
-  add("vessel", Ways::one, 40, {{-0.5, 0.5}, {-0.5, 0.5}},
+  add(tasks, "vessel", Ways::one, 40, {{-0.5, 0.5}, {-0.5, 0.5}},
       closed_loop(Vessel{}, {0, 0, 0, 0, 0, 0}, 120, [](const auto& p, const auto& s, int) {
         return reached(false, p.offset(s) < 0.4 && std::abs(s.ahead) < 0.3);
       }));
-  add("trailer", Ways::one, 40, {{-1.5, 1.5}, {-0.3, 0.3}},
+  add(tasks, "trailer", Ways::one, 40, {{-1.5, 1.5}, {-0.3, 0.3}},
       closed_loop(Trailer{}, {0, 0, 0, 0}, 150,
                   [](const auto& p, const auto& s, int) { return reached(p.folded(s), p.offset(s) < 0.3); }));
-  add("two_gaps", Ways::several, 30, {{-1.5, 1.5}},
+  add(tasks, "two_gaps", Ways::several, 30, {{-1.5, 1.5}},
       closed_loop(Gaps{}, {0, 0, 0}, 100,
                   [](const auto& p, const auto& s, int) { return reached(p.collides(s), s.x > 10); }));
-  add("river_island", Ways::several, 30, {{-1.3, 1.3}, {-1.3, 1.3}},
+  add(tasks, "river_island", Ways::several, 30, {{-1.3, 1.3}, {-1.3, 1.3}},
       closed_loop(River{}, {0, 0}, 100, [](const auto& p, const auto& s, int) {
         return reached(p.collides(s), apart(s.x, s.y, 0, 8) < 0.3);
       }));
-  add("crossing", Ways::several, 30, {{-2, 2}, {-2, 2}},
+  add(tasks, "crossing", Ways::several, 30, {{-2, 2}, {-2, 2}},
       closed_loop(Crossing{}, {0, 0, 0, 0, 0}, 120, [](const auto& p, const auto& s, int) {
         return reached(p.collides(s), apart(s.x, s.y, 0, 6) < 0.3);
       }));
-  add("forest", Ways::several, 30, {{-2, 2}, {-2, 2}},
+  add(tasks, "forest", Ways::several, 30, {{-2, 2}, {-2, 2}},
       closed_loop(Forest{}, {0, 0, 0, 0}, 100, [](const auto& p, const auto& s, int) {
         return reached(p.collides(s), apart(s.x, s.y, 8, 0) < 0.3);
       }));
-  add("chargers", Ways::several, 30, std::vector<TaskInput>(3, {0, 1}),
+  add(tasks, "chargers", Ways::several, 30, std::vector<TaskInput>(3, {0, 1}),
       closed_loop(Chargers{}, {{2, 3, 4.2}, 0, 0}, 40, [](const auto& p, const auto& s, int k) {
         bool late = s.heat > 0.5;
         for (std::size_t i = 0; i < 3; ++i) late = late || (s.time > p.due[i] + 0.01 && s.missing[i] > 0.1);

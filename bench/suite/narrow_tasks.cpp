@@ -1,5 +1,3 @@
-#include <cmath>
-#include <numbers>
 
 #include "slalom/problems/arm.hpp"
 #include "task.hpp"
@@ -124,31 +122,22 @@ struct ArmAmongBalls : problems::Arm {
   }
 };
 
-Verdict parking(const Parking& p, const Parking::State<double>& s, int) {
-  return reached(p.collides(s), p.offset(s) < 0.25);
-}
-
-Verdict corridor(const Corridor& p, const Corridor::State<double>& s, int) {
-  return reached(p.collides(s), p.way_left(s) < 0.3);
-}
-
-Verdict arm(const ArmAmongBalls& p, const ArmAmongBalls::State<double>& x, int) {
-  const auto posture = p.posture(x);
-  return reached(p.collides_with_any(posture), p.distance(posture) < 0.05);
-}
-
 }  // namespace
 
 void add_narrow_tasks(std::vector<Task>& tasks) {
-  tasks.push_back({"parking",
-                   Ways::one,
-                   40,
-                   {{-2, 2}, {-0.2, 0.2}},
-                   closed_loop(Parking{}, {6.5, 0.9, 0}, 120, parking)});
-  tasks.push_back(
-      {"corridor", Ways::one, 30, {{-2, 2}, {-2, 2}}, closed_loop(Corridor{}, {0, 0, 0, 0}, 100, corridor)});
-  tasks.push_back({"arm_among_balls", Ways::several, 20, joint_rates(),
-                   closed_loop(ArmAmongBalls{}, arm_start(), 160, arm)});
+  add(tasks, "parking", Ways::one, 40, {{-2, 2}, {-0.2, 0.2}},
+      closed_loop(Parking{}, {6.5, 0.9, 0}, 120, [](const auto& p, const auto& s, int) {
+        return reached(p.collides(s), p.offset(s) < 0.25);
+      }));
+  add(tasks, "corridor", Ways::one, 30, {{-2, 2}, {-2, 2}},
+      closed_loop(Corridor{}, {0, 0, 0, 0}, 100, [](const auto& p, const auto& s, int) {
+        return reached(p.collides(s), p.way_left(s) < 0.3);
+      }));
+  add(tasks, "arm_among_balls", Ways::several, 20, joint_rates(),
+      closed_loop(ArmAmongBalls{}, arm_start(), 160, [](const auto& p, const auto& x, int) {
+        const auto posture = p.posture(x);
+        return reached(p.collides_with_any(posture), p.distance(posture) < 0.05);
+      }));
 }
 
 }  // namespace slalom::suite

@@ -169,14 +169,6 @@ void move_goal(Chase& p, const Chase::State<double>&, int k) {
   p.way_y = 0.2 * turning * std::cos(phase);
 }
 
-Verdict hovercraft(const Hovercraft& p, const Hovercraft::State<double>& x, int k) {
-  return p.collides(x) ? Verdict::failed : at_end(k, flight_steps, p.distance(x) < 0.3);
-}
-
-Verdict swap(const Swap& p, const Swap::State<double>& s, int) {
-  return reached(p.collides(s), std::max({p.distance(s, 0), p.distance(s, 1), p.distance(s, 2)}) < 0.4);
-}
-
 Verdict chase(const Chase& p, const Chase::State<double>& s, int k) {
   if (p.collides(s)) return Verdict::failed;
   // The goal turns at its ends once per half period; it must be met there.
@@ -185,21 +177,25 @@ Verdict chase(const Chase& p, const Chase::State<double>& s, int k) {
   return at_end(k, chase_steps, true);
 }
 
-Verdict rings(const Rings& p, const Rings::State<double>& s, int k) {
-  return p.on_bad_ground(s) ? Verdict::failed : at_end(k, ring_steps, p.square_distance(s) < 0.25);
-}
-
 }  // namespace
 
 void add_plane_tasks(std::vector<Task>& tasks) {
-  tasks.push_back({"hovercraft_gap", Ways::one, 40, std::vector<TaskInput>(3, {-3, 3}),
-                   closed_loop(Hovercraft{}, {0, 0.5, 0, 0, 0, 0}, flight_steps, hovercraft)});
-  tasks.push_back({"three_robots_swap", Ways::several, 30, std::vector<TaskInput>(6, {-2, 2}),
-                   closed_loop(Swap{}, {{2, -1, -1}, {0, 1.732, -1.732}, {0, 0, 0}, {0, 0, 0}}, 80, swap)});
-  tasks.push_back({"moving_goal", Ways::several, 25, std::vector<TaskInput>(2, {-4, 4}),
-                   closed_loop(Chase{}, {2, 0, 0, 0}, chase_steps, chase, move_goal)});
-  tasks.push_back({"steps_of_cost", Ways::several, 30, std::vector<TaskInput>(2, {-2, 2}),
-                   closed_loop(Rings{}, {0, 0, 0, 0}, ring_steps, rings)});
+  add(tasks, "hovercraft_gap", Ways::one, 40, std::vector<TaskInput>(3, {-3, 3}),
+      closed_loop(Hovercraft{}, {0, 0.5, 0, 0, 0, 0}, flight_steps, [](const auto& p, const auto& x, int k) {
+        return p.collides(x) ? Verdict::failed : at_end(k, flight_steps, p.distance(x) < 0.3);
+      }));
+  add(tasks, "three_robots_swap", Ways::several, 30, std::vector<TaskInput>(6, {-2, 2}),
+      closed_loop(Swap{}, {{2, -1, -1}, {0, 1.732, -1.732}, {0, 0, 0}, {0, 0, 0}}, 80,
+                  [](const auto& p, const auto& s, int) {
+                    return reached(p.collides(s),
+                                   std::max({p.distance(s, 0), p.distance(s, 1), p.distance(s, 2)}) < 0.4);
+                  }));
+  add(tasks, "moving_goal", Ways::several, 25, std::vector<TaskInput>(2, {-4, 4}),
+      closed_loop(Chase{}, {2, 0, 0, 0}, chase_steps, chase, move_goal));
+  add(tasks, "steps_of_cost", Ways::several, 30, std::vector<TaskInput>(2, {-2, 2}),
+      closed_loop(Rings{}, {0, 0, 0, 0}, ring_steps, [](const auto& p, const auto& s, int k) {
+        return p.on_bad_ground(s) ? Verdict::failed : at_end(k, ring_steps, p.square_distance(s) < 0.25);
+      }));
 }
 
 }  // namespace slalom::suite

@@ -184,6 +184,12 @@ inline problems::Arm::State<double> arm_start() {
   return state;
 }
 
+/// Adds a task.
+inline void add(std::vector<Task>& tasks, const char* name, Ways ways, int horizon,
+                const std::vector<TaskInput>& inputs, const std::function<Outcome(const Runs&)>& run) {
+  tasks.push_back({name, ways, horizon, inputs, run});
+}
+
 /// Adds the problems of the examples.
 void add_example_tasks(std::vector<Task>& tasks);
 /// Adds robots that move in a plane.

@@ -107,7 +107,7 @@ struct Lanes {
 void compare_with_yardstick(const ReferenceWorkload& workload, simd::Target target) {
   constexpr int samples = 2000;
   const SequenceBatch batch = workload.sequences(samples);
-  const auto model = workload.model(reference_problem(false), target);
+  const auto model = workload.model(reference_problem(), target);
   std::vector<double> expected(samples);
   workload.yardstick().evaluate(workload.start(), batch, samples, expected.data());
   AlignedBuffer costs(static_cast<std::size_t>(batch.stride()));

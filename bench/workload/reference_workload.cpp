@@ -69,9 +69,9 @@ ReferenceScan reference_scan(const maps::Pose& robot) {
   return scan;
 }
 
-vehicle::VehicleOptions reference_problem(bool two_trajectories) {
+vehicle::VehicleOptions reference_problem() {
   vehicle::VehicleOptions options = vehicle::published::vehicle_options();
-  options.own_of<vehicle::published::ModelOptions>().straight_local_rollout = two_trajectories;
+  options.own_of<vehicle::published::ModelOptions>().straight_local_rollout = false;
   return options;
 }
 

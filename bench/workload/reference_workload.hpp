@@ -27,8 +27,8 @@ struct ReferenceScan {
 };
 ReferenceScan reference_scan(const maps::Pose& robot);
 
-/// The vehicle problem of the paper; with `two_trajectories` as in the paper's program.
-vehicle::VehicleOptions reference_problem(bool two_trajectories);
+/// The vehicle problem of the paper, with one trajectory per rollout.
+vehicle::VehicleOptions reference_problem();
 
 /// Maps, start and control sequences.
 class ReferenceWorkload {
@@ -38,15 +38,12 @@ class ReferenceWorkload {
   ReferenceWorkload();
 
   const CarStart& start() const { return start_; }
-  const maps::Pose& robot() const { return robot_; }
-  const maps::ReferenceField& field() const { return field_; }
-  const maps::LocalCostMap& cost_map() const { return cost_map_; }
 
   /// Normal samples of `steps_wanted` steps, steering in [-0.45, 0.45] rad, around a sequence that drives
   /// straight; for models with two inputs also accelerations in [-9, 9] m/s^2.
   SequenceBatch sequences(int samples, int steps_wanted = steps, int inputs = 1) const;
 
-  Yardstick yardstick() const { return {reference_problem(false), field_, cost_map_, robot_}; }
+  Yardstick yardstick() const { return {reference_problem(), field_, cost_map_, robot_}; }
 
   /// The vehicle model with maps and start set, for one instruction set. It refers to the maps of this
   /// object.
