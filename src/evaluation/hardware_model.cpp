@@ -7,15 +7,8 @@
 namespace slalom::evaluation {
 namespace {
 
-sim::WheelOdometryOptions seeded(sim::WheelOdometryOptions options, std::uint64_t seed) {
-  options.seed = seed;
-  return options;
-}
-sim::ImuOptions seeded(sim::ImuOptions options, std::uint64_t seed) {
-  options.seed = seed;
-  return options;
-}
-vehicle::LocaliserOptions seeded(vehicle::LocaliserOptions options, std::uint64_t seed) {
+template <class Options>
+Options seeded(Options options, std::uint64_t seed) {
   options.seed = seed;
   return options;
 }

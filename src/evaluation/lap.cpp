@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "evaluation/driver/car_driver.hpp"
 #include "evaluation/lap_setup.hpp"
-#include "evaluation/lap_start.hpp"
 #include "evaluation/overtaking/overtaking_meter.hpp"
 #include "slalom/evaluation/passability.hpp"
 #include "slalom/sim/collision_log.hpp"

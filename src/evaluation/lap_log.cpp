@@ -6,6 +6,8 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <sstream>
+#include <utility>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
@@ -14,19 +16,6 @@
 namespace slalom::evaluation {
 
 namespace {
-
-std::vector<std::string> split_line(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',') {
-      cells.emplace_back();
-    } else if (c != ' ') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
 
 constexpr std::uint64_t max_log_bytes = std::uint64_t{1} << 26;  // size of a file
 constexpr std::size_t max_log_line = std::size_t{1} << 16;       // bytes
@@ -38,24 +27,32 @@ class NumberTable {
  public:
   explicit NumberTable(const std::filesystem::path& file)
       : file_(file.string()), text_(read_file(file, max_log_bytes)) {
-    std::string line;
-    if (!next_line(line)) throw IoError(file_, 0, "is empty; the first line must name the columns");
-    const auto names = split_line(line);
+    if (!next()) throw IoError(file_, 0, "is empty; the first line must name the columns");
+    const auto names = std::move(cells_);
     for (std::size_t i = 0; i < names.size(); ++i)
       if (!columns_.emplace(names[i], i).second)
-        throw IoError(file_, 1, "column '" + names[i] + "' is given twice");
-    for (const char* needed : {"success", "collision", "state_cost", "collision_cost"}) {
-      if (!columns_.contains(needed))
-        throw IoError(file_, 1, "column " + std::string(needed) + " is missing");
-    }
+        throw IoError(file_, number_, "column '" + names[i] + "' is given twice");
+    for (const char* needed : {"success", "collision", "state_cost", "collision_cost"})
+      if (!has(needed)) throw IoError(file_, number_, "column " + std::string(needed) + " is missing");
   }
 
+  /// Reads the next line that is not empty; false at the end of the text.
   bool next() {
-    std::string line;
-    while (next_line(line)) {
-      cells_ = split_line(line);
-      if (cells_.size() == 1 && cells_[0].empty()) continue;
-      if (cells_.size() == columns_.size()) return true;
+    for (std::string line; std::getline(text_, line);) {
+      ++number_;
+      if (line.size() > max_log_line)
+        throw IoError(file_, number_, "is longer than " + std::to_string(max_log_line) + " bytes");
+      if (line.ends_with('\r')) line.pop_back();
+      std::erase(line, ' ');
+      if (line.empty()) continue;
+      cells_.assign(1, "");
+      for (const char c : line) {
+        if (c == ',')
+          cells_.emplace_back();
+        else
+          cells_.back() += c;
+      }
+      if (columns_.empty() || cells_.size() == columns_.size()) return true;
       throw IoError(file_, number_,
                     "has " + std::to_string(cells_.size()) + " columns, but the header has " +
                         std::to_string(columns_.size()));
@@ -86,20 +83,8 @@ class NumberTable {
   }
 
  private:
-  /// The next line, without its end; false at the end of the text.
-  bool next_line(std::string& line) {
-    if (at_ == text_.size()) return false;
-    ++number_;
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    if (end - at_ > max_log_line)
-      throw IoError(file_, number_, "is longer than " + std::to_string(max_log_line) + " bytes");
-    line = text_.substr(at_, end - at_);
-    at_ = std::min(end + 1, text_.size());
-    return true;
-  }
-
-  std::string file_, text_;
-  std::size_t at_ = 0;  ///< where the next line begins
+  std::string file_;
+  std::istringstream text_;
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string> cells_;
   int number_ = 0;  ///< number of the last line

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "slalom/evaluation/lap.hpp"
@@ -25,5 +26,7 @@ void check_settings(const LapSetup& setup);
 /// Returns the setup with which opponent `index` drives; it must have a planner. Throws std::invalid_argument
 /// if the opponent is too slow for its configuration.
 LapSetup setup_of_opponent(const LapSetup& setup, int index);
+/// Throws std::invalid_argument with this message unless the condition holds.
+void require(bool holds, const std::string& message);
 
 }  // namespace slalom::evaluation

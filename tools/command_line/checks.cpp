@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <stdexcept>
 #include <system_error>
 
@@ -24,10 +25,6 @@ namespace fs = std::filesystem;
 /// Options that name a file to be written.
 constexpr const char* outputs[] = {"--json", "--record", "--plot", "--html", "--table"};
 
-struct NamedFile {
-  std::string option, file;
-};
-
 /// A canonical path, equal for equal files; empty for devices and pipes, which can be named more than once.
 std::string canonical_path(const std::string& file) {
   std::error_code unknown;
@@ -35,17 +32,6 @@ std::string canonical_path(const std::string& file) {
   if (fs::exists(status) && !fs::is_regular_file(status)) return {};
   const fs::path path = fs::weakly_canonical(fs::absolute(file, unknown), unknown);
   return unknown ? file : path.string();
-}
-
-void check_distinct(const std::vector<NamedFile>& files) {
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const std::string path = canonical_path(files[i].file);
-      if (!path.empty() && path == canonical_path(files[j].file))
-        throw CommandLineError(files[j].option + ", " + files[i].option,
-                               "both name the file " + files[i].file);
-    }
-  }
 }
 
 /// Fails now instead of after hours of work. Leaves no file behind.
@@ -79,23 +65,26 @@ void check_output(const std::string& name, const std::string& file) {
 }  // namespace
 
 void check_files(const std::vector<GivenOption>& options) {
-  std::vector<NamedFile> files;
-  for (const GivenOption& option : options) {
+  std::map<std::string, std::string> taken;  // options by the paths of their files
+  const auto take = [&](const std::string& option, const std::string& file) {
+    const std::string path = canonical_path(file);
+    if (path.empty()) return;
+    const auto [other, is_new] = taken.emplace(path, option);
+    if (!is_new) throw CommandLineError(other->second + ", " + option, "both name the file " + file);
+  };
+  for (const GivenOption& option : options)
     for (const std::string& value : option.values) {
       const bool input = option.positional || option.name == "--config" || option.name == "--compare";
-      if (input && fs::is_regular_file(value)) files.push_back({option.name, value});
+      if (input && fs::is_regular_file(value)) take(option.name, value);
     }
-  }
-  for (const char* name : outputs) {
+  for (const char* name : outputs)
     for (const GivenOption& option : options) {
       if (option.name != name) continue;
       const std::string& file = option.values.back();
       if (file == "-" && option.name == "--json") continue;
       check_output(option.name, file);
-      files.push_back({option.name, file});
-      check_distinct(files);
+      take(option.name, file);
     }
-  }
 }
 
 void guard_standard_streams() {

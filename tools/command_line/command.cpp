@@ -5,9 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <deque>
-#include <initializer_list>
 #include <iostream>
-#include <limits>
 #include <new>
 
 #include "slalom/core/instruction_set.hpp"

@@ -9,8 +9,9 @@ namespace {
 constexpr int names_width = 26;  // columns of the names of options
 constexpr int widest = 110;      // a line of text that is longer is hard to read
 
-}  // namespace
-
+/// Breaks a text into lines of at most `width` characters, the first of which begins after `used` of them.
+/// Lines after the first begin with `indent` spaces, in lists (lines of the text that begin with two spaces)
+/// with four. Commands stay whole.
 std::string wrapped(const std::string& text, int width, int indent, int used) {
   std::istringstream lines(text);
   std::string result, line;
@@ -42,24 +43,27 @@ std::string wrapped(const std::string& text, int width, int indent, int used) {
   return result;
 }
 
+}  // namespace
+
+HelpFormatter::HelpFormatter(int width) : width_(std::min(width, widest)) {}
+
 std::string HelpFormatter::entry(const std::string& name, const std::string& text) const {
-  const int width = std::min(width_, widest);
   std::string line = "  " + name;
   if (text.empty()) return line + "\n";
   if (line.size() + 2 > names_width)
     line += '\n' + std::string(names_width, ' ');
   else
     line.resize(names_width, ' ');
-  return line + wrapped(text, width, names_width, names_width) + "\n";
+  return line + wrapped(text, width_, names_width, names_width) + "\n";
 }
 
 std::string HelpFormatter::make_description(const CLI::App* command) const {
-  return wrapped(command->get_description(), std::min(width_, widest), 0, 0) + "\n";
+  return wrapped(command->get_description(), width_, 0, 0) + "\n";
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* command) const {
   const std::string footer = command->get_footer();
-  return footer.empty() ? "" : wrapped(footer, std::min(width_, widest), 0, 0) + "\n";
+  return footer.empty() ? "" : wrapped(footer, width_, 0, 0) + "\n";
 }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdarg>
-#include <cstdio>
 #include <filesystem>
 #include <locale>
 #include <sstream>

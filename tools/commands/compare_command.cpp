@@ -102,14 +102,15 @@ std::vector<Match> together(const std::vector<Match>& matches) {
 
 Json differing_settings(const Json& a, const Json& b) {
   Json list = Json::array();
-  const auto fa = a.flatten(), fb = b.flatten();
-  for (const auto& [key, value] : fa.items())
-    if (key.rfind("/experiments", 0) != 0 && (!fb.contains(key) || fb[key] != value))
-      list.push_back(
-          {{"setting", key.substr(1)}, {"first", value}, {"second", fb.contains(key) ? fb[key] : Json()}});
-  for (const auto& [key, value] : fb.items())
-    if (key.rfind("/experiments", 0) != 0 && !fa.contains(key))
-      list.push_back({{"setting", key.substr(1)}, {"first", nullptr}, {"second", value}});
+  const Json first = a.flatten(), second = b.flatten();
+  Json all = first;
+  all.update(second);
+  for (const auto& each : all.items()) {
+    const std::string& key = each.key();
+    const Json ours = first.value(key, Json()), theirs = second.value(key, Json());
+    if (key.rfind("/experiments", 0) != 0 && ours != theirs)
+      list.push_back({{"setting", key.substr(1)}, {"first", ours}, {"second", theirs}});
+  }
   return list;
 }
 
@@ -206,7 +207,7 @@ Json json_of(const Match& m) {
   entry["paired"] = m.is_paired;
   entry["first"] = side(m.results[0]);
   entry["second"] = side(m.results[1]);
-  entry["ms_p"] = std::isfinite(m.ms_p) ? Json(m.ms_p) : Json(nullptr);
+  entry["ms_p"] = m.ms_p;
   entry["contacts_p"] = m.collision_p;
   entry["success_p"] = m.success_p;
   return entry;

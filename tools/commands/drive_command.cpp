@@ -137,8 +137,7 @@ class DriveJob {
   }
 
   void say(const LapResult& lap) const {
-    auto times = lap.solve_ms;
-    std::sort(times.begin(), times.end());
+    const auto& times = lap.solve_ms;
     std::fprintf(
         words_,
         "lap %zu: %s, %.2f s, %d steps, %d collision%s, cost %.3f (state %.3f, collision %.3f), mean "

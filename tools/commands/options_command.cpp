@@ -32,7 +32,6 @@ std::string range_text(const OptionEntry& entry) {
 
 Json entry_json(const OptionEntry& entry, const OptionEntry& standard) {
   const Declaration& d = entry.declaration;
-  const auto bound = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
   Json json = {{"name", d.name},
                {"type", type_name(entry)},
                {"value", to_text(entry.value)},
@@ -40,8 +39,8 @@ Json entry_json(const OptionEntry& entry, const OptionEntry& standard) {
                {"unit", d.unit},
                {"symbol", d.symbol},
                {"help", d.help},
-               {"min", bound(d.min)},
-               {"max", bound(d.max)}};
+               {"min", d.min},
+               {"max", d.max}};
   if (!entry.choices.empty()) json["choices"] = entry.choices;
   return json;
 }

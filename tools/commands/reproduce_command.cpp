@@ -1,8 +1,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "slalom/core/error.hpp"
-#include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
@@ -75,15 +73,10 @@ void add_report_rows(const std::string& table, Report& report) {
   }
 }
 
-/// The table with this name. Throws CommandLineError.
-const PaperTable& find_table(const std::string& name) {
-  for (const PaperTable& table : paper_tables)
-    if (table.name == name) return table;
-  throw CommandLineError("--tables", name, "must be table1, table2 or covariances");
-}
-
 int reproduce(ReproduceArguments arguments) {
-  for (const std::string& table : arguments.tables) find_table(table);
+  for (const std::string& table : arguments.tables)
+    if (!find_table(table))
+      throw CommandLineError("--tables", table, "must be table1, table2 or covariances");
   std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
   std::string& course = arguments.evaluation.scenario.course;
   if (!arguments.course_given) course = arguments.paper.empty() ? other_course : paper_course;
@@ -118,7 +111,7 @@ int reproduce(ReproduceArguments arguments) {
   write_report(report, arguments.evaluation.out);
   draw_trajectories(evaluated, arguments.evaluation.out + "/figures");
   for (const std::string& table : arguments.tables)
-    print_table(find_table(table), evaluated, references, words);
+    print_table(*find_table(table), evaluated, references, words);
   print_claims(summary["claims"], words);
   std::fprintf(words, "\n%s\n%s/report.html\n", file.c_str(), arguments.evaluation.out.c_str());
   if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);

@@ -1,7 +1,6 @@
 #include "tools/drawing/map_picture.hpp"
 #include "tools/command_line/words.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

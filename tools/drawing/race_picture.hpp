@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "slalom/evaluation/racing_lap.hpp"
+#include "slalom/evaluation/race.hpp"
 
 namespace slalom::tools {
 

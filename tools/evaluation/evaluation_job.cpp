@@ -3,17 +3,13 @@
 #include <cstdio>
 #include <thread>
 
-#include "slalom/core/error.hpp"
 #include "slalom/core/instruction_set.hpp"
-#include "slalom/core/read_file.hpp"
 #include "slalom/core/version.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/evaluation/build_id.hpp"
-#include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/terminal/interrupt.hpp"
-#include "tools/terminal/json_output.hpp"
 #include "tools/terminal/progress.hpp"
 
 namespace slalom::tools {
@@ -49,13 +45,6 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
   if (const std::string folder = folder_without_name(scenario); !folder.empty())
     settings["course_folder"] = folder;
   return settings;
-}
-
-/// Rejects settings that are JSON but not an object. The store itself rejects a text that is not JSON.
-void require_object(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return;
-  const Json there = parse_json_or_null(read_file(file, max_json_bytes));
-  if (!there.is_null() && !there.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
 }
 
 Json rate_json(const std::optional<double>& rate) {
@@ -219,7 +208,6 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
   }
   for (int i = 0; i < static_cast<int>(experiments.size()); ++i)
     lap_setup(evaluated.evaluation, i).validate();
-  require_object(std::filesystem::path(arguments.out) / "settings.json");
   LapStore store(arguments.out, evaluated.evaluation, arguments.resume);
   const InterruptFlag interrupt;
   bool is_whole = false;

@@ -162,6 +162,12 @@ const std::vector<PaperRow>& paper_rows() {
   return rows;
 }
 
+const PaperTable* find_table(const std::string& name) {
+  for (const PaperTable& table : paper_tables)
+    if (name == table.name) return &table;
+  return nullptr;
+}
+
 bool drives(const Experiment& experiment, const PaperRow& row) {
   return experiment.method == row.method && experiment.set == row.set;
 }

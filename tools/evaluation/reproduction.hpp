@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -23,6 +22,9 @@ inline constexpr PaperTable paper_tables[] = {
     {"table2", "table2", "Table II: nominal sequence (NS) and adaptive covariance (AC)"},
     {"covariances", "covariances", "Nominal sequence with fixed covariances: in the logs, not in the paper"},
 };
+
+/// The table of this name; null if there is none.
+const PaperTable* find_table(const std::string& name);
 
 /// A row of a table: a method with its options, in both scenarios.
 struct PaperRow {

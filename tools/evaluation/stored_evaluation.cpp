@@ -1,7 +1,5 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 
-#include <algorithm>
-
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "src/evaluation/json.hpp"

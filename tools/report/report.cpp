@@ -1,13 +1,11 @@
 #include "tools/report/report.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/core/version.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/report/report_text.hpp"
 #include "view/recording/encodings.hpp"
 
 namespace slalom::tools {
@@ -40,9 +38,8 @@ std::string pill(const std::string& kind) {
 }
 
 const char* heading(const std::string& section) {
-  for (const PaperTable& table : paper_tables)
-    if (table.name == section) return table.title;
-  return "Methods";
+  const PaperTable* const table = find_table(section);
+  return table ? table->title : "Methods";
 }
 
 std::string table(const Report& report, const std::string& section, const std::string& scenario) {
@@ -104,17 +101,13 @@ std::string page(const Report& report, const std::vector<ReportFigure>& figures)
   std::string html =
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>" +
-      escaped(report.title) + "</title><style>" + report_style() + "</style><main>\n<h1>" +
+      escaped(report.title) + "</title><style>" + report_style + "</style><main>\n<h1>" +
       escaped(report.title) + "</h1><p class=\"sub\">" + std::to_string(report.evaluated.rows.size()) +
       " laps on " + word("course") + " \xC2\xB7 configuration " + word("config") + " \xC2\xB7 evaluation " +
       word("evaluation") + " \xC2\xB7 slalom " + version() + "</p>\n";
   for (const std::string& note : report.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
   html += paired_table(report);
-  std::vector<std::string> sections;
-  for (const ReportRow& row : report.rows)
-    if (std::find(sections.begin(), sections.end(), row.section) == sections.end())
-      sections.push_back(row.section);
-  for (const std::string& section : sections)
+  for (const std::string& section : report.sections())
     html += std::string("<section><h2>") + heading(section) + "</h2>\n" + table(report, section, "pt") +
             table(report, section, "oa") + "</section>\n";
   for (const ReportFigure& figure : figures)
@@ -124,6 +117,13 @@ std::string page(const Report& report, const std::vector<ReportFigure>& figures)
 }
 
 }  // namespace
+
+std::vector<std::string> Report::sections() const {
+  std::vector<std::string> all;
+  for (const ReportRow& row : rows)
+    if (std::find(all.begin(), all.end(), row.section) == all.end()) all.push_back(row.section);
+  return all;
+}
 
 void write_report(const Report& report, const fs::path& folder) {
   const fs::path pictures = folder / "figures";

@@ -29,6 +29,8 @@ struct Report {
   const evaluation::ExperimentResult& result(const ReportRow& row) const {
     return evaluated.results[static_cast<std::size_t>(row.experiment)];
   }
+  /// The sections of the rows, each once.
+  std::vector<std::string> sections() const;
   /// Null without anything published.
   const Reference* reference(const ReportRow& row) const {
     const auto i = static_cast<std::size_t>(row.experiment);
@@ -52,6 +54,20 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
 /// SVG-MPPI, fig2a.png without obstacles and fig2b.png among obstacles. It is the first lap in which MPPI
 /// hits an obstacle, or else the first. Draws nothing if the evaluation lacks one of the methods.
 void draw_trajectories(const Evaluated& evaluated, const std::filesystem::path& folder);
+
+// The words of a report.
+
+/// A text as HTML shows it.
+std::string escaped(const std::string& text);
+/// A number with up to `digits` decimals, fewer from 10 and from 100 on; a dash if it is not finite.
+std::string number(double value, int digits = 3);
+/// The style sheet of the report: for screens of any width, in light and dark colours, and for paper.
+extern const char* const report_style;
+/// A table of the experiments that are compared with the reference experiment of their scenario on the same
+/// seeds, as a section; empty if nothing is compared.
+std::string paired_table(const Report& report);
+/// The terms that this report uses, as a section with the settings.
+std::string glossary_html(const Report& report);
 
 /// Writes report.html, and figures/ beside it. Throws IoError.
 void write_report(const Report& report, const std::filesystem::path& folder);

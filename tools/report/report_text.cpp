@@ -1,16 +1,14 @@
-#include "tools/report/report_text.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
+#include "tools/report/report.hpp"
 
 namespace slalom::tools {
-namespace {
 
-constexpr const char* style = R"(
+const char* const report_style = R"(
 :root{color-scheme:light dark;--ink:#212938;--faint:#5a6478;--rule:#e3e7ee;--blue:#1f5fb5;--good:#1d7f4f;--bad:#a84a16;--paper:#fff;
 --ground:#f3f5f9;--note:#fdf7e8;--code:#f6f8fb}
 @media(prefers-color-scheme:dark){:root{--ink:#e6eaf1;--faint:#a3adbd;--rule:#303846;--blue:#84b6f5;--good:#1d7f4f;--bad:#a84a16;
@@ -47,7 +45,14 @@ td,th{padding:5px 6px}}
 @media print{body{background:#fff}section{break-inside:avoid;border:0;padding:8px 0}}
 )";
 
+namespace {
+
 using namespace evaluation;
+
+/// A p-value (0 .. 1), a dash where there is none.
+std::string p_value(double p) {
+  return p < 0.001 ? "&lt; 0.001" : number(p);
+}
 
 /// The experiment of a scenario that the others are compared with: svg_mppi with its own options, else the
 /// first. -1 without any.
@@ -71,10 +76,6 @@ std::string name_of(const Report& report, int experiment) {
 
 }  // namespace
 
-const char* report_style() noexcept {
-  return style;
-}
-
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text)
@@ -89,10 +90,6 @@ std::string escaped(const std::string& text) {
 std::string number(double value, int digits) {
   if (!std::isfinite(value)) return "\xE2\x80\x93";
   return formatted("%.*f", value >= 100 ? 1 : value >= 10 ? std::min(digits, 2) : digits, value);
-}
-
-std::string p_value(double p) {
-  return p < 0.001 ? "&lt; 0.001" : number(p);
 }
 
 std::string paired_table(const Report& report) {

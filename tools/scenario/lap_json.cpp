@@ -113,12 +113,10 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
   return json;
 }
 
-Json times_json(std::vector<float> milliseconds) {
-  if (milliseconds.empty()) return {{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
-  std::sort(milliseconds.begin(), milliseconds.end());
+Json times_json(const std::vector<float>& milliseconds) {
   return {{"p50", evaluation::percentile(milliseconds, 0.5)},
           {"p99", evaluation::percentile(milliseconds, 0.99)},
-          {"max", static_cast<double>(milliseconds.back())}};
+          {"max", evaluation::percentile(milliseconds, 1)}};
 }
 
 std::vector<float> solve_times(const std::vector<evaluation::LapResult>& laps) {

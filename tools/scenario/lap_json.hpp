@@ -17,7 +17,7 @@ Json lap_json(const evaluation::LapResult& lap, int number);
 double root_mean_square(const std::vector<float>& values);
 
 /// Percentiles by nearest rank of wall-clock times, ms; null without any.
-Json times_json(std::vector<float> milliseconds);
+Json times_json(const std::vector<float>& milliseconds);
 
 /// All solve times of laps, ms.
 std::vector<float> solve_times(const std::vector<evaluation::LapResult>& laps);

@@ -1,7 +1,6 @@
 #include "tools/video/drive_video.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>

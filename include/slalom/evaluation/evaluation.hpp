@@ -36,11 +36,10 @@ LapSetup lap_setup(const Evaluation& evaluation, int experiment);
 
 /// The progress of an evaluation.
 struct EvaluationProgress {
-  int laps_done = 0;             ///< laps finished so far
-  int laps_total = 0;            ///< laps of all experiments
-  int laps_resumed = 0;          ///< number of those done that an earlier run has driven
-  double seconds_left = 0;       ///< estimated
-  const LapRow* last = nullptr;  ///< the lap that ended last, valid during the callback
+  int laps_done = 0;        ///< laps finished so far
+  int laps_total = 0;       ///< laps of all experiments
+  int laps_resumed = 0;     ///< number of those done that an earlier run has driven
+  double seconds_left = 0;  ///< estimated
 };
 
 /// The settings of an evaluation, as JSON text, with their checksum.

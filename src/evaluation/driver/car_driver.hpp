@@ -96,5 +96,8 @@ class CarDriver {
 
 /// The drive of a lap or race.
 using CarDrive = Drive<sim::World, CarDriver>;
+/// Makes the drive of a lap: places the obstacles, whose poses are returned in `obstacles`, and puts the cars
+/// at their starts.
+CarDrive start_lap(const LapSetup& setup, std::uint64_t seed, std::vector<maps::Pose>& obstacles);
 
 }  // namespace slalom::evaluation

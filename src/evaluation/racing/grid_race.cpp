@@ -6,7 +6,6 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <tuple>
 #include <utility>
 
@@ -24,10 +23,6 @@ constexpr double place_offset = 0.25;  // m, from the course line
 constexpr double wall_room = 0.1;      // m, around a car on the grid
 constexpr double offset_step = 0.05, back_step = 0.25;  // m, from a place that has no room to the next
 constexpr double pushed_time = 1;  // s; a contact this long before a wall is reported with it
-
-void require_of_race(bool holds, const std::string& message) {
-  if (!holds) throw std::invalid_argument(message);
-}
 
 /// m, the arc length of the finish line.
 double line_of(const GridRace& race) {
@@ -214,22 +209,22 @@ bool GridRaceResult::has_winner() const noexcept {
 }
 
 void GridRace::validate() const {
-  require_of_race(
+  require(
       drivers.size() >= 2 && drivers.size() <= static_cast<std::size_t>(most_race_cars),
       "cars: " + std::to_string(drivers.size()) + " must be in [2, " + std::to_string(most_race_cars) + "]");
   slalom::detail::check("race", {"laps", "", "laps of each car", 1, 1000}, laps);
   for (std::size_t entry = 0; entry < drivers.size(); ++entry) lap(entry).validate();
-  require_of_race(environment->protocol == Protocol::true_physics,
-                  "evaluation: must be true in a race of several cars");
-  require_of_race(environment->course.closed, "course: must be closed for a race of several cars");
+  require(environment->protocol == Protocol::true_physics,
+          "evaluation: must be true in a race of several cars");
+  require(environment->course.closed, "course: must be closed for a race of several cars");
   for (const auto& [option, value, only] :
        {std::tuple("obstacles", settings.obstacles, 0), std::tuple("world.opponents", settings.opponents, 0),
         std::tuple("world.rounds", settings.rounds, 1)})
-    require_of_race(value == only, std::string(option) + ": " + std::to_string(value) + " must be " +
-                                       std::to_string(only) + " in a race of several cars");
+    require(value == only, std::string(option) + ": " + std::to_string(value) + " must be " +
+                               std::to_string(only) + " in a race of several cars");
   for (std::size_t entry = 1; entry < drivers.size(); ++entry)
-    require_of_race(lap(entry).control_period() == control_period(),
-                    "planner.control_period: must be the same for all cars of a race");
+    require(lap(entry).control_period() == control_period(),
+            "planner.control_period: must be the same for all cars of a race");
 }
 
 std::vector<maps::Pose> GridRace::grid() const {

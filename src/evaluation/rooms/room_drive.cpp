@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <limits>
+#include <span>
 
 #include "evaluation/rooms/room_world.hpp"
 #include "slalom/core/math.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/evaluation/drive.hpp"
+#include "slalom/evaluation/statistics.hpp"
 
 namespace slalom::evaluation {
 
@@ -24,6 +26,68 @@ constexpr double least_share = 0.8;         // share of its path that a robot dr
 
 bool stands(const Velocity& v, double below = standing) {
   return std::abs(v.forward) < below && std::abs(v.left) < below && std::abs(v.turn) < below;
+}
+
+/// Counts how often plans change the side on which they pass something, until the robot is past it.
+class SideCounter {
+ public:
+  SideCounter(const maps::Pose& start, const maps::Pose& goal)
+      : ahead_x_(goal.x - start.x), ahead_y_(goal.y - start.y) {}
+
+  void add(const maps::Pose& robot, const maps::Point& counted, std::span<const maps::Pose> plan) {
+    const double dx = counted.x - robot.x, dy = counted.y - robot.y;
+    if (plan.empty() || dx * ahead_x_ + dy * ahead_y_ <= 0) return;
+    const maps::Pose& end = plan.back();
+    const double left =
+        (dx * (end.y - robot.y) - dy * (end.x - robot.x)) / std::max(std::hypot(dx, dy), 1e-9);
+    if (std::abs(left) < side_margin) return;
+    const int side = left > 0 ? 1 : -1;
+    changes_ += last_ != 0 && side != last_;
+    last_ = side;
+  }
+  int changes() const { return changes_; }
+
+ private:
+  static constexpr double side_margin = 0.1;  ///< m from the line; below it neither side is counted
+  double ahead_x_, ahead_y_;
+  int last_ = 0, changes_ = 0;
+};
+
+/// Counts the changes of sign of values that are large enough.
+class SignCounter {
+ public:
+  SignCounter(double least, int sign) : least_(least), sign_(sign) {}
+  void add(double value) {
+    const int now = value > least_ ? 1 : value < -least_ ? -1 : 0;
+    changes_ += now != 0 && now == -sign_;
+    if (now != 0) sign_ = now;
+  }
+  int changes() const { return changes_; }
+
+ private:
+  double least_;
+  int sign_, changes_ = 0;
+};
+
+/// The length of a path (m).
+double length_of(std::span<const maps::Pose> path) {
+  double length = 0;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i)
+    length += std::hypot(path[i + 1].x - path[i].x, path[i + 1].y - path[i].y);
+  return length;
+}
+
+/// The distance of a point from a path (m).
+double distance_from(std::span<const maps::Pose> path, const maps::Pose& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const double dx = path[i + 1].x - path[i].x, dy = path[i + 1].y - path[i].y,
+                 squared = std::max(dx * dx + dy * dy, 1e-12);
+    const double share =
+        std::clamp(((point.x - path[i].x) * dx + (point.y - path[i].y) * dy) / squared, 0.0, 1.0);
+    least = std::min(least, std::hypot(path[i].x + share * dx - point.x, path[i].y + share * dy - point.y));
+  }
+  return least;
 }
 
 /// The end of a drive that a status stands for; a timeout if it goes on.
@@ -80,8 +144,8 @@ class RoomRun {
     const double optimal = scenario_.optimal_time;
     if (drive_.success && optimal > 0)
       drive_.metric = optimal / std::clamp(drive_.time, 2 * optimal, 8 * optimal);
-    drive_.update_p50 = robot().stopwatch.percentile(0.5);
-    drive_.update_max = robot().stopwatch.percentile(1);
+    drive_.update_p50 = percentile(robot().update_times, 0.5);
+    drive_.update_max = percentile(robot().update_times, 1);
     return drive_;
   }
 

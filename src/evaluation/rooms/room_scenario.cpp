@@ -1,8 +1,6 @@
 #include "slalom/evaluation/rooms/room_scenario.hpp"
 
-#include <numbers>
 #include <stdexcept>
-#include <string>
 
 namespace slalom::evaluation {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -8,11 +9,9 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mover_watch.hpp"
-#include "room_figures.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
@@ -194,18 +193,18 @@ class RoomNavigator {
     if (predicts_) others = watch_.update(scan, world.time);
     map_.add(predicts_ ? watch_.without_movers() : scan);
     costmap_.update(map_.grid());
-    const auto result = stopwatch.measure([&] {
-      return navigator_.update(world.pose, stands_ ? navigation::Velocity{} : world.velocity, costmap_,
-                               elapsed, others);
-    });
+    const auto begin = std::chrono::steady_clock::now();
+    const auto result = navigator_.update(world.pose, stands_ ? navigation::Velocity{} : world.velocity,
+                                          costmap_, elapsed, others);
+    update_times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     command_ = result.command;
     return result;
   }
   navigation::Velocity command(const RoomWorld&) const { return command_; }
   void moved(const RoomWorld&) const {}
 
-  Stopwatch stopwatch;           ///< times of the navigator's updates
-  std::vector<maps::Pose> path;  ///< the path that was set
+  std::vector<double> update_times;  ///< s of wall clock, of the navigator's updates
+  std::vector<maps::Pose> path;      ///< the path that was set
 
  private:
   static constexpr double resolution = 0.05;                                  ///< m
