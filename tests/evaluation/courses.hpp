@@ -34,6 +34,19 @@ inline vehicle::Configuration configuration(const std::string& name, int samples
   return made;
 }
 
+/// The default configuration with short horizons and few samples, for fast laps with mppi and svg_mppi.
+inline vehicle::Configuration quick_configuration() {
+  vehicle::Configuration made;
+  for (const std::string method : {"mppi", "svg_mppi"})
+    for (const auto& [option, value] : {std::pair("samples", "256"),
+                                        {"horizon", "14"},
+                                        {"variance", "0.05"},
+                                        {"input_min", "-0.4"},
+                                        {"input_max", "0.4"}})
+      vehicle::set_option(made, option, value, method);
+  return made;
+}
+
 /// A car `progress` (m) along testing::ring_track, `left` (m) of it, at a speed along it and one to its left.
 inline sim::CarState on_ring(double progress, double left, double speed, double sideways = 0) {
   const double angle = progress / 5.5, radius = 5.5 - left;

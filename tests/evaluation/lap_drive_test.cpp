@@ -11,15 +11,7 @@ namespace {
 
 LapSetup lap(const std::string& method, const LapSettings& settings = {.obstacles = 2}) {
   static const auto environment = course("stag");
-  vehicle::Configuration configuration;
-  for (const char* each : {"svg_mppi", "mppi"}) {
-    vehicle::set_option(configuration, "samples", "256", each);
-    vehicle::set_option(configuration, "horizon", "14", each);
-    vehicle::set_option(configuration, "variance", "0.05", each);
-    vehicle::set_option(configuration, "input_min", "-0.4", each);
-    vehicle::set_option(configuration, "input_max", "0.4", each);
-  }
-  return {environment, {configuration, method}, settings};
+  return {environment, {quick_configuration(), method}, settings};
 }
 
 TEST(LapDrive, FirstLapEqualsTheLapAlone) {

@@ -6,27 +6,15 @@
 #include <cmath>
 #include <numeric>
 
-#include "slalom/evaluation/lap.hpp"
-#include "slalom/vehicle/configuration/configuration.hpp"
+#include "evaluation/courses.hpp"
 
 namespace slalom::evaluation {
 namespace {
 
 constexpr double grip = 8.8;  // m/s^2
 
-std::shared_ptr<Environment> environment_of(const std::string& course) {
-  return make_environment(vehicle::load_course(std::string(SLALOM_COURSES "/") + course),
-                          Protocol::true_physics);
-}
-
-LapSetup setup(std::shared_ptr<const Environment> environment, const LapSettings& settings = {}) {
-  vehicle::Configuration configuration;
-  vehicle::set_option(configuration, "samples", "256", "mppi");
-  vehicle::set_option(configuration, "horizon", "14", "mppi");
-  vehicle::set_option(configuration, "variance", "0.05", "mppi");
-  vehicle::set_option(configuration, "input_min", "-0.4", "mppi");
-  vehicle::set_option(configuration, "input_max", "0.4", "mppi");
-  return {std::move(environment), {configuration, "mppi"}, settings};
+LapSetup setup(const std::shared_ptr<const Environment>& environment, const LapSettings& settings = {}) {
+  return {environment, {quick_configuration(), "mppi"}, settings};
 }
 
 double total(const std::array<double, racing_sectors>& sectors) {
@@ -93,7 +81,7 @@ TEST(RacingLap, GripIsWeightedByTime) {
 }
 
 TEST(Race, StandingStartsAreToldFromFlyingLaps) {
-  const auto driver = setup(environment_of("stag"));
+  const auto driver = setup(course("stag"));
   int steps = 0;
   const auto laps = drive_race(driver, {.laps = 3, .seed = 3},
                                {.on_step =
@@ -128,7 +116,7 @@ TEST(Race, TheSimulatedCarMayBeAPassengerCar) {
   LapSettings settings;
   EXPECT_TRUE(set_world_option(settings, "world.car", "passenger_car"));
   EXPECT_EQ(settings.car, CarKind::passenger_car);
-  const auto environment = environment_of("stag");
+  const auto environment = course("stag");
   const LapDrive small(setup(environment), 1);
   EXPECT_EQ(small.world().options().car.mass, sim::CarParameters{}.mass);
   EXPECT_THROW(LapDrive(setup(environment, settings), 1), std::invalid_argument)
@@ -136,7 +124,7 @@ TEST(Race, TheSimulatedCarMayBeAPassengerCar) {
 }
 
 TEST(Race, AccelerationsAreThoseOfTheSpeedsAndTheCurve) {
-  const auto laps = drive_race(setup(environment_of("stag")), {.laps = 1});
+  const auto laps = drive_race(setup(course("stag")), {.laps = 1});
   const auto& samples = laps[0].samples;
   double gained = 0, turned = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -151,8 +139,7 @@ TEST(Race, AccelerationsAreThoseOfTheSpeedsAndTheCurve) {
 TEST(Race, EveryLapCanBeginWithAStandingStart) {
   LapSettings settings;
   settings.obstacles = 1;
-  const auto laps =
-      drive_race(setup(environment_of("stag"), settings), {.laps = 2, .seed = 5, .standing = true});
+  const auto laps = drive_race(setup(course("stag"), settings), {.laps = 2, .seed = 5, .standing = true});
   ASSERT_EQ(laps.size(), 2u);
   EXPECT_EQ(laps[0].seed, lap_seed(5, 0, 1));
   EXPECT_EQ(laps[1].seed, lap_seed(5, 1, 1));
@@ -165,7 +152,7 @@ TEST(Race, EveryLapCanBeginWithAStandingStart) {
 TEST(Race, ACollisionEndsTheLapAndTheNextOneStands) {
   LapSettings settings;
   settings.latency = 0.5;  // s
-  const auto driver = setup(environment_of("stag"), settings);
+  const auto driver = setup(course("stag"), settings);
   const auto laps = drive_race(driver, {.laps = 2});
   ASSERT_EQ(laps.size(), 2u);
   for (const RacingLap& lap : laps) {
@@ -178,9 +165,7 @@ TEST(Race, ACollisionEndsTheLapAndTheNextOneStands) {
 }
 
 TEST(Race, ALapEndsAfterItsTimeout) {
-  const auto environment = environment_of("stag");
-  environment->timeout = 2;
-  const auto laps = drive_race(setup(environment), {.laps = 2});
+  const auto laps = drive_race(setup(timed_out_after(2, course("stag"))), {.laps = 2});
   ASSERT_EQ(laps.size(), 2u);
   for (const RacingLap& lap : laps) {
     EXPECT_EQ(lap.end, RacingEnd::timeout);
@@ -190,25 +175,25 @@ TEST(Race, ALapEndsAfterItsTimeout) {
 
 TEST(Race, EndsWhenItIsCancelled) {
   std::atomic<bool> cancel = false;
-  const auto laps = drive_race(setup(environment_of("stag")), {.laps = 5},
+  const auto laps = drive_race(setup(course("stag")), {.laps = 5},
                                {.on_step = {}, .on_lap = [&](const RacingLap&) { cancel = true; }}, &cancel);
   EXPECT_EQ(laps.size(), 1u);
-  EXPECT_THROW(drive_race(setup(environment_of("stag")), {.laps = 0}), std::invalid_argument);
+  EXPECT_THROW(drive_race(setup(course("stag")), {.laps = 0}), std::invalid_argument);
 }
 
 TEST(ProfileLap, TakesTheTimeOfTheProfile) {
-  for (const char* course : {"stag", "wren"}) {
-    const auto environment = environment_of(course);
+  for (const char* name : {"stag", "wren"}) {
+    const auto environment = course(name);
     const RacingLap lap = profile_lap(setup(environment), false, grip);
-    EXPECT_NEAR(lap.time(), vehicle::profile_time(environment->course), 1e-6) << course;
-    EXPECT_NEAR(total(lap.sector), lap.time(), 1e-9) << course;
-    EXPECT_NEAR(lap.samples.back().distance, environment->course.length, 1e-9) << course;
-    EXPECT_NEAR(lap.samples.back().speed, lap.samples.front().speed, 1e-6) << course;
+    EXPECT_NEAR(lap.time(), vehicle::profile_time(environment->course), 1e-6) << name;
+    EXPECT_NEAR(total(lap.sector), lap.time(), 1e-9) << name;
+    EXPECT_NEAR(lap.samples.back().distance, environment->course.length, 1e-9) << name;
+    EXPECT_NEAR(lap.samples.back().speed, lap.samples.front().speed, 1e-6) << name;
   }
 }
 
 TEST(ProfileLap, BeginsWhereTheCarStarts) {
-  const auto environment = environment_of("stag");
+  const auto environment = course("stag");
   LapSettings settings;
   const vehicle::Waypoint& middle = environment->course.waypoints[environment->course.waypoints.size() / 2];
   settings.start = maps::Pose{middle.x, middle.y, middle.yaw};
@@ -219,7 +204,7 @@ TEST(ProfileLap, BeginsWhereTheCarStarts) {
 }
 
 TEST(ProfileLap, FromRestItAcceleratesWithinTheGrip) {
-  const auto environment = environment_of("stag");
+  const auto environment = course("stag");
   const auto driver = setup(environment);
   const RacingLap flying = profile_lap(driver, false, grip), standing = profile_lap(driver, true, grip),
                   weak = profile_lap(driver, true, 2);

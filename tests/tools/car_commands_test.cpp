@@ -1,23 +1,20 @@
 // `slalom identify` finds the servo and the tyres of a simulated car, and `slalom bench` measures models with
 // two inputs.
-#include <nlohmann/json.hpp>
-
 #include "tools/program_test.hpp"
 
 namespace slalom::tools {
 namespace {
 
 using nlohmann::json;
-using testing::content;
+using testing::contains;
 
 class BenchCommand : public testing::ProgramTest {};
 
 TEST_F(BenchCommand, MeasuresModelsWithTwoInputs) {
   for (const std::string config : {"default", "default_speed"}) {
-    const auto run = program("bench --config " + config +
-                             " --methods svg_mppi --set svg_mppi.samples=256 --seconds 0.01 --json b.json");
-    ASSERT_EQ(run.status, 0) << run.output;
-    const json told = json::parse(content(folder_ / "b.json"));
+    succeed("bench --config " + config +
+            " --methods svg_mppi --set svg_mppi.samples=256 --seconds 0.01 --json b.json");
+    const json told = result("b.json");
     EXPECT_GT(told["rollout_ns_per_step"], 0) << config;
     EXPECT_GT(told["methods"]["svg_mppi"]["solve_ms"]["p50"], 0) << config;
     EXPECT_GT(told["tick_ms"], told["tick"]["without_solve_ms"]["p50"]) << config;
@@ -29,21 +26,14 @@ TEST_F(BenchCommand, MeasuresModelsWithTwoInputs) {
   }
 }
 
-class IdentifyCommand : public testing::ProgramTest {
- protected:
-  json identified(const std::string& recording) const {
-    const auto run = program("identify " + recording + " --wheelbase 0.3302 --json found.json");
-    EXPECT_EQ(run.status, 0) << run.output;
-    return json::parse(content(folder_ / "found.json"));
-  }
-};
+class IdentifyCommand : public testing::ProgramTest {};
 
 TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
-  ASSERT_EQ(program("drive --course eel --config default_kinematic --method mppi --set samples=256 "
-                    "--hardware --laps 3 --record lap.mcap")
-                .status,
-            0);
-  const json found = identified("lap.mcap");
+  succeed(
+      "drive --course eel --config default_kinematic --method mppi --set samples=256 --hardware --laps 3 "
+      "--record lap.mcap");
+  succeed("identify lap.mcap --wheelbase 0.3302 --json found.json");
+  const json found = result("found.json");
   EXPECT_NEAR(found["steering_gain"]["value"], 0.95, 0.05);
   EXPECT_NEAR(found["steering_offset"]["value"], 0.01, 0.004);
   EXPECT_NEAR(found["time_constant"]["value"], 0.07, 0.025);
@@ -51,31 +41,27 @@ TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
   EXPECT_GT(found["explained"], 0.9);
   EXPECT_EQ(found["wheelbase"]["deviation"], 0);
 
-  const auto free = program("identify lap.mcap --json free.json");
-  ASSERT_EQ(free.status, 0) << free.output;
-  EXPECT_NE(free.output.find("determines only the ratio of gain and wheelbase"), std::string::npos)
-      << free.output;
-  EXPECT_EQ(free.output.find("front_length"), std::string::npos) << free.output;
-  const json sought = json::parse(content(folder_ / "free.json"));
+  const std::string free = succeed("identify lap.mcap --json free.json");
+  testing::expect_says(free, {"determines only the ratio of gain and wheelbase"});
+  EXPECT_FALSE(contains(free, "front_length")) << free;
+  const json sought = result("free.json");
   const double ratio =
       sought["steering_gain"]["value"].get<double>() / sought["wheelbase"]["value"].get<double>();
   EXPECT_NEAR(ratio, 0.95 / 0.3302, 0.15);
 }
 
 TEST_F(IdentifyCommand, FindsTheFrictionOfASimulatedCarWhoseTyresSlip) {
-  ASSERT_EQ(program("drive --course fox --set samples=1000 --set world.saturating_tyres=true --set "
-                    "world.friction=0.6 --laps 4 --record lap.mcap")
-                .status,
-            0);
-  const auto run = program("identify lap.mcap --tyres --config default --json found.json");
-  ASSERT_EQ(run.status, 0) << run.output;
-  const json found = json::parse(content(folder_ / "found.json"));
+  succeed(
+      "drive --course fox --set samples=1000 --set world.saturating_tyres=true --set world.friction=0.6 "
+      "--laps 4 --record lap.mcap");
+  const std::string said = succeed("identify lap.mcap --tyres --config default --json found.json");
+  const json found = result("found.json");
   EXPECT_NEAR(found["friction"]["value"], 0.6, 0.06);
   EXPECT_NEAR(found["cornering_front"]["value"], 4.718, 0.9);
   EXPECT_NEAR(found["cornering_rear"]["value"], 5.4562, 1.1);
   EXPECT_NEAR(found["steering_gain"]["value"], 1, 0.08);
   EXPECT_NEAR(found["delay"]["value"], 0.02, 0.01);
-  EXPECT_NE(run.output.find("  friction: "), std::string::npos) << run.output;
+  testing::expect_says(said, {"  friction: "});
   expect_refused("identify lap.mcap --config default", {"--config", "--tyres"});
   expect_refused("identify lap.mcap --tyres --wheelbase 0.33", {"--wheelbase", "--tyres"});
   expect_refused("identify lap.mcap --tyres --config nothing", {"nothing", "known: "});

@@ -1,9 +1,5 @@
 // `slalom drive`: results in JSON, exit status, repeatability, interruption, and every bad input named in
 // words.
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
 #include "slalom/evaluation/hardware.hpp"
 #include "tools/program_test.hpp"
 #include "view/recording/mcap_reader.hpp"
@@ -19,15 +15,18 @@ using testing::run_program;
 class DriveCommand : public testing::ProgramTest {
  protected:
   /// Drives on the smallest course with few samples, unless the arguments say otherwise.
-  testing::Run drive(const std::string& arguments) const {
-    return run_program("drive --course wren --set samples=256 " + arguments, folder_.string());
+  std::string drive(const std::string& arguments) const {
+    return succeed("drive --course wren --set samples=256 " + arguments);
   }
-  json result(const std::string& file) const { return json::parse(content(folder_ / file)); }
 };
 
 TEST_F(DriveCommand, ParksCarsAtGivenPlaces) {
-  const auto run = drive("--obstacle 1.5,0.25,0.1 --obstacle=-3,2,0 --obstacles 3 --laps 1 --json out.json");
-  EXPECT_NE(run.output.find("3 obstacles"), std::string::npos) << run.output;
+  const std::string said =
+      program(
+          "drive --course wren --set samples=256 --obstacle 1.5,0.25,0.1 --obstacle=-3,2,0 --obstacles 3 "
+          "--laps 1 --json out.json")
+          .output;
+  testing::expect_says(said, {"3 obstacles"});
   const json told = result("out.json");
   ASSERT_EQ(told["laps"][0]["obstacles"].size(), 3u);
   EXPECT_EQ(told["laps"][0]["obstacles"][0], json({1.5, 0.25, 0.1}));
@@ -41,8 +40,7 @@ TEST_F(DriveCommand, DrawsALapAtUtmCoordinates) {
   for (double a = 0; a < 4; a += 0.1)
     line << 450000 + 6 * std::cos(a) << "," << 5400000 + 6 * std::sin(a) << ",1.1,1.1\n";
   line.close();
-  const auto made = run_program("course arc.csv --no-picture --out arc", folder_.string());
-  ASSERT_EQ(made.status, 0) << made.output;
+  succeed("course arc.csv --no-picture --out arc");
   // Within 4 GB of memory.
   const auto run = testing::run_shell("ulimit -v 4000000; '" SLALOM_PROGRAM
                                       "' drive --course arc --set samples=256 --plot lap.png",
@@ -62,15 +60,12 @@ TEST_F(DriveCommand, DrivesACarOfFullSize) {
   for (double a = pi / 2; a < 3 * pi / 2; a += 0.1)
     line << radius * std::cos(a) << "," << radius + radius * std::sin(a) << ",7,7\n";
   line.close();
-  const auto made = run_program(
-      "course oval.csv --car passenger --margin 1 --top-speed 35 --friction 0.85 --no-picture --out oval",
-      folder_.string());
-  ASSERT_EQ(made.status, 0) << made.output;
+  succeed(
+      "course oval.csv --car passenger --margin 1 --top-speed 35 --friction 0.85 --no-picture --out oval");
   const std::string arguments =
       "drive --course oval --config passenger_car --set samples=1000 --set world.car=passenger_car "
       "--set world.saturating_tyres=true ";
-  const auto run = run_program(arguments + "--json out.json", folder_.string());
-  EXPECT_EQ(run.status, 0) << run.output;
+  succeed(arguments + "--json out.json");
   const json lap = result("out.json")["laps"][0];
   EXPECT_EQ(lap["contacts"], 0);
   EXPECT_GT(lap["mean_speed"], 15);
@@ -80,8 +75,7 @@ TEST_F(DriveCommand, DrivesACarOfFullSize) {
 }
 
 TEST_F(DriveCommand, FinishesLapsAndWritesJson) {
-  const auto run = drive("--obstacles 2 --laps 2 --seed 3 --json out.json");
-  EXPECT_EQ(run.status, 0) << run.output;
+  const std::string said = drive("--obstacles 2 --laps 2 --seed 3 --json out.json");
   const json d = result("out.json");
   ASSERT_EQ(d["laps"].size(), 2u);
   for (const auto& lap : d["laps"]) {
@@ -102,12 +96,12 @@ TEST_F(DriveCommand, FinishesLapsAndWritesJson) {
   EXPECT_EQ(d["settings"]["options"]["svg_mppi"]["samples"], 256);
   EXPECT_TRUE(d["settings"]["options"].contains("vehicle"));
   EXPECT_EQ(d["settings"]["threads"], 1);
-  EXPECT_NE(run.output.find("2 of 2 laps finished"), std::string::npos) << run.output;
+  testing::expect_says(said, {"2 of 2 laps finished"});
 }
 
 TEST_F(DriveCommand, GivesTheSameBytesForTheSameSeedAndAnyThreads) {
   const auto cleaned = [&](const std::string& arguments) {
-    EXPECT_EQ(drive(arguments + " --obstacles 2 --laps 2 --json out.json --record out.mcap").status, 0);
+    drive(arguments + " --obstacles 2 --laps 2 --json out.json --record out.mcap");
     json d = result("out.json");
     d.erase("solve_ms");
     d["settings"].erase("threads");
@@ -123,8 +117,7 @@ TEST_F(DriveCommand, OpponentsWithPlannersHaveTheOptionsOfTheFileAndAreRecorded)
   const std::string among =
       "--opponents 1 --set world.planning_opponents=1 --set world.opponent_gap=3 --set world.tracking=exact ";
   const auto cleaned = [&](const std::string& arguments) {
-    const auto run = drive(among + arguments + " --json out.json --record out.mcap");
-    EXPECT_EQ(run.status, 0) << run.output;
+    drive(among + arguments + " --json out.json --record out.mcap");
     return content(folder_ / "out.mcap");
   };
   const std::string first = cleaned("--threads 1");
@@ -142,14 +135,13 @@ TEST_F(DriveCommand, OpponentsWithPlannersHaveTheOptionsOfTheFileAndAreRecorded)
 }
 
 TEST_F(DriveCommand, WritesOnlyJsonToStandardOutput) {
-  const auto run = drive("--json - 2>/dev/null");
-  EXPECT_EQ(run.status, 0);
-  EXPECT_EQ(json::parse(run.output)["laps"].size(), 1u);
-  EXPECT_TRUE(json::parse(run.output)["summary"]["collision_rate"].is_null());
+  const json told = json::parse(drive("--json - 2>/dev/null"));
+  EXPECT_EQ(told["laps"].size(), 1u);
+  EXPECT_TRUE(told["summary"]["collision_rate"].is_null());
 }
 
 TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
-  ASSERT_EQ(drive("--json out.json --record out.mcap --plot out.png").status, 0);
+  drive("--json out.json --record out.mcap --plot out.png");
   std::vector<json> ticks;
   view::mcap::read_records((folder_ / "out.mcap").string(), false,
                            {.message =
@@ -167,7 +159,7 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
 
 TEST_F(DriveCommand, LearnsTheOffsetOfTheSteeringOfARealCar) {
   const auto offset = [&](const std::string& arguments) {
-    EXPECT_EQ(drive("--hardware --json out.json " + arguments).status, 0);
+    drive("--hardware --json out.json " + arguments);
     return result("out.json")["laps"][0]["estimation"]["steering_offset_rad"].get<double>();
   };
   EXPECT_NEAR(offset(""), evaluation::HardwareConditions{}.steering_offset, 0.006);
@@ -175,20 +167,19 @@ TEST_F(DriveCommand, LearnsTheOffsetOfTheSteeringOfARealCar) {
 }
 
 TEST_F(DriveCommand, FailsWhereALapIsNotFinishedButWritesResults) {
-  std::ofstream(folder_ / "slow.yaml") << "base: default\nplanner:\n  max_speed: 0.02\n";
+  write("slow.yaml", "base: default\nplanner:\n  max_speed: 0.02\n");
   fs::copy(fs::path(SLALOM_COURSES) / "wren", folder_ / "short");
   std::ofstream(folder_ / "short/course.yaml") << "timeout: 0.5\n";
-  const auto run = run_program("drive --course short --config slow.yaml --json out.json", folder_.string());
+  const auto run = program("drive --course short --config slow.yaml --json out.json");
   EXPECT_EQ(run.status, 1) << run.output;
   EXPECT_EQ(result("out.json")["laps"][0]["finished"], false);
   EXPECT_EQ(result("out.json")["laps"][0]["timeout"], true);
 }
 
 TEST_F(DriveCommand, CtrlCEndsTheLapAndWritesResults) {
-  const auto run = run_program(
+  const auto run = program(
       "drive --course swift --laps 1000 --json out.json > words.txt & pid=$!; sleep 1.5; kill -INT $pid; "
-      "wait $pid",
-      folder_.string());
+      "wait $pid");
   EXPECT_EQ(run.status, 130);
   const json d = result("out.json");
   ASSERT_FALSE(d["laps"].empty());
@@ -198,9 +189,7 @@ TEST_F(DriveCommand, CtrlCEndsTheLapAndWritesResults) {
 }
 
 TEST_F(DriveCommand, DrivesThePublishedEvaluation) {
-  const auto run =
-      drive("--config published --evaluation published --method mppi --obstacles 1 --json out.json");
-  EXPECT_EQ(run.status, 0) << run.output;
+  drive("--config published --evaluation published --method mppi --obstacles 1 --json out.json");
   const json d = result("out.json");
   EXPECT_EQ(d["settings"]["control_period_s"], 0.01);
   const double steps = d["laps"][0]["steps"], time = d["laps"][0]["time_s"];

@@ -18,10 +18,6 @@ namespace slalom::testing {
 
 namespace fs = std::filesystem;
 
-inline bool contains(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
-}
-
 inline std::vector<std::string> cells(const std::string& line) {
   std::vector<std::string> parts;
   std::istringstream stream(line);
@@ -61,8 +57,6 @@ inline std::size_t count_lines(const fs::path& file) {
 
 class EvaluationFolder : public ProgramTest {
  protected:
-  testing::Run run(const std::string& arguments) const { return program(arguments); }
-
   /// Starts the program, kills it after so many milliseconds; true if that is what ended it.
   bool kill_after(const std::string& arguments, int milliseconds) const {
     const std::string command = "cd '" + folder_.string() + "' && exec '" SLALOM_PROGRAM "' " + arguments;

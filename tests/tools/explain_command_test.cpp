@@ -1,7 +1,4 @@
 // `slalom explain`: a picture and figures of every method, and mistakes named in words.
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "tools/program_test.hpp"
@@ -14,10 +11,9 @@ using nlohmann::json;
 class ExplainCommand : public testing::ProgramTest {};
 
 TEST_F(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
-  const auto run = program("explain --method all --seed 3 --plot all.png --json all.json");
-  ASSERT_EQ(run.status, 0) << run.output;
+  succeed("explain --method all --seed 3 --plot all.png --json all.json");
   EXPECT_EQ(testing::content(folder_ / "all.png").rfind("\x89PNG\r\n\x1a\n", 0), 0u);
-  const json told = json::parse(testing::content(folder_ / "all.json"));
+  const json told = result("all.json");
   ASSERT_EQ(told["methods"].size(), 9u);
   for (const json& method : told["methods"]) {
     EXPECT_EQ(method["inputs"].size(), 20u) << method["method"];
@@ -39,9 +35,7 @@ TEST_F(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
 
 TEST_F(ExplainCommand, SetsOptionsOfMethodsAndProblem) {
   const auto inputs = [&](const std::string& more) {
-    const auto run = program("explain --method mppi --solves 1 --json - " + more);
-    EXPECT_EQ(run.status, 0) << run.output;
-    return json::parse(run.output)["methods"][0];
+    return json::parse(succeed("explain --method mppi --solves 1 --json - " + more))["methods"][0];
   };
   EXPECT_NE(inputs("")["inputs"], inputs("--set temperature=5")["inputs"]);
   EXPECT_EQ(inputs("--set samples=64")["samples"].size(), 64u);
@@ -50,21 +44,18 @@ TEST_F(ExplainCommand, SetsOptionsOfMethodsAndProblem) {
 }
 
 TEST_F(ExplainCommand, SaysWhatIsWrong) {
-  const auto run = program("explain --method mppi --set temperature=1e-6 --json cold.json");
-  ASSERT_EQ(run.status, 0) << run.output;
-  EXPECT_NE(run.output.find("few_samples: the effective sample size is below 3"), std::string::npos)
-      << run.output;
-  EXPECT_EQ(json::parse(testing::content(folder_ / "cold.json"))["methods"][0]["symptom"], "few_samples");
-  const auto good = program("explain --method mppi,svg_mppi --json good.json");
-  for (const json& method : json::parse(testing::content(folder_ / "good.json"))["methods"])
-    EXPECT_EQ(method["symptom"], "none") << method["method"];
+  testing::expect_says(succeed("explain --method mppi --set temperature=1e-6 --json cold.json"),
+                       {"few_samples: the effective sample size is below 3"});
+  EXPECT_EQ(result("cold.json")["methods"][0]["symptom"], "few_samples");
+  succeed("explain --method mppi,svg_mppi --json good.json");
+  const json good = result("good.json");
+  for (const json& method : good["methods"]) EXPECT_EQ(method["symptom"], "none") << method["method"];
 }
 
 TEST_F(ExplainCommand, DrawsFiguresOfThePaper) {
   std::set<std::string> pictures;
   for (const std::string figure : {"1", "3", "4"}) {
-    const auto run = program("explain --figure " + figure + " --plot f" + figure + ".svg");
-    ASSERT_EQ(run.status, 0) << run.output;
+    succeed("explain --figure " + figure + " --plot f" + figure + ".svg");
     pictures.insert(testing::content(folder_ / ("f" + figure + ".svg")));
   }
   EXPECT_EQ(pictures.size(), 3u);

@@ -1,8 +1,4 @@
 // `slalom navigate`: a table, results in JSON, a picture; bad options are refused.
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
 #include "slalom/solvers/registry.hpp"
 #include "tools/program_test.hpp"
 
@@ -10,14 +6,14 @@ namespace slalom::tools {
 namespace {
 
 using testing::content;
+using testing::expect_says;
 
 class NavigateCommand : public testing::ProgramTest {};
 
 TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
-  const auto run = program(
+  const std::string said = succeed(
       "navigate --scenario no-way --seeds 2 --jobs 2 --json out.json --table out.md --pictures pictures");
-  ASSERT_EQ(run.status, 0) << run.output;
-  const auto results = nlohmann::json::parse(content(folder_ / "out.json"));
+  const auto results = result("out.json");
   ASSERT_EQ(results["results"].size(), 2u);
   for (const auto& row : results["results"]) {
     EXPECT_EQ(row["scenario"], "no-way");
@@ -28,22 +24,16 @@ TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
   EXPECT_EQ(results["results"][1]["driver"], "mppi");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures/no-way.png"));
   const std::string table = content(folder_ / "out.md");
-  EXPECT_NE(run.output.find(table), std::string::npos) << run.output;
-  EXPECT_NE(table.find("| `no-way` | `svg_mppi` | 2 of 2 (34 to 100 %) | 0 |"), std::string::npos) << table;
-  EXPECT_NE(table.find("| all | `svg_mppi` minus `mppi` | 0.000 [0.000, 0.000] |"), std::string::npos)
-      << table;
+  expect_says(said, {table});
+  expect_says(table, {"| `no-way` | `svg_mppi` | 2 of 2 (34 to 100 %) | 0 |",
+                      "| all | `svg_mppi` minus `mppi` | 0.000 [0.000, 0.000] |"});
 }
 
 TEST_F(NavigateCommand, DrivesWithEveryMethod) {
   std::string methods;
-  for (const char* name : solver_names()) {
-    methods += methods.empty() ? "" : ",";
-    methods += name;
-  }
-  const auto run =
-      program("navigate --scenario no-way --seeds 1 --jobs 2 --json out.json --methods " + methods);
-  ASSERT_EQ(run.status, 0) << run.output;
-  const auto results = nlohmann::json::parse(content(folder_ / "out.json"))["results"];
+  for (const char* name : solver_names()) methods += (methods.empty() ? "" : ",") + std::string(name);
+  succeed("navigate --scenario no-way --seeds 1 --jobs 2 --json out.json --methods " + methods);
+  const auto results = result("out.json")["results"];
   ASSERT_EQ(results.size(), solver_names().size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     EXPECT_EQ(results[i]["driver"], solver_names()[i]);

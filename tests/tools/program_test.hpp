@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -39,18 +41,37 @@ inline Run run_program(const std::string& arguments, const std::string& folder =
   return run_shell("'" SLALOM_PROGRAM "' " + arguments, folder);
 }
 
+inline bool contains(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+/// Expects that a text has each of these words.
+inline void expect_says(const std::string& text, const std::vector<std::string>& says) {
+  for (const std::string& words : says) EXPECT_TRUE(contains(text, words)) << words << " in " << text;
+}
+
 /// Base of tests that run the program in a folder of their own.
 class ProgramTest : public TemporaryFolder {
  protected:
   testing::Run program(const std::string& arguments) const {
     return run_program(arguments, folder_.string());
   }
-  /// The program ends with a status other than 0 and says each of these words.
-  void expect_refused(const std::string& arguments, const std::vector<std::string>& says) const {
+  /// The program ends with status 0; returns what it says.
+  std::string succeed(const std::string& arguments) const {
     const testing::Run run = program(arguments);
-    EXPECT_NE(run.status, 0) << arguments;
-    for (const auto& word : says)
-      EXPECT_NE(run.output.find(word), std::string::npos) << arguments << ": " << run.output;
+    EXPECT_EQ(run.status, 0) << arguments << ": " << run.output;
+    return run.output;
+  }
+  /// The program ends with this status, or with any but 0, and says each of these words.
+  void expect_refused(const std::string& arguments, const std::vector<std::string>& says,
+                      std::optional<int> status = {}) const {
+    const testing::Run run = program(arguments);
+    EXPECT_TRUE(status ? run.status == *status : run.status != 0) << arguments << ": " << run.status;
+    expect_says(run.output, says);
+  }
+  /// The JSON in a file of the folder.
+  nlohmann::json result(const std::string& file) const {
+    return nlohmann::json::parse(content(folder_ / file));
   }
 };
 

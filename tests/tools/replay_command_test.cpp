@@ -1,13 +1,13 @@
 // `slalom replay`: videos of recordings, and planners beside the driver of one.
 #include <cstdlib>
 
-#include "evaluation/json.hpp"
 #include "tools/program_test.hpp"
 
 namespace slalom::tools {
 namespace {
 
 using testing::content;
+using testing::expect_says;
 using testing::run_shell;
 
 class ReplayVideo : public testing::ProgramTest {
@@ -42,9 +42,8 @@ TEST_F(ReplayVideo, ShowsASpanOfARecording) {
   if (run_shell("command -v ffmpeg").status != 0) GTEST_SKIP() << "ffmpeg is not installed";
   constexpr std::size_t picture = 960 * 540 * 3;  // bytes
   for (const std::string name : {"span.gif", "span.webm"}) {
-    const auto run = program("replay lap.mcap --video " + name + " --from 2 --to 2.4 --speed 0.5");
-    ASSERT_EQ(run.status, 0) << run.output;
-    EXPECT_NE(run.output.find("20 pictures, 0.8 s"), std::string::npos) << run.output;
+    expect_says(succeed("replay lap.mcap --video " + name + " --from 2 --to 2.4 --speed 0.5"),
+                {"20 pictures, 0.8 s"});
     const std::string all = pixels(name);
     ASSERT_EQ(all.size(), 20 * picture) << name;
     const std::string_view first = std::string_view(all).substr(0, picture);
@@ -59,9 +58,7 @@ TEST_F(ReplayVideo, RefusesWhatItCannotWrite) {
   const auto run =
       run_shell("PATH=/nowhere '" SLALOM_PROGRAM "' replay lap.mcap --video lap.webm", folder_.string());
   EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.output.find("lap.webm: cannot be written: the program ffmpeg is not installed"),
-            std::string::npos)
-      << run.output;
+  expect_says(run.output, {"lap.webm: cannot be written: the program ffmpeg is not installed"});
   expect_refused("replay lap.mcap --video lap.avi", {"--video", "must end with .gif, .webm, .mp4 or .webp"});
   expect_refused("replay lap.mcap --video lap.gif --from 2 --to 1", {"--to: must be larger than --from"});
   expect_refused("replay lap.mcap --video lap.gif --from 999", {"--from: must be before the recording ends"});
@@ -74,20 +71,19 @@ TEST_F(ReplayVideo, RefusesWhatItCannotWrite) {
 using ReplayAgainst = testing::ProgramTest;
 
 TEST_F(ReplayAgainst, ComparesAPlannerWithTheDriver) {
-  ASSERT_EQ(program("drive --course wren --obstacles 2 --seed 3 --record-all --record lap.mcap").status, 0);
+  succeed("drive --course wren --obstacles 2 --seed 3 --record-all --record lap.mcap");
   const auto compared = [&](const std::string& more) {
-    const auto run = program("replay lap.mcap --against default --course wren --json all.json " + more);
-    EXPECT_EQ(run.status, 0) << run.output;
-    return parse_json(content(folder_ / "all.json"));
+    succeed("replay lap.mcap --against default --course wren --json all.json " + more);
+    return result("all.json");
   };
   // The same planner: the plans differ by their random numbers alone.
-  const Json same = compared("--plot plans.png");
+  const auto same = compared("--plot plans.png");
   EXPECT_GT(same["moments"].size(), 300u);
   EXPECT_EQ(same["status"]["ok"], same["moments"].size());
   EXPECT_LT(same["steering_rad"]["median"].get<double>(), 0.02);
   EXPECT_LT(same["speed_m_s"]["median"].get<double>(), 0.05);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "plans.png"));
-  const Json slow = compared("--set planner.max_speed=1");
+  const auto slow = compared("--set planner.max_speed=1");
   EXPECT_GT(slow["speed_m_s"]["median"].get<double>(), 1.5);
 
   expect_refused("replay lap.mcap --against default", {"--against", "--course"});
@@ -96,12 +92,9 @@ TEST_F(ReplayAgainst, ComparesAPlannerWithTheDriver) {
 }
 
 TEST_F(ReplayAgainst, NeedsAllScans) {
-  ASSERT_EQ(program("drive --course wren --set mppi.samples=100 --method mppi --record few.mcap").status, 0);
-  const auto run = program("replay few.mcap --against default --course wren");
-  EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.output.find("few.mcap: has only some of the scans; record the drive with --record-all"),
-            std::string::npos)
-      << run.output;
+  succeed("drive --course wren --set mppi.samples=100 --method mppi --record few.mcap");
+  expect_refused("replay few.mcap --against default --course wren",
+                 {"few.mcap: has only some of the scans; record the drive with --record-all"});
 }
 
 }  // namespace

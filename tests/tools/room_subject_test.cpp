@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/thrown_words.hpp"
+
 namespace slalom::tools {
 namespace {
 
@@ -117,12 +119,8 @@ TEST(RoomSubject, TheTrajectoryOfThePlanIsWhatTheSolverPredicts) {
 }
 
 TEST(RoomSubject, AnUnknownScenarioIsRefusedWithTheNames) {
-  try {
-    room_subject("nowhere", "svg_mppi", 1);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("crowd-crossing"), std::string::npos) << error.what();
-  }
+  expect_error_with<std::invalid_argument>({"crowd-crossing"},
+                                           [] { room_subject("nowhere", "svg_mppi", 1); });
 }
 
 }  // namespace
