@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/lidar/scan.hpp"
+#include "slalom/core/dispatch.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
@@ -119,7 +119,7 @@ void scan_1080(benchmark::State& state) {
     sum += static_cast<double>(ranges[540]);
   }
   if (!(sum > 0)) state.SkipWithError("nothing was seen");
-  state.SetLabel(detail::scan_kernels().name);
+  state.SetLabel(simd::name(simd::active_target()));
 }
 BENCHMARK(scan_1080);
 

@@ -17,17 +17,14 @@ class NumpyRandom {
   /// Same numbers as `numpy.random.default_rng(seed)`.
   explicit NumpyRandom(std::uint64_t seed) noexcept;
 
-  /// The next 64 bits of the stream.
-  std::uint64_t bits() noexcept;
+  std::uint64_t bits() noexcept;  ///< the next 64 bits of the stream
 
   /// A whole number in [0, count), count >= 1: Generator.integers(count), and the index of Generator.choice.
   std::uint32_t below(std::uint32_t count) noexcept;
 
-  /// Generator.uniform(low, high).
-  double uniform(double low, double high) noexcept;
+  double uniform(double low, double high) noexcept;  ///< Generator.uniform(low, high)
 
-  /// Generator.normal(0, 1).
-  double normal() noexcept;
+  double normal() noexcept;  ///< Generator.normal(0, 1)
 
   /// SeedSequence(seed).generate_state(4, uint64).
   static std::array<std::uint64_t, 4> seed_state(std::uint64_t seed) noexcept;

@@ -14,16 +14,14 @@ namespace slalom::sim {
 /// a step than the test covers. Track::collides_with_wall computes exact collisions.
 class TimeToCollision {
  public:
-  /// Computed for a scanner on a car.
-  TimeToCollision(const LidarOptions& lidar, const CarParameters& car);
+  TimeToCollision(const LidarOptions& lidar, const CarParameters& car);  ///< computed for a scanner on a car
 
   /// The first beam with a time to collision below the limit, -1 if there is none.
   int first_hit(std::span<const double> ranges, double speed) const noexcept;
 
   /// The way (m) from the centre of gravity to the car's outline, one per beam.
   std::span<const double> sides() const noexcept { return sides_; }
-  /// Cosines of the beam angles.
-  std::span<const double> cosines() const noexcept { return cosines_; }
+  std::span<const double> cosines() const noexcept { return cosines_; }  ///< cosines of the beam angles
 
  private:
   std::vector<double> cosines_, sides_;

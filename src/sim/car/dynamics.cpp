@@ -116,6 +116,25 @@ CarState integrate(const CarParameters& car, const DynamicsOptions& options, con
 
 }  // namespace
 
+CarParameters CarParameters::full_scale() {
+  CarParameters car;
+  car.cornering_front = car.cornering_rear = 20.898083706740398;
+  car.front_length = 1.1561957064;
+  car.rear_length = 1.4227170936;
+  car.gravity_height = 0.61373004;
+  car.mass = 1093.2952334674046;
+  car.inertia = 1791.5995300122856;
+  car.steer_min = -1.066;
+  car.steer_max = 1.066;
+  car.steer_rate_max = 0.4;
+  car.acceleration_max = 11.5;
+  car.speed_min = -13.6;
+  car.speed_max = 50.8;
+  car.length = 4.508;
+  car.width = 1.610;
+  return car;
+}
+
 double limit_steer_rate(const CarParameters& car, double steer, double rate) noexcept {
   if ((steer <= car.steer_min && rate <= 0) || (steer >= car.steer_max && rate >= 0)) return 0;
   return std::clamp(rate, -car.steer_rate_max, car.steer_rate_max);
@@ -158,8 +177,7 @@ CarState advance(const CarParameters& car, const DynamicsOptions& options, const
 int substeps(const CarParameters& car, const DynamicsOptions& options, double time_step) noexcept {
   if (options.substeps > 0) return options.substeps;
   if (options.model == Model::kinematic) return 1;
-  // The faster of the decays of yaw rate and slip where they are fastest, at the lowest speed of the tyre
-  // model.
+  // The faster of the decays of yaw rate and slip at the lowest speed of the tyre model.
   const double lf = car.front_length, lr = car.rear_length, length = car.wheelbase();
   const double front = car.cornering_front * gravity * lr, rear = car.cornering_rear * gravity * lf;
   const double scale = car.friction / (kinematic_below * length);

@@ -18,10 +18,7 @@ void WheelOdometry::reset(const CarState& state, const maps::Pose& start) noexce
 }
 
 void WheelOdometry::update(const CarState& state, double time_step) noexcept {
-  const bool usable = time_step > 0 && std::isfinite(time_step) && std::isfinite(state.speed) &&
-                      std::isfinite(state.steer) && std::isfinite(state.yaw_rate) &&
-                      std::isfinite(state.slip);
-  if (!usable) return;
+  if (!(time_step > 0) || !std::isfinite(time_step) || !state.is_finite()) return;
   const double acceleration = (state.speed - true_speed_) / time_step;
   true_speed_ = state.speed;
   // The speed along the body is that of the rear wheels; sideways slip turns no wheel.

@@ -48,10 +48,10 @@ struct Ziggurat {
     height[layers - 1] = density(tail);
     for (int i = layers - 2; i >= 1; --i) {
       const double edge = std::sqrt(-2 * std::log(area / right + density(right)));
-      inside[static_cast<std::size_t>(i) + 1] = saturate_cast<std::uint64_t>(edge / right * scale);
+      inside[i + 1] = saturate_cast<std::uint64_t>(edge / right * scale);
       right = edge;
-      height[static_cast<std::size_t>(i)] = density(right);
-      width[static_cast<std::size_t>(i)] = right / scale;
+      height[i] = density(right);
+      width[i] = right / scale;
     }
   }
   static double density(double x) { return std::exp(-0.5 * x * x); }
@@ -136,7 +136,7 @@ double NumpyRandom::normal() noexcept {
     drawn >>= 8;
     const bool negative = drawn & 1;
     const std::uint64_t along = (drawn >> 1) & 0x000fffffffffffffull;
-    const double x = static_cast<double>(along) * table.width[layer] * (negative ? -1 : 1);
+    const double x = along * table.width[layer] * (negative ? -1 : 1);
     if (along < table.inside[layer]) return x;
     if (layer == 0) {
       while (true) {
