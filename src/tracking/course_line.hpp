@@ -8,12 +8,10 @@
 
 namespace slalom::tracking {
 
-/// A course as arc length and offset: points at equal distances along it, so that a look-up takes the same
-/// time anywhere.
+/// A course as arc length and offset: points at equal distances along it, for fast look-ups.
 class CourseLine {
  public:
-  /// No course.
-  CourseLine() = default;
+  CourseLine() = default;  ///< no course
   /// Through at least 3 points. It is closed if its ends are not much farther apart than its points.
   explicit CourseLine(std::span<const maps::ReferencePoint> points);
 

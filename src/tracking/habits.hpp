@@ -42,7 +42,7 @@ class Habits {
 
  private:
   std::size_t cell(double arc) const noexcept {
-    const double length = spacing_ * static_cast<double>(cells_.size());
+    const double length = spacing_ * cells_.size();
     const double wrapped = arc - length * std::floor(arc / length);
     return std::min(saturate_cast<std::size_t>(wrapped / spacing_), cells_.size() - 1);
   }

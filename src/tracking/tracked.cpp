@@ -108,8 +108,7 @@ void Tracked::correct_new(const TrackerOptions& options, const Readings& scan,
 void Tracked::correct_size(const AxisMeasurement (&axes)[2], double deviation) noexcept {
   for (int i = 0; i < 2; ++i) {
     if (axes[i].size <= 0) continue;
-    // Ends are biased the same way in many scans, so a measurement counts little and the variance has a
-    // floor.
+    // Ends are biased the same way in many scans, so a measurement counts little, and the variance stays.
     const double variance = 4 * axes[i].variance + square(2 * deviation);
     const double gain = size_variance_[i] / (size_variance_[i] + variance);
     size_[i] = std::max(deviation, size_[i] + gain * (axes[i].size - size_[i]));
@@ -229,8 +228,6 @@ TrackedObject Tracked::object() const noexcept {
                        .yaw_rate = state.mean[4],
                        .length = size_[0],
                        .width = size_[1],
-                       .length_deviation = std::sqrt(size_variance_[0]),
-                       .width_deviation = std::sqrt(size_variance_[1]),
                        .unseen = unseen_};
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j < 5; ++j) object.covariance[i][j] = state.covariance[i][j];

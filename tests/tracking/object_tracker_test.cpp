@@ -206,9 +206,7 @@ std::set<int> objects_of_an_empty_ring(ObjectTracker& tracker, double noise, dou
     // The noise is cut at 0, so it is drawn about 1.
     std::fill(errors.begin(), errors.end(), 1.0F);
     random.add(errors, 3, 1.0 / 8, 2, 0);
-    const auto error = [&](int i) {
-      return 8 * (static_cast<double>(errors[static_cast<std::size_t>(i)]) - 1);
-    };
+    const auto error = [&](int i) { return 8 * (errors[i] - 1.0); };
     const maps::Pose believed{sensor.x + position_error * error(0), sensor.y + position_error * error(1),
                               sensor.yaw + yaw_error * error(2)};
     const TrackerOutput& out =

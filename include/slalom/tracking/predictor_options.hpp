@@ -19,16 +19,12 @@ struct PredictorOptions {
   double drift_deviation = 0.1;
   double memory = 0.3;
   double forgetting = 0.15;
-
-  /// Throws std::invalid_argument naming the option, its value and the rule.
-  void validate() const { validate_options(*this, "predictor"); }
 };
 
 template <class Options, class Visit>
 requires is_options_of<Options, PredictorOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.max_objects,
-        {"max_objects", "", "objects that are predicted: those that have been tracked longest", 1, 256});
+  visit(o.max_objects, {"max_objects", "", "objects that are predicted: those tracked longest", 1, 256});
   visit(o.horizon, {"horizon", "s", "duration of a prediction", 0.1, 20});
   visit(o.interval, {"interval", "s", "time from one pose of a prediction to the next", 0.01, 1});
   visit(o.min_speed, {"min_speed", "m/s", "speed below which objects are not predicted", 0, 100});
