@@ -8,7 +8,6 @@
 #include "slalom/maps/laser_scan.hpp"
 
 namespace slalom::navigation {
-
 namespace {
 
 /// Calls `visit` with column and row of the cell at a position, if there is one.

@@ -33,8 +33,7 @@ struct Hall {
       : grid{3 + adversary.below(200), 3 + adversary.below(200), adversary.within(0.02, 0.2), {}, {}},
         costmap(grid.width, grid.height, grid.resolution, static_cast<UnknownCells>(adversary.below(2))) {
     grid.origin = {adversary.within(-5, 1), adversary.within(-5, 1), 0};
-    grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
-                      maps::Occupancy::free);
+    grid.cells.assign(grid.width * grid.height, maps::Occupancy::free);
     for (int left = adversary.below(6); left >= 0; --left) {
       const double x = adversary.within(-2, 2), y = adversary.within(-2, 2);
       add(x, y, x + adversary.within(0, 2), y + adversary.within(0, 2),
@@ -80,7 +79,7 @@ struct NavigatorTally {
 
 /// Sets any path. Throws Finding.
 inline void set_any_path(testing::Adversary& adversary, Navigator& navigator, bool hostile) {
-  std::vector<maps::Pose> points(static_cast<std::size_t>(adversary.below(12)));
+  std::vector<maps::Pose> points(adversary.below(12));
   const double reach = adversary.once_in(4) ? 30 : 2;
   const auto value = [&] { return hostile ? adversary.any(-reach, reach) : adversary.within(-reach, reach); };
   for (maps::Pose& point : points) point = {value(), value(), value()};
