@@ -176,8 +176,6 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
                                                   double elapsed) const noexcept {
   NavigationResult result;
   result.status = status;
-  result.remaining = way_.remaining();
-  result.path = way_.points();
   if (!plausible(velocity)) return result;
   result.command = braked(velocity, options_.base, std::clamp(elapsed, 0.0, max_period));
   return result;
@@ -233,9 +231,7 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
     result.command = model_->command();
     result.status = way_.is_detour() ? NavigationStatus::detour : NavigationStatus::following;
   }
-  result.remaining = way_.remaining();
   result.plan = model_->plan();
-  result.path = way_.points();
   return result;
 }
 
@@ -261,6 +257,8 @@ NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& veloc
   check_result(result, own.options_.base);
   result.command = own.command_ = own.delay_.send(result.command);
   result.delay = own.delay_.longest();
+  result.remaining = own.way_.remaining();
+  result.path = own.way_.points();
   return result;
 }
 

@@ -58,9 +58,7 @@ TEST_P(Fuzz, TakesItsSeeds) {
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     EXPECT_LE(seeds[i].size(), GetParam()->max_bytes);
     const bool valid = run(seeds[i], "seed " + std::to_string(i));
-    if (i == 0) {
-      EXPECT_TRUE(valid);
-    }
+    EXPECT_TRUE(valid || i > 0);
   }
 }
 

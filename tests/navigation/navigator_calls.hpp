@@ -28,7 +28,9 @@ inline SvgMppiOptions few_samples(const BaseOptions& base) {
 
 /// 4 m x 4 m around the origin with a box in it, or any map.
 struct Hall {
-  Hall() : Hall(UnknownCells::obstacle) { add(0.5, -0.5, 1, 0.5, maps::Occupancy::occupied); }
+  Hall() : grid(free_grid(-2, -2, 4, 4)), costmap(grid.width, grid.height, grid.resolution) {
+    add(0.5, -0.5, 1, 0.5, maps::Occupancy::occupied);
+  }
   explicit Hall(testing::Adversary& adversary)
       : grid{3 + adversary.below(200), 3 + adversary.below(200), adversary.within(0.02, 0.2), {}, {}},
         costmap(grid.width, grid.height, grid.resolution, static_cast<UnknownCells>(adversary.below(2))) {
@@ -39,10 +41,6 @@ struct Hall {
       add(x, y, x + adversary.within(0, 2), y + adversary.within(0, 2),
           static_cast<maps::Occupancy>(adversary.below(3)));
     }
-  }
-  explicit Hall(UnknownCells unknown)
-      : grid(free_grid(-2, -2, 4, 4)), costmap(grid.width, grid.height, grid.resolution, unknown) {
-    costmap.update(grid);
   }
   void add(double x0, double y0, double x1, double y1, maps::Occupancy value) {
     fill(grid, x0, y0, x1, y1, value);

@@ -28,7 +28,6 @@ class Scene {
     ranges_.resize(lidar_.padded_beams());
   }
 
-  static maps::Pose on_ring(double angle, double radius = 5.5) { return testing::on_ring(angle, radius); }
   static sim::Box car(const maps::Pose& pose) { return {pose, length, width}; }
 
   /// The scan from `sensor`; valid until the next one.

@@ -49,10 +49,9 @@ TEST(TrackerCheck, OutputsAreFiniteForAnyInput) {
 
 /// Objects with numbers that no tracker reports.
 TEST(TrackerCheck, PredictionsAreFiniteForAnyObject) {
-  const long calls = testing::repetitions(5000);
   Predictor predictors[] = {Predictor(course()), Predictor()};
-  for (std::uint64_t seed = 0; static_cast<long>(seed) < calls; ++seed) {
-    testing::Adversary adversary(seed);
+  long made = 0;
+  testing::try_adversaries(testing::repetitions(5000), made, [&](testing::Adversary& adversary, auto) {
     TrackedObject objects[3];
     int id = 0;
     for (TrackedObject& each : objects) {
@@ -64,14 +63,9 @@ TEST(TrackerCheck, PredictionsAreFiniteForAnyObject) {
       each.width = adversary.any(0, 2);
       for (int i = 0; i < 5; ++i) each.covariance[i][i] = adversary.any(0, 0.1);
     }
-    for (Predictor& predictor : predictors) {
-      try {
-        check(predictor.update(objects, adversary.any(0, 10)));
-      } catch (const testing::Finding& finding) {
-        FAIL() << "seed " << seed << ": " << finding.what();
-      }
-    }
-  }
+    for (Predictor& predictor : predictors) check(predictor.update(objects, adversary.any(0, 10)));
+    ++made;
+  });
 }
 
 TEST(AllocationFailure, ATrackerAndAPredictorAreMadeOrThrow) {

@@ -12,10 +12,6 @@
 
 namespace slalom::sim {
 
-namespace detail {
-struct ScanKernels;
-}
-
 /// Options of a LiDAR scanner on a car. `visit_options` below describes the fields.
 struct LidarOptions {
   int beams = 1080;
@@ -98,7 +94,6 @@ class Lidar {
   std::vector<double> angles_;
   std::vector<float> cosines_, sines_;            ///< cosines and sines of the angles, padded
   std::vector<float> cone_cosines_, cone_sines_;  ///< the same of the middles of cones of beams, padded
-  const detail::ScanKernels* kernels_;
 };
 
 /// A stream of normal noise for each (seed, car). The values of call n do not depend on other streams, and

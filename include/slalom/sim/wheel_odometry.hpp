@@ -51,8 +51,7 @@ class WheelOdometry {
   /// Throws std::invalid_argument on options out of range.
   explicit WheelOdometry(const CarParameters& car = {}, const WheelOdometryOptions& options = {});
 
-  /// Starts again; the first pose of the odometry is `start`.
-  void reset(const CarState& state, const maps::Pose& start = {}) noexcept;
+  void reset(const CarState& state) noexcept;  ///< starts again at the origin
 
   /// Moves the odometry. Call it after each step of `time_step` (s) with the state reached. A time step that
   /// is not above 0 and a state that is not finite change nothing.

@@ -10,9 +10,9 @@ WheelOdometry::WheelOdometry(const CarParameters& car, const WheelOdometryOption
   validate_options(options_, "wheel_odometry");
 }
 
-void WheelOdometry::reset(const CarState& state, const maps::Pose& start) noexcept {
+void WheelOdometry::reset(const CarState& state) noexcept {
   random_ = RandomStream({options_.seed, 0});
-  pose_ = start;
+  pose_ = {};
   speed_ = true_speed_ = state.speed;
   yaw_rate_ = 0;
 }

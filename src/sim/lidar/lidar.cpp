@@ -35,7 +35,8 @@ LidarOptions LidarOptions::hokuyo_utm_30lx() {
   return options;
 }
 
-Lidar::Lidar(const LidarOptions& options) : options_(options), kernels_(&detail::scan_kernels()) {
+Lidar::Lidar(const LidarOptions& options) : options_(options) {
+  detail::scan_kernels();  // which may throw
   validate_options(options, "lidar");
   for (const auto& [name, value] : {std::pair("mount.x", options.mount.x), {"mount.y", options.mount.y}})
     slalom::detail::check("lidar", {name, "m", "", -100, 100}, value);
@@ -72,7 +73,7 @@ void Lidar::scan(const Track& track, const maps::Pose& sensor, std::span<float> 
     return;
   }
   const double yaw = sensor.yaw - grid.origin.yaw;
-  kernels_->walls(
+  detail::scan_kernels().walls(
       {.clearance = track.clearance().data(),
        .stride = track.clearance_stride(),
        .x = static_cast<float>(cell.x + 1),

@@ -50,18 +50,18 @@ void Lidar::cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ra
 void Lidar::cast_body(const maps::Pose& sensor, double half_length, double half_width, double radius,
                       Window beams, std::span<float> ranges) const noexcept {
   if (beams.first > beams.last) return;
-  kernels_->cast({.x = static_cast<float>(sensor.x),
-                  .y = static_cast<float>(sensor.y),
-                  .cosine = static_cast<float>(std::cos(sensor.yaw)),
-                  .sine = static_cast<float>(std::sin(sensor.yaw)),
-                  .cosines = cosines_.data(),
-                  .sines = sines_.data(),
-                  .half_length = static_cast<float>(half_length),
-                  .half_width = static_cast<float>(half_width),
-                  .radius = static_cast<float>(radius),
-                  .first = beams.first,
-                  .last = beams.last,
-                  .ranges = ranges.data()});
+  detail::scan_kernels().cast({.x = static_cast<float>(sensor.x),
+                               .y = static_cast<float>(sensor.y),
+                               .cosine = static_cast<float>(std::cos(sensor.yaw)),
+                               .sine = static_cast<float>(std::sin(sensor.yaw)),
+                               .cosines = cosines_.data(),
+                               .sines = sines_.data(),
+                               .half_length = static_cast<float>(half_length),
+                               .half_width = static_cast<float>(half_width),
+                               .radius = static_cast<float>(radius),
+                               .first = beams.first,
+                               .last = beams.last,
+                               .ranges = ranges.data()});
 }
 
 }  // namespace slalom::sim
