@@ -188,7 +188,6 @@ void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Ot
   closed_.end_meeting();
 }
 
-/// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
 bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& others,
                double elapsed) noexcept {
   watch_progress(pose, costmap, others, elapsed);

@@ -6,7 +6,6 @@
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor_options.hpp"
 #include "tracking/course_line.hpp"
-#include "tracking/habits.hpp"
 
 namespace slalom::tracking {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "navigation/closed_places.hpp"
 #include "navigation/grids.hpp"
+#include "navigation/way.hpp"
 
 namespace slalom::navigation {
 namespace {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/golden_table.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/laps.hpp"
-#include "slalom/sim/numpy_random.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/shapes.hpp"

@@ -4,7 +4,7 @@
 
 #include "sim/golden_table.hpp"
 #include "sim/gym_world.hpp"
-#include "slalom/sim/time_to_collision.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/world.hpp"
 
 namespace slalom::sim {

@@ -41,8 +41,7 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.heading, {"heading", "1/s", "weight of 1 - cos(yaw error) to the path", 0, 1e6});
   visit(o.clearance,
         {"clearance", "1/s", "cost of touching an obstacle; near the goal it falls to 0", 0, 1e6});
-  visit(o.clearance_falloff, {"clearance_falloff", "1/m",
-                              "rate at which the cost `clearance` falls with the distance", 0.01, 1000});
+  visit(o.clearance_falloff, {"clearance_falloff", "1/m", "fall of `clearance` with distance", 0.01, 1000});
   visit(o.reverse, {"reverse", "1/m", "weight of the speed of reversing", 0, 1e6});
   visit(o.sideways, {"sideways", "1/m", "weight of the speed to either side", 0, 1e6});
   visit(o.turning, {"turning", "s/rad^2", "weight of the squared yaw rate", 0, 1e6});
@@ -55,12 +54,8 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.collision, {"collision", "1/s", "cost of overlapping an obstacle or a moving object", 0, 1e6});
   visit(o.others_margin, {"others_margin", "m", "distance to a moving object that is a collision", 0, 10});
   visit(o.others_reach, {"others_reach", "m", "distance beyond others_margin where nearness costs", 0, 10});
-  visit(o.others,
-        {"others", "1/s", "cost at a distance of others_margin from a moving object; falls off as the square",
-         0, 1e6});
-  visit(o.others_probability,
-        {"others_probability", "",
-         "probability of a collision with a moving object above which a state collides", 0, 1});
+  visit(o.others, {"others", "1/s", "cost at others_margin from an object; falls as the square", 0, 1e6});
+  visit(o.others_probability, {"others_probability", "", "probability at which a state collides", 0, 1});
 }
 
 }  // namespace slalom::navigation

@@ -31,8 +31,7 @@ MppiOptions mppi_options(const BaseOptions& base);
 /// lists the names if the method is unknown.
 SolverOptions method_options(std::string_view method, const BaseOptions& base);
 
-/// Options of a Navigator, besides those of its solver.
-/// `visit_options` below describes the fields.
+/// Options of a Navigator, besides those of its solver. `visit_options` below describes the fields.
 struct NavigatorOptions {
   BaseOptions base{};   ///< limits of the base
   CostOptions costs{};  ///< weights of the cost of a plan
@@ -58,10 +57,7 @@ void visit_options(Options& o, Visit&& visit) {
         {"find_detours", "", "search a way around where the path is blocked; report if none"});
   visit(o.look_ahead, {"look_ahead", "m", "length of path that is checked for obstacles", 0, 100});
   visit(o.patience, {"patience", "s", "time without a way before the robot stops, as blocked", 0, 60});
-  visit(o.stuck_after,
-        {"stuck_after", "s",
-         "time without progress after which the robot tries another way; after five of them it is stuck", 0.1,
-         3600});
+  visit(o.stuck_after, {"stuck_after", "s", "time without progress until it tries another way", 0.1, 3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
 }
 

@@ -44,10 +44,8 @@ void visit_options(Options& o, Visit&& visit) {
         {"cornering_front", "1/rad", "cornering stiffness over load, front axle", least, most, "C_Sf"});
   visit(o.cornering_rear,
         {"cornering_rear", "1/rad", "cornering stiffness over load, rear axle", least, most, "C_Sr"});
-  visit(o.front_length,
-        {"front_length", "m", "distance from the centre of gravity to the front axle", least, most, "l_f"});
-  visit(o.rear_length,
-        {"rear_length", "m", "distance from the centre of gravity to the rear axle", least, most, "l_r"});
+  visit(o.front_length, {"front_length", "m", "centre of gravity to the front axle", least, most, "l_f"});
+  visit(o.rear_length, {"rear_length", "m", "centre of gravity to the rear axle", least, most, "l_r"});
   visit(o.gravity_height, {"gravity_height", "m", "height of the centre of gravity", 0, 10, "h"});
   visit(o.mass, {"mass", "kg", "mass of a car", least, most, "m"});
   visit(o.inertia, {"inertia", "kg m^2", "moment of inertia about the vertical axis", least, most, "I_z"});

@@ -37,8 +37,7 @@ requires is_options_of<Options, LidarOptions>
 void visit_options(Options& o, Visit&& visit) {
   visit(o.beams, {"beams", "", "number of beams of the LiDAR", 1, 100000});
   visit(o.field_of_view,
-        {"field_of_view", "rad", "angle from the first beam to the last, which lie evenly about the axis", 0,
-         2 * std::numbers::pi});
+        {"field_of_view", "rad", "angle between the outermost beams", 0, 2 * std::numbers::pi});
   visit(o.range_max, {"range_max", "m", "longer ranges read range_max", 1e-3, 1e4});
   visit(o.noise, {"noise", "m", "standard deviation of each range", 0, 100});
   visit(o.dropout, {"dropout", "", "fraction of beams without a return: range_max", 0, 1});

@@ -6,8 +6,8 @@
 
 #include "slalom/maps/command.hpp"
 #include "slalom/maps/pose.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/lidar.hpp"
-#include "slalom/sim/numpy_random.hpp"
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/track.hpp"
 

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "slalom/maps/laser_scan.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/laps.hpp"
 #include "slalom/sim/lidar.hpp"
-#include "slalom/sim/numpy_random.hpp"
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/shapes.hpp"
-#include "slalom/sim/time_to_collision.hpp"
 #include "slalom/sim/track.hpp"
 
 /// A 2D world of cars with LiDAR on a track:

@@ -26,18 +26,23 @@ struct Table {
   }
 };
 
+/// As Track::gym_distance, which the compiler does not inline.
+double distance_at(const Track& track, const maps::Point& point) {
+  const maps::Point cell = track.to_cells(point);
+  if (!track.contains(cell)) return track.distance().distance.back();
+  return track.distance().at(saturate_cast<int>(cell.x), saturate_cast<int>(cell.y));
+}
+
 }  // namespace
 
 double Track::gym_distance(const maps::Point& point) const noexcept {
-  const maps::Point cell = to_cells(point);
-  if (!contains(cell)) return distance_.distance.back();
-  return distance_.at(saturate_cast<int>(cell.x), saturate_cast<int>(cell.y));
+  return distance_at(*this, point);
 }
 
 void Lidar::gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept {
   static const Table table;
   constexpr double close_enough = 1e-4;  // m, to a wall
-  const double from_start = track.gym_distance({sensor.x, sensor.y});
+  const double from_start = distance_at(track, {sensor.x, sensor.y});
   const double increment = table_size * options_.angle_increment() / (2 * pi);
   double index = std::fmod(table_size * (sensor.yaw + options_.angle_min()) / (2 * pi), table_size);
   while (index < 0) index += table_size;
@@ -48,7 +53,7 @@ void Lidar::gym_scan(const Track& track, const maps::Pose& sensor, std::span<dou
     while (step > close_enough && total <= options_.range_max) {
       x += step * table.cosine[entry];
       y += step * table.sine[entry];
-      step = track.gym_distance({x, y});
+      step = distance_at(track, {x, y});
       total += step;
     }
     range = std::min(total, options_.range_max);
