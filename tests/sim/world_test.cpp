@@ -276,12 +276,8 @@ TEST(World, RejectsInvalidOptions) {
   EXPECT_THROW(World({}, nullptr), std::invalid_argument);
   refuses([](WorldOptions& o) { o.lidar.mount.x = 101; });
   refuses([](WorldOptions& o) { o.lidar.mount.yaw = nan; });
-  refuses([](WorldOptions& o) { o.time_step = 0; });
-  refuses([](WorldOptions& o) { o.time_step = -0.01; });
-  refuses([](WorldOptions& o) { o.time_step = 0.5; });
-  refuses([](WorldOptions& o) { o.time_step = nan; });
-  refuses([](WorldOptions& o) { o.lidar.beams = 0; });
-  refuses([](WorldOptions& o) { o.lidar.beams = 2000000000; });
+  for (const double step : {0.0, -0.01, 0.5, nan}) refuses([&](WorldOptions& o) { o.time_step = step; });
+  for (const int beams : {0, 2000000000}) refuses([&](WorldOptions& o) { o.lidar.beams = beams; });
   refuses([](WorldOptions& o) { o.lidar.field_of_view = 7; });
   refuses([](WorldOptions& o) { o.lidar.range_max = 0; });
   refuses([](WorldOptions& o) { o.lidar.noise = -1; });
@@ -300,8 +296,7 @@ TEST(Track, RejectsInvalidMaps) {
   };
   refuses([](auto& grid) { grid.width = 0; });
   refuses([](auto& grid) { grid.height = -3; });
-  refuses([](auto& grid) { grid.resolution = 0; });
-  refuses([](auto& grid) { grid.resolution = nan; });
+  for (const double resolution : {0.0, nan}) refuses([&](auto& grid) { grid.resolution = resolution; });
   refuses([](auto& grid) { grid.origin.yaw = nan; });
   refuses([](auto& grid) { grid.cells.pop_back(); });
   refuses([](auto& grid) { grid.cells.assign(grid.cells.size(), maps::Occupancy::occupied); });
