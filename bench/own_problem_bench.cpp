@@ -34,7 +34,7 @@ struct HandTuned {
   }
 };
 
-SLALOM_TARGET_AVX2 void hand_tuned_avx2(const SequenceBatch& batch, float* costs) {
+SLALOM_ISA_AVX2 SLALOM_TARGET_GENERIC void hand_tuned_avx2(const SequenceBatch& batch, float* costs) {
   using V = Pack<simd::Avx2>;
   const HandTuned<simd::Avx2> h;
   const V hundred(100.0f), tenth(0.1f), five(5.0f), zero(0.0f);

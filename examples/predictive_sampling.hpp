@@ -47,7 +47,6 @@ class PredictiveSampling final : public slalom::SolverBase {
         costs_(batch_.stride()),
         collided_(static_cast<std::size_t>(batch_.stride())),
         plan_(size()),
-        shifted_(size()),
         deviation_(spread(options.variance)) {
     for (float& d : deviation_) d = std::sqrt(d);
     PredictiveSampling::reset(options.seed);
@@ -71,10 +70,7 @@ class PredictiveSampling final : public slalom::SolverBase {
                                    const slalom::SolveRequest& request) noexcept override {
     const auto start = slalom::Deadline::Clock::now();
     const slalom::Deadline deadline(start, request.deadline);
-    const double shift = slalom::warm_start_shift(evaluator, request);
-    slalom::shift_sequence(plan_.data(), horizon(), inputs(), shift,
-                           shifted_.data());  // holds the last input
-    plan_.swap(shifted_);
+    move_forward(plan_.data(), slalom::warm_start_shift(evaluator, request));  // holds the last input
 
     slalom::fill_normal(batch_, 0, batch_.stride(), key(0));
     next_solve();
@@ -88,7 +84,6 @@ class PredictiveSampling final : public slalom::SolverBase {
         evaluate(evaluator, batch_, deadline, costs_.data(), collided_.data());
     if (outcome.finite > 0) batch_.get_sample(outcome.best, plan_);  // otherwise the last plan, shifted
     result_.status = outcome.status();
-    result_.inputs = result_.mean = plan_;
     result_.minimum_cost = static_cast<double>(costs_[outcome.best]);
     result_.times.total = std::chrono::duration<double>(slalom::Deadline::Clock::now() - start).count();
     return result_;
@@ -98,7 +93,7 @@ class PredictiveSampling final : public slalom::SolverBase {
   slalom::SequenceBatch batch_;
   slalom::AlignedBuffer costs_;
   std::vector<std::uint8_t> collided_;
-  std::vector<float> plan_, shifted_, deviation_;  // [step][input]
+  std::vector<float> plan_, deviation_;  // [step][input]
 };
 
 inline std::unique_ptr<slalom::Solver> make_solver(const PredictiveSamplingOptions& options, int inputs,

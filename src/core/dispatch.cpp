@@ -1,27 +1,18 @@
 #include "slalom/core/dispatch.hpp"
 
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 
 namespace slalom::simd {
 
 const char* name(Target target) noexcept {
-  switch (target) {
-    case Target::avx512:
-      return "avx512";
-    case Target::avx2:
-      return "avx2";
-    case Target::sse4:
-      return "sse4";
-    case Target::generic:
-      break;
-  }
 #if defined(__aarch64__)
-  return "neon";
+  constexpr const char* baseline = "neon";
 #else
-  return "generic";
+  constexpr const char* baseline = "generic";
 #endif
+  constexpr const char* names[] = {baseline, "sse4", "avx2", "avx512"};
+  return names[static_cast<int>(target)];
 }
 
 bool supported(Target target) noexcept {

@@ -15,12 +15,9 @@ namespace {
   throw std::invalid_argument("mlp: " + what);
 }
 
-std::string count_text(std::size_t has, std::size_t must) {
-  return "has " + std::to_string(has) + " values, must have " + std::to_string(must);
-}
-
 void check_values(const std::vector<double>& values, std::size_t count, const std::string& name) {
-  if (values.size() != count) reject(name + ": " + count_text(values.size(), count));
+  if (values.size() != count)
+    reject(name + ": has " + std::to_string(values.size()) + " values, must have " + std::to_string(count));
   for (const double v : values)
     if (!(std::abs(v) <= std::numeric_limits<float>::max()))
       reject(name + ": every value must be a finite float32");
@@ -64,7 +61,7 @@ void check(const MlpParameters& p, int inputs, int outputs) {
 }
 
 double entry(const std::vector<double>& values, int index, double otherwise) {
-  return values.empty() ? otherwise : values[static_cast<std::size_t>(index)];
+  return values.empty() ? otherwise : values[index];
 }
 
 /// The layers with the normalisation of inputs and outputs in the first and the last one.
@@ -79,14 +76,14 @@ std::vector<MlpParameters::Layer> with_normalisation(const MlpParameters& p) {
     for (int column = 0; column < first.inputs; ++column) {
       double& w = weight(first, row, column);
       w /= entry(p.input_scale, column, 1);
-      first.biases[static_cast<std::size_t>(row)] -= w * entry(p.input_mean, column, 0);
+      first.biases[row] -= w * entry(p.input_mean, column, 0);
     }
   }
   auto& last = layers.back();
   for (int row = 0; row < last.outputs; ++row) {
     const double scale = entry(p.output_scale, row, 1);
     for (int column = 0; column < last.inputs; ++column) weight(last, row, column) *= scale;
-    double& bias = last.biases[static_cast<std::size_t>(row)];
+    double& bias = last.biases[row];
     bias = bias * scale + entry(p.output_mean, row, 0);
   }
   return layers;
@@ -112,7 +109,7 @@ MlpNetwork::MlpNetwork(const MlpParameters& parameters, int inputs, int outputs)
   layers_ = static_cast<int>(layers.size());
   sizes_[0] = inputs;
   for (int i = 0; i < layers_; ++i) {
-    const auto& layer = layers[static_cast<std::size_t>(i)];
+    const auto& layer = layers[i];
     sizes_[i + 1] = layer.outputs;
     store(layer, weights);
   }

@@ -33,8 +33,7 @@ class Bytes {
   std::uint64_t number(std::uint64_t at, int size) const {
     std::uint64_t value = 0;
     const std::string_view bytes = part(at, static_cast<std::uint64_t>(size));
-    for (int i = size; i-- > 0;)
-      value = value << 8 | static_cast<unsigned char>(bytes[static_cast<std::size_t>(i)]);
+    for (int i = size; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
     return value;
   }
   std::uint64_t size() const { return all_.size(); }

@@ -121,15 +121,8 @@ std::vector<double> numbers_of(std::string_view text) {
 }  // namespace
 
 const char* type_name(const OptionEntry& entry) {
-  struct Name {
-    const char* operator()(bool) const { return "flag"; }
-    const char* operator()(int) const { return "integer"; }
-    const char* operator()(std::uint64_t) const { return "integer"; }
-    const char* operator()(double) const { return "number"; }
-    const char* operator()(const std::vector<double>&) const { return "numbers"; }
-    const char* operator()(const std::string&) const { return "choice"; }
-  };
-  return std::visit(Name{}, entry.value);
+  constexpr const char* names[] = {"flag", "integer", "integer", "number", "numbers", "choice"};
+  return names[entry.value.index()];
 }
 
 std::string to_text(const OptionValue& value) {

@@ -38,7 +38,7 @@ struct FillNormal {
         float* to = block + sample;
         for (int i = 0; 2 * i < left && i < 4; ++i, to += 2 * stride) {
           F even, odd;
-          detail::normal_pair<F>(words[static_cast<std::size_t>(i)], even, odd);
+          detail::normal_pair<F>(words[i], even, odd);
           even.store(to);
           if (2 * i + 1 < left) odd.store(to + stride);
         }

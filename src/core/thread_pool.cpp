@@ -160,7 +160,7 @@ ThreadPool::ThreadPool(int threads) : threads_(threads) {
   }
   if (threads == 1) return;
   shared_ = std::make_unique<Shared>(threads);
-  shared_->workers.reserve(static_cast<std::size_t>(threads - 1));
+  shared_->workers.reserve(threads - 1);
   const auto serve = [shared = shared_.get()](std::size_t self) {
     std::uint32_t seen = 0;
     for (;;) {

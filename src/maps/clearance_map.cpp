@@ -12,13 +12,6 @@ namespace slalom::maps {
 
 namespace {
 
-GridGeometry geometry_of(const ClearanceMapOptions& options) {
-  validate_options(options, "clearance_map");
-  return {detail::cell_count("clearance_map.length_x", options.length_x, options.resolution),
-          detail::cell_count("clearance_map.length_y", options.length_y, options.resolution),
-          options.resolution, options.center_x, options.center_y};
-}
-
 /// Lowers cells to the distances from one point. Rows of distances have `width` values, a multiple of the
 /// padding; the values beyond the kernel are larger than any cell.
 struct Lower {
@@ -36,16 +29,18 @@ struct Lower {
 
 ClearanceMap::ClearanceMap(const ClearanceMapOptions& options)
     : options_(options),
-      geometry_(geometry_of(options)),
+      geometry_(detail::geometry_of(options, "clearance_map")),
       cells_(geometry_.rows, geometry_.columns),
       kernel_reach_(saturate_cast<int>(std::ceil(options.reach / options.resolution))) {
+  geometry_.center_x = options.center_x;
+  geometry_.center_y = options.center_y;
   const int width = 2 * kernel_reach_ + 1;
   kernel_width_ = padded(width);
   kernel_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(kernel_width_),
                  static_cast<float>(options.reach));
   for (int i = 0; i < width; ++i) {
     for (int j = 0; j < width; ++j) {
-      kernel_[static_cast<std::size_t>(i * kernel_width_ + j)] =
+      kernel_[i * kernel_width_ + j] =
           static_cast<float>(options.resolution * std::hypot(i - kernel_reach_, j - kernel_reach_));
     }
   }

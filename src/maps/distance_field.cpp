@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -53,7 +52,7 @@ DistanceTransform::DistanceTransform(int width, int height) : width_(width), hei
   if (width < 1 || height < 1)
     throw std::invalid_argument("distance transform: the grid must have width x height cells, at least one");
   vertical_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  envelope_.resize(static_cast<std::size_t>(width));
+  envelope_.resize(width);
 }
 
 /// Distance in cells to the nearest obstacle of the same column, by one sweep up and one down.
@@ -97,8 +96,8 @@ void DistanceTransform::evaluate(int count, double resolution, double* distance)
     return;
   }
   for (int k = 0, x = 0; x < width_; ++k) {
-    const Parabola& here = envelope_[static_cast<std::size_t>(k)];
-    const double end = k + 1 < count ? envelope_[static_cast<std::size_t>(k + 1)].start : width_;
+    const Parabola& here = envelope_[k];
+    const double end = k + 1 < count ? envelope_[k + 1].start : width_;
     const std::int64_t site = here.site, height = here.height;
     for (; x < width_ && x <= end; ++x) {
       distance[x] = resolution * std::sqrt(static_cast<double>((x - site) * (x - site) + height));

@@ -48,13 +48,13 @@ bool GridSearch::reached(int cell) const noexcept {
 void GridSearch::spread(int from) noexcept {
   std::fill(costs_.begin(), costs_.end(), unreached);
   queue_.assign(1, {0, from});
-  costs_[static_cast<std::size_t>(from)] = 0;
-  previous_[static_cast<std::size_t>(from)] = -1;
+  costs_[from] = 0;
+  previous_[from] = -1;
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end());
     const Reached here = queue_.back();
     queue_.pop_back();
-    if (here.cost > costs_[static_cast<std::size_t>(here.cell)]) continue;
+    if (here.cost > costs_[here.cell]) continue;
     const int column = here.cell % columns_, row = here.cell / columns_;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
@@ -77,12 +77,12 @@ void GridSearch::spread(int from) noexcept {
 /// the line may go along an obstacle, but not nearer to it.
 bool GridSearch::is_clear(int from, int to) const noexcept {
   const Point a = centre_of(from), b = centre_of(to);
-  const float most = std::max(prices_[static_cast<std::size_t>(from)], prices_[static_cast<std::size_t>(to)]);
+  const float most = std::max(prices_[from], prices_[to]);
   const int steps = saturate_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (0.5 * cell_size_)));
   for (int i = 1; i < steps; ++i) {
     const double share = static_cast<double>(i) / steps;
     const int cell = cell_at({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
-    const float price = cell < 0 ? 0 : prices_[static_cast<std::size_t>(cell)];
+    const float price = cell < 0 ? 0 : prices_[cell];
     if (!(price > 0) || price > most) return false;
   }
   return true;
@@ -90,7 +90,7 @@ bool GridSearch::is_clear(int from, int to) const noexcept {
 
 std::span<const Point> GridSearch::path_to(int goal, double spacing) noexcept {
   corners_.clear();
-  for (int cell = goal; cell >= 0; cell = previous_[static_cast<std::size_t>(cell)]) corners_.push_back(cell);
+  for (int cell = goal; cell >= 0; cell = previous_[cell]) corners_.push_back(cell);
   std::reverse(corners_.begin(), corners_.end());
   path_.clear();
   for (std::size_t at = 0; at + 1 < corners_.size() && path_.size() < max_points_;) {
@@ -118,10 +118,10 @@ void GridSearch::smooth() noexcept {
       const int reach = std::min({smoothing_reach, i, count - 1 - i});
       Point sum{0, 0};
       for (int k = i - reach; k <= i + reach; ++k) {
-        sum.x += path_[static_cast<std::size_t>(k)].x;
-        sum.y += path_[static_cast<std::size_t>(k)].y;
+        sum.x += path_[k].x;
+        sum.y += path_[k].y;
       }
-      smoothed_[static_cast<std::size_t>(i)] = {sum.x / (2 * reach + 1), sum.y / (2 * reach + 1)};
+      smoothed_[i] = {sum.x / (2 * reach + 1), sum.y / (2 * reach + 1)};
     }
     path_.swap(smoothed_);
   }

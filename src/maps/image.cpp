@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
@@ -150,15 +149,6 @@ GreyImage read_png(const std::filesystem::path& path) {
   return image;
 }
 
-void write_png(const GreyImage& image, const std::filesystem::path& path) {
-  Png png;
-  png.width = static_cast<png_uint_32>(image.width);
-  png.height = static_cast<png_uint_32>(image.height);
-  png.format = PNG_FORMAT_GRAY;
-  if (!png_image_write_to_file(&png, path.c_str(), 0, image.grey.data(), 0, nullptr))
-    throw IoError(path.string(), 0, std::string("the PNG cannot be written: ") + png.message);
-}
-
 }  // namespace
 
 GreyImage load_image(const std::filesystem::path& path) {
@@ -178,7 +168,12 @@ void save_png(const GreyImage& image, const std::filesystem::path& path) {
   if (image.grey.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
     throw std::invalid_argument("save_png: the image must have width x height pixels");
   }
-  write_png(image, path);
+  Png png;
+  png.width = static_cast<png_uint_32>(image.width);
+  png.height = static_cast<png_uint_32>(image.height);
+  png.format = PNG_FORMAT_GRAY;
+  if (!png_image_write_to_file(&png, path.c_str(), 0, image.grey.data(), 0, nullptr))
+    throw IoError(path.string(), 0, std::string("the PNG cannot be written: ") + png.message);
 }
 
 }  // namespace slalom::maps

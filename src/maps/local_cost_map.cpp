@@ -8,13 +8,6 @@
 namespace slalom::maps {
 namespace {
 
-GridGeometry geometry_of(const LocalCostMapOptions& options) {
-  options.validate();
-  return {detail::cell_count("length_x", options.length_x, options.resolution),
-          detail::cell_count("length_y", options.length_y, options.resolution), options.resolution,
-          options.center_x, options.center_y};
-}
-
 /// floor() of a cell coordinate, clamped to [low, high] first, since far positions would not fit an int;
 /// `low` for one that is not a number. Counted from `low` on, no number is negative, so that the conversion
 /// truncates downwards.
@@ -25,14 +18,12 @@ int clamped_floor(double cell, int low, int high) {
 
 }  // namespace
 
-void LocalCostMapOptions::validate() const {
-  validate_options(*this, "local_cost_map");
-  detail::cell_count("local_cost_map.length_x", length_x, resolution);
-  detail::cell_count("local_cost_map.length_y", length_y, resolution);
-}
-
 LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
-    : options_(options), geometry_(geometry_of(options)), cells_(geometry_.rows, geometry_.columns) {
+    : options_(options),
+      geometry_(detail::geometry_of(options, "local_cost_map")),
+      cells_(geometry_.rows, geometry_.columns) {
+  geometry_.center_x = options.center_x;
+  geometry_.center_y = options.center_y;
   const auto whole_cells = [&](double reach) {
     return saturate_cast<int>(std::ceil((reach + options.margin) / options.resolution));
   };
@@ -86,8 +77,8 @@ void LocalCostMap::set_beams(const LaserScanView& scan) noexcept {
   const bool same = scan.angle_min == beam_start_ && scan.angle_increment == beam_step_;
   for (int i = same ? beam_count_ : 0; i < count; ++i) {
     const double angle = scan.angle_min + i * scan.angle_increment + options_.laser.yaw;
-    beam_cos_[static_cast<std::size_t>(i)] = std::cos(angle);
-    beam_sin_[static_cast<std::size_t>(i)] = std::sin(angle);
+    beam_cos_[i] = std::cos(angle);
+    beam_sin_[i] = std::sin(angle);
   }
   beam_count_ = same ? std::max(count, beam_count_) : count;
   beam_start_ = scan.angle_min;

@@ -53,7 +53,7 @@ PredictedPose PredictedObstacle::at(int hypothesis, double time) const noexcept 
 
 MovingObstacles::MovingObstacles(const MovingObstacleOptions& options, int steps)
     : options_(options), steps_(steps) {
-  options.validate();
+  validate_options(options, "moving_obstacles");
   if (steps < 1)
     throw std::invalid_argument("moving_obstacles: steps: " + std::to_string(steps) + " must be >= 1");
   const auto times = static_cast<std::size_t>(steps) + 1;
@@ -81,7 +81,7 @@ void MovingObstacles::update(std::span<const PredictedObstacle> predicted, const
   for (const PredictedObstacle& each : predicted) {
     if (!usable(each)) continue;
     if (count < max_count) {
-      taken_[static_cast<std::size_t>(count++)] = &each;
+      taken_[count++] = &each;
       continue;
     }
     const auto farthest = std::max_element(taken_.begin(), taken_.end(), [&](const auto* a, const auto* b) {
@@ -92,9 +92,7 @@ void MovingObstacles::update(std::span<const PredictedObstacle> predicted, const
   origin_ = origin;
   count_ = 0;
   for (int k = 0; k <= steps_; ++k)
-    for (int i = 0; i < count; ++i)
-      place(*taken_[static_cast<std::size_t>(i)], first + k * time_step,
-            reaches_[static_cast<std::size_t>(k * count + i)]);
+    for (int i = 0; i < count; ++i) place(*taken_[i], first + k * time_step, reaches_[k * count + i]);
   view_.obstacles_ = count;
   view_.followed_ = 0;
   view_.x_ = -origin.x;
@@ -114,12 +112,11 @@ void MovingObstacles::set_following_costs(std::span<const double> costs) noexcep
   view_.followed_ = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const MovingObstaclesView::Reach& reach = reaches_[static_cast<std::size_t>(steps_) * taken().size() + i];
-    const auto& box = boxes_[static_cast<std::size_t>(reach.first + taken_[i]->likeliest())];
+    const auto& box = boxes_[reach.first + taken_[i]->likeliest()];
     // Skips boxes that are far away by then or whose angle has no sine.
     const bool near = std::hypot(box.x, box.y) < 1e6F && std::isfinite(box.sine + box.cosine);
     if (!(costs[i] > 0) || !near) continue;
-    followed_[static_cast<std::size_t>(view_.followed_++)] = {box.x, box.y, box.sine, box.cosine,
-                                                              static_cast<float>(costs[i])};
+    followed_[view_.followed_++] = {box.x, box.y, box.sine, box.cosine, static_cast<float>(costs[i])};
   }
 }
 
@@ -133,14 +130,13 @@ void MovingObstacles::place(const PredictedObstacle& obstacle, double time,
     const double x = at.pose.x - origin_.x, y = at.pose.y - origin_.y;
     const double half_length = 0.5 * obstacle.length + options_.deviations * at.along_deviation;
     const double half_width = 0.5 * obstacle.width + options_.deviations * at.across_deviation;
-    boxes_[static_cast<std::size_t>(count_++)] = {
-        static_cast<float>(x),
-        static_cast<float>(y),
-        static_cast<float>(std::sin(at.pose.yaw)),
-        static_cast<float>(std::cos(at.pose.yaw)),
-        static_cast<float>(half_length),
-        static_cast<float>(half_width),
-        static_cast<float>(obstacle.weights[static_cast<std::size_t>(h)])};
+    boxes_[count_++] = {static_cast<float>(x),
+                        static_cast<float>(y),
+                        static_cast<float>(std::sin(at.pose.yaw)),
+                        static_cast<float>(std::cos(at.pose.yaw)),
+                        static_cast<float>(half_length),
+                        static_cast<float>(half_width),
+                        static_cast<float>(obstacle.weights[h])};
     min_x = std::min(min_x, x);
     max_x = std::max(max_x, x);
     min_y = std::min(min_y, y);

@@ -10,12 +10,6 @@
 namespace slalom::maps {
 namespace {
 
-GridGeometry geometry_of(const ReferenceFieldOptions& options) {
-  options.validate();
-  return {detail::cell_count("length_x", options.length_x, options.resolution),
-          detail::cell_count("length_y", options.length_y, options.resolution), options.resolution, 0, 0};
-}
-
 double squared_distance(const ReferencePoint& a, const ReferencePoint& b) {
   return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
 }
@@ -27,41 +21,31 @@ void check_reference_path(std::span<const ReferencePoint> path) {
   detail::require(path.size() <= 10000000, "reference path: number of points", path.size(),
                   "at most 10000000");
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const auto check = [&](const char* field, double value, bool holds, const char* rule) {
-      if (!holds)
-        detail::require(false, ("reference path: point " + std::to_string(i) + ": " + field).c_str(), value,
-                        rule);
-    };
-    if (const Pose pose{path[i].x, path[i].y, path[i].yaw}; !is_plausible(pose))
-      check_pose("reference path: point " + std::to_string(i), pose);
-    check("speed", path[i].speed, std::isfinite(path[i].speed) && path[i].speed >= 0,
-          "finite and not negative");
+    const Pose pose{path[i].x, path[i].y, path[i].yaw};
+    const bool is_speed = std::isfinite(path[i].speed) && path[i].speed >= 0;
+    if (is_plausible(pose) && is_speed) continue;
+    const std::string where = "reference path: point " + std::to_string(i);
+    check_pose(where, pose);
+    detail::require(is_speed, (where + ": speed").c_str(), path[i].speed, "finite and not negative");
   }
-}
-
-void ReferenceFieldOptions::validate() const {
-  validate_options(*this, "reference_field");
-  detail::cell_count("reference_field.length_x", length_x, resolution);
-  detail::cell_count("reference_field.length_y", length_y, resolution);
-  detail::require(points + points_behind <= 250, "reference_field.points_behind", points_behind,
-                  "at most 250 together with `points`");
 }
 
 ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options)
-    : options_(options), geometry_(geometry_of(options)), cells_(geometry_.rows, geometry_.columns) {
+    : options_(options),
+      geometry_(detail::geometry_of(options, "reference_field")),
+      cells_(geometry_.rows, geometry_.columns) {
+  detail::require(options.points + options.points_behind <= 250, "reference_field.points_behind",
+                  options.points_behind, "at most 250 together with `points`");
   check_reference_path(path);
-  path_.assign(path.begin(), path.end());
+  path_.reserve(path.size());
   path_x_.reserve(path.size());
   path_y_.reserve(path.size());
-  for (const ReferencePoint& point : path) {
-    path_x_.push_back(point.x);
-    path_y_.push_back(point.y);
-  }
+  set_path(path);
   const auto sites = static_cast<std::size_t>(options.points + options.points_behind);
   window_.resize(sites);
   sites_.resize(sites);
   envelope_.resize(sites + 1);
-  column_y_.resize(static_cast<std::size_t>(geometry_.columns));
+  column_y_.resize(geometry_.columns);
   cells_.fill({static_cast<float>(options.outside.distance), static_cast<float>(options.outside.yaw),
                static_cast<float>(options.outside.speed), 1});
   update({path[0].x, path[0].y});
@@ -74,8 +58,7 @@ bool ReferenceField::begin(const Point& robot) noexcept {
   nearest_ = nearest_point(robot);
   choose_window();
   make_sites();
-  for (int column = 0; column < geometry_.columns; ++column)
-    column_y_[static_cast<std::size_t>(column)] = geometry_.cell_y(column);
+  for (int column = 0; column < geometry_.columns; ++column) column_y_[column] = geometry_.cell_y(column);
   return true;
 }
 
@@ -170,9 +153,7 @@ void ReferenceField::choose_window() noexcept {
     while (left > 0) {
       --left;
       i = (i + step + count) % count;
-      if (squared_distance(path_[static_cast<std::size_t>(i)], path_[static_cast<std::size_t>(from)]) >=
-          least)
-        return i;
+      if (squared_distance(path_[i], path_[from]) >= least) return i;
     }
     return -1;
   };
@@ -255,8 +236,8 @@ void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexc
   const double x = geometry_.cell_x(row);
   int column = begin;
   for (int k = 0; k < parabolas && column < end; ++k) {
-    const Site& site = *envelope_[static_cast<std::size_t>(k)].site;
-    const double stop = k + 1 < parabolas ? envelope_[static_cast<std::size_t>(k + 1)].start : end;
+    const Site& site = *envelope_[k].site;
+    const double stop = k + 1 < parabolas ? envelope_[k + 1].start : end;
     if (!(stop >= column)) continue;
     const int last = stop >= end ? end : saturate_cast<int>(stop) + 1;
     const int first = column;
@@ -291,7 +272,7 @@ void ReferenceField::interpolate(int row, int begin, int end, const Site& site) 
   const double x = geometry_.cell_x(row) - site.x;
   float* cell = cells_.at(row, begin);
   for (int column = begin; column < end; ++column, cell += 4) {
-    const double y = column_y_[static_cast<std::size_t>(column)] - site.y;
+    const double y = column_y_[column] - site.y;
     const double ahead = piece.ahead_x * x + piece.ahead_y * y, left = piece.ahead_x * y - piece.ahead_y * x;
     const double beside = std::clamp(1 - piece.curvature * left, least, 1 / least);
     const double arc = std::clamp(ahead / beside, piece.begin, piece.end), beyond = ahead - arc * beside;

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <set>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"
+#include "slalom/core/option_access.hpp"
 #include "slalom/maps/image.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/yaml_text.hpp"
@@ -165,13 +165,6 @@ bool grey_205_is_unknown(const Header& header, const GreyImage& image) {
          count([](int grey) { return grey > unknown_grey; }) > 0;
 }
 
-/// The shortest text that reads back as the same number.
-std::string text(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
-
 }  // namespace
 
 OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule,
@@ -179,13 +172,13 @@ OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, MapRule rule,
   const Header header = read_header(yaml_file, rule);
   const GreyImage image = load_image(yaml_file.parent_path() / header.image);
   std::array<Occupancy, 256> table{};
-  for (int grey = 0; grey < 256; ++grey) table[static_cast<std::size_t>(grey)] = classify(header, rule, grey);
+  for (int grey = 0; grey < 256; ++grey) table[grey] = classify(header, rule, grey);
   if (rule == MapRule::map_server && grey_205_is_unknown(header, image)) {
     table[unknown_grey] = Occupancy::unknown;
     if (notes)
       notes->push_back(yaml_file.filename().string() +
                        ": the grey 205 is read as unknown, as map savers write it, though `free_thresh: " +
-                       text(header.free_threshold) +
+                       to_text(header.free_threshold) +
                        "` makes it free; 0.196 says the same in the file, and any other grey is free");
   }
   const bool see_opacity = !image.opacity.empty() && rule == MapRule::map_server;
@@ -222,9 +215,9 @@ void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_f
 
   YAML::Emitter yaml;
   yaml << YAML::BeginMap << YAML::Key << "image" << YAML::Value << image_file.filename().string();
-  yaml << YAML::Key << "resolution" << YAML::Value << text(grid.resolution);
-  yaml << YAML::Key << "origin" << YAML::Value << YAML::Flow << YAML::BeginSeq << text(grid.origin.x)
-       << text(grid.origin.y) << text(grid.origin.yaw) << YAML::EndSeq;
+  yaml << YAML::Key << "resolution" << YAML::Value << to_text(grid.resolution);
+  yaml << YAML::Key << "origin" << YAML::Value << YAML::Flow << YAML::BeginSeq << to_text(grid.origin.x)
+       << to_text(grid.origin.y) << to_text(grid.origin.yaw) << YAML::EndSeq;
   yaml << YAML::Key << "negate" << YAML::Value << 0;
   yaml << YAML::Key << "occupied_thresh" << YAML::Value << "0.65";
   yaml << YAML::Key << "free_thresh" << YAML::Value << "0.196" << YAML::EndMap;

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/options.hpp"
+#include "slalom/maps/cell_grid.hpp"
 
 namespace slalom::maps::detail {
 
@@ -18,11 +20,17 @@ void require(bool holds, const char* field, const T& value, const char* rule) {
   throw std::invalid_argument(text.str());
 }
 
-/// How many cells make up a length (both above 0); throws where there are none or too many.
-inline int cell_count(const char* field, double length, double resolution) {
-  const double count = std::round(length / resolution);
-  require(count >= 1 && count <= 20000, field, length, "1 to 20000 cells long");
-  return saturate_cast<int>(count);
+/// The cells of a map with these options, around the origin. Checks the options; throws where there are no
+/// cells or too many.
+template <class Options>
+GridGeometry geometry_of(const Options& options, const std::string& where) {
+  validate_options(options, where);
+  const auto cells = [&](const char* field, double length) {
+    const double count = std::round(length / options.resolution);
+    require(count >= 1 && count <= 20000, (where + field).c_str(), length, "1 to 20000 cells long");
+    return saturate_cast<int>(count);
+  };
+  return {cells(".length_x", options.length_x), cells(".length_y", options.length_y), options.resolution};
 }
 
 }  // namespace slalom::maps::detail

@@ -9,12 +9,13 @@
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/option_access.hpp"
-#include "solvers/all_finite.hpp"
 
 namespace slalom {
 namespace {
 
-using detail::all_finite;
+bool all_finite(std::span<const double> values) noexcept {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
 
 std::size_t count(int a, int b = 1, int c = 1) {
   return static_cast<std::size_t>(a) * static_cast<std::size_t>(b) * static_cast<std::size_t>(c);

@@ -1,12 +1,10 @@
 #include "slalom/solvers/solver_base.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/solvers/option_groups.hpp"
 
@@ -76,7 +74,13 @@ Status BatchOutcome::status() const noexcept {
 
 SolverBase::SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
                        std::uint64_t seed, std::shared_ptr<ThreadPool> pool)
-    : horizon_(horizon), inputs_(inputs), pool_(std::move(pool)), seed_(seed), low_(size()), high_(size()) {
+    : horizon_(horizon),
+      inputs_(inputs),
+      pool_(std::move(pool)),
+      seed_(seed),
+      low_(size()),
+      high_(size()),
+      moved_(size()) {
   for (int r = 0; r < rows(); ++r) {
     const int input = r % inputs;
     require_bound("input_min", input_min[input], -std::numeric_limits<double>::infinity());
@@ -101,6 +105,11 @@ std::vector<float> SolverBase::spread(const PerInput& values) const {
 
 void SolverBase::clamp(float* sequence) const noexcept {
   for (std::size_t r = 0; r < size(); ++r) sequence[r] = std::clamp(sequence[r], low_[r], high_[r]);
+}
+
+void SolverBase::move_forward(float* sequence, double steps) noexcept {
+  shift_rows(sequence, horizon_, inputs_, steps, moved_.data());
+  std::copy(moved_.begin(), moved_.end(), sequence);
 }
 
 BatchOutcome SolverBase::evaluate(const BatchEvaluator& evaluator, const SequenceBatch& batch,

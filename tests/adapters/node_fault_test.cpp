@@ -1,5 +1,4 @@
-// Planner and localiser of the ROS nodes, without their transport: every fault stops the car with a reason,
-// and the car continues by itself afterwards.
+// Planner and localiser of the ROS nodes: every fault stops the car with a reason, then it drives on.
 #include <gtest/gtest.h>
 
 #include <limits>

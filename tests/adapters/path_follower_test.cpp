@@ -22,21 +22,19 @@ struct Room {
       : width(static_cast<int>(std::lround(length_x / 0.05))),
         height(static_cast<int>(std::lround(length_y / 0.05))),
         costs(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0) {}
+  /// The middle of a cell.
+  maps::Point middle(std::size_t cell) const {
+    const int row = static_cast<int>(cell) / width, column = static_cast<int>(cell) % width;
+    return {x + (column + 0.5) * 0.05, y + (row + 0.5) * 0.05};
+  }
   void fill(double x0, double y0, double x1, double y1, unsigned char cost = lethal) {
-    for (int row = 0; row < height; ++row)
-      for (int column = 0; column < width; ++column) {
-        const double px = x + (column + 0.5) * 0.05, py = y + (row + 0.5) * 0.05;
-        if (px >= x0 && px <= x1 && py >= y0 && py <= y1)
-          costs[static_cast<std::size_t>(row * width + column)] = cost;
-      }
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      if (const maps::Point p = middle(i); p.x >= x0 && p.x <= x1 && p.y >= y0 && p.y <= y1) costs[i] = cost;
   }
   /// Whether an obstacle is nearer than a distance (m).
   bool is_obstacle_within(const maps::Pose& pose, double distance) const {
-    for (int row = 0; row < height; ++row)
-      for (int column = 0; column < width; ++column)
-        if (costs[static_cast<std::size_t>(row * width + column)] == lethal &&
-            std::hypot(x + (column + 0.5) * 0.05 - pose.x, y + (row + 0.5) * 0.05 - pose.y) < distance)
-          return true;
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      if (costs[i] == lethal && maps::distance(middle(i), {pose.x, pose.y}) < distance) return true;
     return false;
   }
   CostGrid grid() const { return {width, height, 0.05, x, y, costs.data()}; }
@@ -92,6 +90,13 @@ struct Drive {
   bool collided = false;
 };
 
+/// The same with a straight plan.
+struct StraightDrive : Drive {
+  explicit StraightDrive(const std::string& method = "svg_mppi") : Drive(method) {
+    follower.use_plan(line(1, 2, 7, 2), "map");
+  }
+};
+
 TEST(PathFollower, DrivesRoundAnObstacleAlongAPlanOfAnotherFrame) {
   Drive drive;
   drive.room.fill(3.5, 1.6, 4.2, 2.6);
@@ -106,9 +111,8 @@ TEST(PathFollower, DrivesRoundAnObstacleAlongAPlanOfAnotherFrame) {
 }
 
 TEST(PathFollower, DrivesAcrossACostmapThatMovesWithTheRobot) {
-  Drive drive;
+  StraightDrive drive;
   drive.room = Room(3, 3);
-  drive.follower.use_plan(line(1, 2, 7, 2), "map");
   FollowerAnswer answer;
   for (int i = 0; i < 600 && drive.distance_to(7, 2) > 0.15 && answer.problem == Problem::none; ++i) {
     drive.room.x = 0.05 * std::round((drive.input.pose.x - 1.5) / 0.05);
@@ -120,8 +124,7 @@ TEST(PathFollower, DrivesAcrossACostmapThatMovesWithTheRobot) {
 }
 
 TEST(PathFollower, RefusesABlockedPathWithinHalfASecondAndGoesOnWhenItOpens) {
-  Drive drive;
-  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  StraightDrive drive;
   drive.drive(2, {7, 2, 0});
   drive.room.fill(4, 0, 4.2, 4);
   const double begin = drive.input.time;
@@ -138,8 +141,7 @@ TEST(PathFollower, RefusesABlockedPathWithinHalfASecondAndGoesOnWhenItOpens) {
 }
 
 TEST(PathFollower, TakesInflatedCostsForFreeAndUnknownCellsAsItIsTold) {
-  Drive drive;
-  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  StraightDrive drive;
   std::fill(drive.room.costs.begin(), drive.room.costs.end(), inscribed);
   EXPECT_EQ(drive.drive(1, {7, 2, 0}).problem, Problem::none) << "253 is no obstacle: the footprint decides";
   EXPECT_GT(drive.fastest, 0.2);
@@ -152,8 +154,7 @@ TEST(PathFollower, TakesInflatedCostsForFreeAndUnknownCellsAsItIsTold) {
 }
 
 TEST(PathFollower, KeepsToSpeedLimitsInPercentAndInMetresPerSecond) {
-  Drive drive;
-  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  StraightDrive drive;
   const auto fastest_in = [&](double duration) {
     drive.drive(1, {7, 2, 0});  // for the change of speed
     drive.fastest = 0;
@@ -207,8 +208,7 @@ TEST(PathFollower, RefusesWithoutAPlan) {
 }
 
 TEST(PathFollower, RefusesAPoseThatIsNotFiniteOrOffTheCostmap) {
-  Drive drive;
-  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  StraightDrive drive;
   const maps::Pose pose = drive.input.pose;
   drive.input.pose.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(drive.step().problem, Problem::no_control);
@@ -221,8 +221,7 @@ TEST(PathFollower, RefusesAPoseThatIsNotFiniteOrOffTheCostmap) {
 }
 
 TEST(PathFollower, BrakesWhenItIsCancelled) {
-  Drive drive;
-  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  StraightDrive drive;
   drive.drive(2, {7, 2, 0});
   ASSERT_GT(drive.input.velocity.forward, 0.3);
   int periods = 0;
@@ -241,9 +240,8 @@ TEST(PathFollower, BrakesWhenItIsCancelled) {
 }
 
 TEST(PathFollower, KeepsItsDetourWhenThePlannerPlansTheSameWayAgain) {
-  Drive drive;
+  StraightDrive drive;
   drive.room.fill(3.5, 1.6, 4.2, 2.6);
-  drive.follower.use_plan(line(1, 2, 7, 2), "map");
   ASSERT_EQ(drive.step().status, "detour");
   const auto aside = [&] {
     double most = 0;
@@ -263,9 +261,8 @@ TEST(PathFollower, KeepsItsDetourWhenThePlannerPlansTheSameWayAgain) {
 
 TEST(PathFollower, PlansFromItsLastCommandInOpenLoop) {
   const auto speed_after = [](const char* open_loop, int periods) {
-    Drive drive;
+    StraightDrive drive;
     drive.follower.change({{"open_loop", open_loop}});
-    drive.follower.use_plan(line(1, 2, 7, 2), "map");
     double speed = 0;
     for (int i = 0; i < periods; ++i) {
       drive.input.velocity = {};  // as if the odometry came much later
@@ -296,9 +293,8 @@ TEST(PathFollower, RefusesFootprintsAndCostmapsThatAreNone) {
 
 TEST(PathFollower, DrivesEveryBaseWithOtherMethods) {
   for (const char* model : {"DiffDrive", "Omni", "Ackermann"}) {
-    Drive drive("mppi");
+    StraightDrive drive("mppi");
     drive.follower.change({{"motion_model", model}, {"vy_std", "0.3"}});
-    drive.follower.use_plan(line(1, 2, 7, 2), "map");
     EXPECT_EQ(drive.drive(3, {7, 2, 0}).problem, Problem::none) << model;
     EXPECT_GT(drive.input.pose.x, 1.7) << model;
   }

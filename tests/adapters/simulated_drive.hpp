@@ -85,8 +85,7 @@ struct Fault {
   bool lasts = true;                                   ///< whether the car stays stopped until `end`
 };
 
-/// A simulated car on the course `wren` among three parked ones, and its planner and localiser, with
-/// simulated clocks. No message is transported.
+/// A simulated car on `wren` among three parked ones, its planner and localiser, with simulated clocks.
 class Drive {
  public:
   Drive() {

@@ -71,12 +71,12 @@ TYPED_TEST(BuiltInProblems, JacobiansAndGradientsAreThoseOfCentralDifferences) {
     EXPECT_FALSE(l.kink);
     double next[F::nx];
     detail::scalars_of<TypeParam, double>(l.next, next);
-    for (int i = 0; i < F::nx; ++i) expect_same(next[i], f.step(z)[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < F::nx; ++i) expect_same(next[i], f.step(z)[i]);
     const double h = 1e-6;
     for (int i = 0; i < F::n; ++i) {
       auto low = z, high = z;
-      low[static_cast<std::size_t>(i)] -= h;
-      high[static_cast<std::size_t>(i)] += h;
+      low[i] -= h;
+      high[i] += h;
       const double up = f.stage(high) - f.stage(z), down = f.stage(z) - f.stage(low);
       if (std::abs(up - down) < 1e-8) {  // no jump and no kink within h
         const double gradient = i < F::nx ? l.state_gradient[i] : l.input_gradient[i - F::nx];
@@ -84,9 +84,8 @@ TYPED_TEST(BuiltInProblems, JacobiansAndGradientsAreThoseOfCentralDifferences) {
         ++compared;
       }
       for (int row = 0; row < F::nx; ++row) {
-        const auto at = static_cast<std::size_t>(row);
         const double entry = i < F::nx ? l.state_jacobian[row][i] : l.input_jacobian[row][i - F::nx];
-        EXPECT_NEAR(entry, (f.step(high)[at] - f.step(low)[at]) / (2 * h), 1e-7) << row << ' ' << i;
+        EXPECT_NEAR(entry, (f.step(high)[row] - f.step(low)[row]) / (2 * h), 1e-7) << row << ' ' << i;
       }
     }
   }
@@ -114,19 +113,18 @@ TYPED_TEST(BuiltInProblems, HessiansAreTheDerivativesOfGradients) {
       return gradient;
     };
     const auto gradient = gradient_of(l);
-    for (int i = 0; i < F::n; ++i) expect_same(cost.gradient[i], gradient[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < F::n; ++i) expect_same(cost.gradient[i], gradient[i]);
     const double h = 1e-6;
     for (int i = 0; i < F::n; ++i) {
       auto low = z, high = z;
-      low[static_cast<std::size_t>(i)] -= h;
-      high[static_cast<std::size_t>(i)] += h;
+      low[i] -= h;
+      high[i] += h;
       const auto [x0, u0] = F::split(low);
       const auto [x1, u1] = F::split(high);
       const auto a = gradient_of(linearize(f.problem, x0, u0)), b = gradient_of(linearize(f.problem, x1, u1));
       const auto e0 = expand_terminal_cost(f.problem, x0), e1 = expand_terminal_cost(f.problem, x1);
       for (int j = 0; j < F::n; ++j) {
-        const auto at = static_cast<std::size_t>(j);
-        const double second = (b[at] - a[at]) / (2 * h);
+        const double second = (b[j] - a[j]) / (2 * h);
         EXPECT_NEAR(cost.hessian[i][j], second, 1e-5 * (1 + std::abs(second))) << i << ' ' << j;
         if (i >= F::nx || j >= F::nx) continue;
         const double at_end = (e1.gradient[j] - e0.gradient[j]) / (2 * h);

@@ -35,7 +35,7 @@ struct ValueStatistics {
     constexpr double share = 1.0 / 4294967296.0;
     double sum[5] = {};
     for (const float value : values) {
-      const double x = static_cast<double>(value), square = x * x;
+      const double x = value, square = x * x;
       sum[1] += x;
       sum[2] += square;
       sum[3] += x * square;
@@ -74,7 +74,7 @@ TEST(NormalPair, AllPairsTogetherAreNormal) {
     for (int i = 0; i < 3; ++i) {
       const double expected = 0.5 * std::erfc((3 + i) / std::sqrt(2.0)) * 4294967296.0;
       // One standard deviation of as many independent draws.
-      EXPECT_NEAR(static_cast<double>(each.above[i]), expected, std::sqrt(expected)) << "beyond " << 3 + i;
+      EXPECT_NEAR(each.above[i], expected, std::sqrt(expected)) << "beyond " << 3 + i;
       EXPECT_EQ(each.above[i], each.below[i]);
     }
   }

@@ -6,8 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "slalom/core/dispatch.hpp"
-#include "slalom/core/math.hpp"
+#include "support/rollouts.hpp"
 
 namespace slalom {
 namespace {
@@ -19,22 +18,12 @@ double unit(double value) {
          static_cast<double>(near);
 }
 
-/// Applies a function to arrays of `count` values, in packs of an instruction set.
-template <class Function>
+/// Applies a function to arrays of `count` values, in packs of an instruction set, or in pairs of them.
+template <class Function, bool pairs = false>
 struct Apply {
   template <class Target>
   SLALOM_KERNEL static void run(const float* x, const float* y, int count, float* result) {
-    using F = Pack<Target>;
-    for (int i = 0; i < count; i += F::lanes) Function{}(F::load(x + i), F::load(y + i)).store(result + i);
-  }
-};
-
-/// The same in pairs of packs.
-template <class Function>
-struct ApplyToPairs {
-  template <class Target>
-  SLALOM_KERNEL static void run(const float* x, const float* y, int count, float* result) {
-    using F = PackPair<Target>;
+    using F = std::conditional_t<pairs, PackPair<Target>, Pack<Target>>;
     for (int i = 0; i < count; i += F::lanes) Function{}(F::load(x + i), F::load(y + i)).store(result + i);
   }
 };
@@ -136,12 +125,8 @@ SLALOM_FUNCTION(Differs, select(x != y, T(1), T(0)));
 SLALOM_FUNCTION(AnyAbove, any(x > y) ? T(1) : T(0));
 SLALOM_FUNCTION(AllAbove, all(x > y) ? T(1) : T(0));
 
-class PackFunctions : public testing::TestWithParam<simd::Target> {
- protected:
-  void SetUp() override {
-    if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
-  }
-};
+class PackFunctions : public testing::OnInstructionSet {};
+SLALOM_ON_EVERY_INSTRUCTION_SET(PackFunctions);
 
 TEST_P(PackFunctions, KeepTheirBoundsOfUnitsInTheLastPlace) {  // those that math.hpp states
   const simd::Target target = GetParam();
@@ -273,11 +258,6 @@ TEST(ScalarFunctions, AreThoseOfTheStandardLibrary) {
   EXPECT_TRUE(slalom::any(true) && slalom::all(true) && !slalom::any(false));
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, PackFunctions,
-                         testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
-                                         simd::Target::avx512),
-                         [](const auto& target) { return simd::name(target.param); });
-
 /// Every operation and function of pairs, of two values in (0, 1).
 struct AllOperations {
   template <class T>
@@ -302,12 +282,10 @@ TEST(PackPair, ComputesWhatItsHalvesDo) {
     x[i] = (static_cast<float>(i) + 0.5f) / 96;
     y[i] = std::fmod(static_cast<float>(i) * 0.618f + 0.1f, 1.0f);
   }
-  for (const simd::Target target :
-       {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
-    if (!simd::supported(target)) continue;
+  for (const simd::Target target : testing::instruction_sets()) {
     std::vector<float> halves(96), pairs(96);
     simd::kernel<Apply<AllOperations>>(target)(x.data(), y.data(), 96, halves.data());
-    simd::kernel<ApplyToPairs<AllOperations>>(target)(x.data(), y.data(), 96, pairs.data());
+    simd::kernel<Apply<AllOperations, true>>(target)(x.data(), y.data(), 96, pairs.data());
     for (std::size_t i = 0; i < x.size(); ++i)
       EXPECT_NEAR(pairs[i], halves[i], 1e-5 * (1 + std::abs(halves[i]))) << simd::name(target) << ' ' << i;
   }

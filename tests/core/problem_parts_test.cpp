@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "slalom/core/problem_evaluator.hpp"
+#include "support/rollouts.hpp"
 
 namespace slalom {
 namespace {
@@ -80,41 +80,21 @@ struct Stepped : Plain {
   std::array<double, 2> input_levels{3, 0};
 };
 
-struct Rollouts {
-  SequenceBatch batch{9, 2, 128};
-  std::vector<float> costs = std::vector<float>(128);
-  std::vector<std::uint8_t> collided = std::vector<std::uint8_t>(128);
+SequenceBatch some_inputs() {
+  SequenceBatch batch(9, 2, 128);
+  fill_normal(batch, 0, 128, {3, 1});
+  return batch;
+}
 
-  Rollouts() { fill_normal(batch, 0, 128, {3, 1}); }
-
-  template <class P>
-  void run(const ProblemEvaluator<P>& evaluator) {
-    evaluator.evaluate(batch, 0, 128, costs.data(), collided.data());
-  }
-  std::vector<Input<double, 2>> sequence(int sample) const {
-    std::vector<Input<double, 2>> u;
-    for (int k = 0; k < batch.steps(); ++k)
-      u.push_back(
-          {{static_cast<double>(batch.at(k, 0, sample)), static_cast<double>(batch.at(k, 1, sample))}});
-    return u;
-  }
-};
-
-class ProblemPartsOnInstructionSet : public ::testing::TestWithParam<simd::Target> {
- protected:
-  void SetUp() override {
-    if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
-  }
-};
+class ProblemPartsOnInstructionSet : public testing::OnInstructionSet {};
+SLALOM_ON_EVERY_INSTRUCTION_SET(ProblemPartsOnInstructionSet);
 
 TEST_P(ProblemPartsOnInstructionSet, TermsSumToTheSameCost) {
-  Rollouts plain, named;
   ProblemEvaluator<Plain> one({}, GetParam());
   ProblemEvaluator<Named> other({}, GetParam());
   one.set_state({0.9, 0.3});
   other.set_state({0.9, 0.3});
-  plain.run(one);
-  named.run(other);
+  const auto plain = testing::roll_out(one, some_inputs()), named = testing::roll_out(other, some_inputs());
   int collisions = 0;
   for (std::size_t k = 0; k < 128; ++k) {
     EXPECT_NEAR(plain.costs[k], named.costs[k], 1e-5f * plain.costs[k]);
@@ -126,31 +106,31 @@ TEST_P(ProblemPartsOnInstructionSet, TermsSumToTheSameCost) {
 }
 
 TEST_P(ProblemPartsOnInstructionSet, RateLimitsHoldInRolloutsAsInThePlan) {
-  Rollouts rollouts;
   ProblemEvaluator<Slow> evaluator({}, GetParam());
   const Input<double, 2> before{{0.5, -0.25}};
   evaluator.set_state({0.4, 0.1});
   evaluator.set_previous_input(before);
-  rollouts.run(evaluator);
+  const SequenceBatch batch = some_inputs();
+  const auto costs = testing::roll_out(evaluator, batch).costs;
   for (int k = 0; k < 128; ++k) {
-    auto u = rollouts.sequence(k);
+    auto u = testing::inputs_of<2>(batch, k);
     const double free = predict(Slow{}, {0.4, 0.1}, u.data(), 9, nullptr).value;
     hold_input_rates(Slow{}, before, u.data(), 9);
     const double held = predict(Slow{}, {0.4, 0.1}, u.data(), 9, nullptr).value;
-    EXPECT_NEAR(static_cast<double>(rollouts.costs[static_cast<std::size_t>(k)]), held, 1e-4 * held);
+    EXPECT_NEAR(costs[k], held, 1e-4 * held);
     EXPECT_NE(free, held);
   }
 }
 
 TEST_P(ProblemPartsOnInstructionSet, LevelsHoldInRolloutsAsInThePlan) {
-  Rollouts rollouts;
   ProblemEvaluator<Stepped> evaluator({}, GetParam());
   const Input<double, 2> remainder{{0.25, 0}};
   evaluator.set_state({0.4, 0.1});
   evaluator.set_previous_input(remainder);
-  rollouts.run(evaluator);
+  const SequenceBatch batch = some_inputs();
+  const auto costs = testing::roll_out(evaluator, batch).costs;
   for (int k = 0; k < 128; ++k) {
-    auto u = rollouts.sequence(k);
+    auto u = testing::inputs_of<2>(batch, k);
     const auto free = u;
     hold_input_rates(Stepped{}, remainder, u.data(), 9);
     for (std::size_t step = 0; step < 9; ++step) {
@@ -158,14 +138,9 @@ TEST_P(ProblemPartsOnInstructionSet, LevelsHoldInRolloutsAsInThePlan) {
       EXPECT_EQ(u[step][1], free[step][1]);
     }
     const double held = predict(Stepped{}, {0.4, 0.1}, u.data(), 9, nullptr).value;
-    EXPECT_NEAR(static_cast<double>(rollouts.costs[static_cast<std::size_t>(k)]), held, 1e-4 * held);
+    EXPECT_NEAR(costs[k], held, 1e-4 * held);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Targets, ProblemPartsOnInstructionSet,
-                         ::testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
-                                           simd::Target::avx512),
-                         [](const auto& target) { return simd::name(target.param); });
 
 TEST(ProblemParts, RatesAreHeldFromWhatWasAppliedBefore) {
   Input<double, 2> u[3] = {{{5, -5}}, {{5, -5}}, {{0.3, 0}}};
@@ -200,12 +175,9 @@ TEST(ProblemParts, TheTerminalCostIsOptional) {
   ProblemEvaluator<Unending> evaluator{Unending{}};
   evaluator.set_state({0.5, 1});
   SequenceBatch batch(1, 2, 1);
-  batch.row(0, 0)[0] = 1;
-  batch.row(0, 1)[0] = 2;
-  AlignedBuffer costs(batch.stride());
-  std::vector<std::uint8_t> hits(static_cast<std::size_t>(batch.stride()));
-  evaluator.evaluate(batch, 0, 1, costs.data(), hits.data());
-  EXPECT_FLOAT_EQ(costs[0], 0.25f + 0.1f + 0.05f);
+  batch.at(0, 0, 0) = 1;
+  batch.at(0, 1, 0) = 2;
+  EXPECT_FLOAT_EQ(testing::roll_out(evaluator, batch).costs[0], 0.25f + 0.1f + 0.05f);
 }
 
 TEST(ProblemParts, CostTermsAreNamed) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace slalom {
@@ -28,7 +27,7 @@ TEST(FillNormal, ValueDependsOnKeyRowAndSampleAlone) {
 
 /// Anderson and Darling's statistic of sorted values against the standard normal distribution.
 double anderson_darling(const std::vector<double>& sorted) {
-  const double n = static_cast<double>(sorted.size());
+  const double n = sorted.size();
   double sum = 0;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     const double low = 0.5 * std::erfc(-sorted[i] / std::sqrt(2.0));
@@ -60,7 +59,7 @@ TEST(FillNormal, RowsSamplesAndStreamsAreNotCorrelated) {
   const auto correlation = [&](const float* x, const float* y, int count, bool squares) {
     double sum = 0;
     for (int k = 0; k < count; ++k) {
-      const double u = static_cast<double>(x[k]), v = static_cast<double>(y[k]);
+      const double u = x[k], v = y[k];
       sum += squares ? 0.5 * (u * u - 1) * (v * v - 1) : u * v;
     }
     return sum / count;
@@ -79,6 +78,15 @@ TEST(FillNormal, RowsSamplesAndStreamsAreNotCorrelated) {
   }
 }
 
+/// Chi-squared of counts that are expected to be equal.
+double chi_squared(const std::vector<int>& counts) {
+  double sum = 0, chi2 = 0;
+  for (const int count : counts) sum += count;
+  const double expected = sum / static_cast<double>(counts.size());
+  for (const int count : counts) chi2 += (count - expected) * (count - expected) / expected;
+  return chi2;
+}
+
 /// The two values of a pair come from the same 32 bits: nothing of that may be seen between them.
 TEST(FillNormal, PairsAreUniformInAngle) {
   const int rows = 8, samples = 1 << 18, parts = 64;
@@ -90,19 +98,11 @@ TEST(FillNormal, PairsAreUniformInAngle) {
   };
   for (int row = 0; row < rows; row += 2)
     for (int k = 0; k < samples; ++k) {
-      const double x = static_cast<double>(batch.at(row, 0, k)),
-                   y = static_cast<double>(batch.at(row + 1, 0, k));
+      const double x = batch.at(row, 0, k), y = static_cast<double>(batch.at(row + 1, 0, k));
       ++cells[part(x) * parts + part(y)];
       const auto octant = static_cast<std::size_t>(4 * (x < 0) + 2 * (y < 0) + (std::abs(x) < std::abs(y)));
       octants[octant] += std::hypot(x, y) > 4;
     }
-  const auto chi_squared = [](const std::vector<int>& counts) {
-    double sum = 0, chi2 = 0;
-    for (const int count : counts) sum += count;
-    const double expected = sum / static_cast<double>(counts.size());
-    for (const int count : counts) chi2 += (count - expected) * (count - expected) / expected;
-    return chi2;
-  };
   const double freedom = parts * parts - 1.0;
   EXPECT_NEAR(chi_squared(cells), freedom, 5 * std::sqrt(2 * freedom));
   EXPECT_LT(chi_squared(octants), 36);  // 7 degrees of freedom: the 1 - 1e-5 quantile is 35.3
@@ -111,12 +111,9 @@ TEST(FillNormal, PairsAreUniformInAngle) {
 TEST(RandomStream, UniformIsUniform) {
   RandomStream stream({42, 0});
   std::vector<int> bins(64);
-  const int n = 1 << 16;
-  for (int i = 0; i < n; ++i) ++bins[static_cast<std::size_t>(stream.uniform() * 64)];
-  double chi2 = 0;
-  for (int count : bins) chi2 += (count - n / 64.0) * (count - n / 64.0) / (n / 64.0);
-  EXPECT_LT(chi2, 120);  // 63 degrees of freedom: the 1e-5 quantile is 123
-  EXPECT_GT(chi2, 25);
+  for (int i = 0; i < 1 << 16; ++i) ++bins[stream.uniform() * 64];
+  EXPECT_LT(chi_squared(bins), 120);  // 63 degrees of freedom: the 1e-5 quantile is 123
+  EXPECT_GT(chi_squared(bins), 25);
 }
 
 }  // namespace

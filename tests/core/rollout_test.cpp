@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
 #include "slalom/core/grid_view.hpp"
-#include "slalom/core/problem_evaluator.hpp"
+#include "support/rollouts.hpp"
 
 namespace slalom {
 namespace {
@@ -49,7 +51,7 @@ struct Fixture {
   Fixture() {
     for (int i = 0; i < n + 2; ++i)
       for (int j = 0; j < 64; ++j) {
-        float* cell = &cells[static_cast<std::size_t>(4 * (i * 64 + j))];
+        float* cell = &cells[4 * (i * 64 + j)];
         const bool outside = i == 0 || j == 0 || i == n + 1 || j >= n + 1;
         cell[0] = outside ? 50.0f : 0.1f * static_cast<float>(i % 7 + j % 5);
         cell[1] = 0.3f * static_cast<float>((i * j) % 11);
@@ -66,22 +68,19 @@ struct Fixture {
   }
 };
 
-class RolloutOn : public ::testing::TestWithParam<simd::Target> {};
+class RolloutOn : public testing::OnInstructionSet {};
+SLALOM_ON_EVERY_INSTRUCTION_SET(RolloutOn);
 
 TEST_P(RolloutOn, AgreesWithDouble) {
-  if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
   Fixture f;
   ProblemEvaluator<Unicycle> evaluator(f.problem, GetParam());
   const Unicycle::State<double> start{0.513, -0.271, 0.4};
   evaluator.set_state(start);
-  std::vector<float> costs(padded(300));
-  std::vector<std::uint8_t> collided(padded(300));
-  evaluator.evaluate(f.batch, 0, 300, costs.data(), collided.data());
+  const auto [costs, collided] = testing::roll_out(evaluator, f.batch);
   int different_cells = 0, collisions = 0;
   for (int k = 0; k < 300; ++k) {
-    Input<double, 2> u[12];
-    for (int t = 0; t < 12; ++t) u[t] = {{f.batch.at(t, 0, k), f.batch.at(t, 1, k)}};
-    const Cost<double> exact = predict(f.problem, start, u, 12, nullptr);
+    const auto u = testing::inputs_of<2>(f.batch, k);
+    const Cost<double> exact = predict(f.problem, start, u.data(), 12, nullptr);
     if (std::abs(costs[k] - exact.value) > 1e-4 * std::max(1.0, exact.value)) {
       ++different_cells;  // a position within rounding of a cell's edge
     } else {
@@ -100,38 +99,29 @@ struct LongUnicycle : Unicycle {
 };
 
 TEST_P(RolloutOn, TakesPacksInPairsWithTheSameResults) {
-  if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
   Fixture f;
   ProblemEvaluator<Unicycle> alone(f.problem, GetParam());
   ProblemEvaluator<LongUnicycle> pairs({f.problem}, GetParam());
   static_assert(detail::has_long_steps<LongUnicycle> && !detail::has_long_steps<Unicycle>);
   alone.set_state({0.513, -0.271, 0.4});
   pairs.set_state({0.513, -0.271, 0.4});
-  std::vector<float> expected(padded(300));
-  std::vector<std::uint8_t> expected_hits(padded(300));
-  alone.evaluate(f.batch, 0, 300, expected.data(), expected_hits.data());
+  const auto [expected, expected_hits] = testing::roll_out(alone, f.batch);
   // Every number of packs, an odd one too, and the ends of the batch.
   for (const int first : {0, 16, 208})
     for (const int count : {1, 16, 17, 32, 40, 48, 92}) {
       std::vector<float> costs(padded(300), -1.0f);
       std::vector<std::uint8_t> hits(padded(300), 9);
       pairs.evaluate(f.batch, first, count, costs.data(), hits.data());
-      const auto at = static_cast<std::size_t>(first), end = static_cast<std::size_t>(first + count);
-      for (std::size_t k = at; k < end; ++k) {
+      for (int k = first; k < first + count; ++k) {
         EXPECT_NEAR(costs[k], expected[k], 1e-5 * expected[k]) << first << " + " << count << ": " << k;
         EXPECT_EQ(hits[k], expected_hits[k]) << first << " + " << count << ": " << k;
       }
-      for (std::size_t k = 0; k < costs.size(); ++k)
-        if (k < at || k >= static_cast<std::size_t>(padded(first + count))) {
+      for (int k = 0; k < padded(300); ++k)
+        if (k < first || k >= padded(first + count)) {
           EXPECT_EQ(costs[k], -1.0f) << k << " was not asked for";
         }
     }
 }
-
-INSTANTIATE_TEST_SUITE_P(Targets, RolloutOn,
-                         ::testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
-                                           simd::Target::avx512),
-                         [](const auto& target) { return simd::name(target.param); });
 
 TEST(Rollout, PositionsThatAreNotFiniteCountAsOutside) {
   Fixture f;
@@ -139,9 +129,7 @@ TEST(Rollout, PositionsThatAreNotFiniteCountAsOutside) {
   for (int t = 0; t < 12; ++t) f.batch.at(t, 0, 5) = std::nanf("");
   for (int t = 0; t < 12; ++t) f.batch.at(t, 0, 6) = 1e30f;
   evaluator.set_state({0.513, -0.271, 0.4});
-  std::vector<float> costs(padded(300));
-  std::vector<std::uint8_t> collided(padded(300));
-  evaluator.evaluate(f.batch, 0, 300, costs.data(), collided.data());
+  const auto collided = testing::roll_out(evaluator, f.batch).collided;
   EXPECT_EQ(collided[5], 1);
   EXPECT_EQ(collided[6], 1);
 }
@@ -149,7 +137,7 @@ TEST(Rollout, PositionsThatAreNotFiniteCountAsOutside) {
 TEST(GridView, UpperEdgeIsInsideLowerEdgeOutside) {
   std::vector<float> cells(4 * 8, 9.0f);
   for (int i = 1; i <= 2; ++i)
-    for (int j = 1; j <= 2; ++j) cells[static_cast<std::size_t>(i * 8 + j)] = static_cast<float>(10 * i + j);
+    for (int j = 1; j <= 2; ++j) cells[i * 8 + j] = static_cast<float>(10 * i + j);
   const GridView<1> grid(cells.data(), 2, 2, 3, 1.0, 0.0, 0.0);
   EXPECT_EQ(look_up(grid, 0.5, 0.5), 11);
   EXPECT_EQ(look_up(grid, -0.5, 0.5), 21);
@@ -157,6 +145,36 @@ TEST(GridView, UpperEdgeIsInsideLowerEdgeOutside) {
   EXPECT_EQ(look_up(grid, 1.0, 0.5), 11);
   EXPECT_EQ(look_up(grid, -1.0, 0.5), 9);
   EXPECT_EQ(look_up(grid, 1.0001, 0.5), 9);
+}
+
+TEST(AlignedBuffer, IsZeroedAndAligned) {
+  const AlignedBuffer buffer(37);
+  EXPECT_EQ(buffer.size(), 37);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(buffer.data()) % 64, 0u);
+  for (int i = 0; i < 37; ++i) EXPECT_EQ(buffer[i], 0.0f);
+}
+
+TEST(SequenceBatch, RowsAreStepsTimesInputs) {
+  SequenceBatch batch(3, 2, 5);
+  EXPECT_EQ(batch.rows(), 6);
+  EXPECT_EQ(batch.stride(), simd::padding);
+  batch.at(2, 1, 4) = 7;
+  EXPECT_EQ(batch[5][4], 7.0f);
+  EXPECT_EQ(batch.data(5), batch.row(2, 1));
+  EXPECT_EQ(batch.data(5) - batch.data(4), batch.stride());
+}
+
+TEST(SequenceBatch, SamplesAreCopiedInAndOut) {
+  SequenceBatch batch(2, 2, 20);
+  const std::array<float, 4> sequence{1, 2, 3, 4};
+  batch.set_sample(17, sequence);
+  EXPECT_EQ(batch.at(0, 0, 17), 1.0f);
+  EXPECT_EQ(batch.at(1, 1, 17), 4.0f);
+  EXPECT_EQ(batch.at(1, 1, 16), 0.0f);
+  EXPECT_EQ(batch.at(1, 1, 18), 0.0f);
+  std::array<float, 4> copy{};
+  batch.get_sample(17, copy);
+  EXPECT_EQ(copy, sequence);
 }
 
 }  // namespace

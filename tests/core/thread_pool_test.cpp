@@ -18,8 +18,8 @@ TEST(ThreadPool, RunsEveryTaskOnceEachTime) {
     for (int round = 0; round < 2000; ++round) {
       const int count = round % 13;
       std::vector<std::atomic<int>> runs(13);
-      pool.run(count, [&](int i) { ++runs[static_cast<std::size_t>(i)]; });
-      for (int i = 0; i < 13; ++i) ASSERT_EQ(runs[static_cast<std::size_t>(i)], i < count ? 1 : 0);
+      pool.run(count, [&](int i) { ++runs[i]; });
+      for (int i = 0; i < 13; ++i) ASSERT_EQ(runs[i], i < count ? 1 : 0);
     }
   }
 }
@@ -27,8 +27,8 @@ TEST(ThreadPool, RunsEveryTaskOnceEachTime) {
 TEST(ThreadPool, RunsAnyNumberOfTasks) {
   ThreadPool pool(3);
   for (const int count : {65534, 65535, 65536, 200001}) {
-    std::vector<int> runs(static_cast<std::size_t>(count));
-    pool.run(count, [&](int i) { ++runs[static_cast<std::size_t>(i)]; });
+    std::vector<int> runs(count);
+    pool.run(count, [&](int i) { ++runs[i]; });
     for (const int each : runs) ASSERT_EQ(each, 1);
   }
 }

@@ -14,6 +14,7 @@ import tempfile
 import urllib.parse
 from pathlib import Path
 
+FENCED = re.compile(r"^```([^\n]*)\n(.*?)^```[^\n]*$", re.S | re.M)
 EXCERPT = re.compile(r"\]\(([^)]+)\):\n\n```c\+\+\n(.*?)\n```", re.S)
 LINK = re.compile(r"(?<!\\)\[[^\]]*\]\(([^)\s]+)[^)]*\)")
 
@@ -34,32 +35,25 @@ def markdown(path):
 
 def blocks(path, language):
     """[(line, text)] of the fenced code blocks in a language."""
-    found, start, kind, body = [], 0, None, []
-    for number, line in enumerate(markdown(path).split("\n"), 1):
-        if line.startswith("```"):
-            if kind is None:
-                start, kind, body = number, line[3:].strip(), []
-            else:
-                if kind == language:
-                    found.append((start, "\n".join(body)))
-                kind = None
-        elif kind is not None:
-            body.append(line)
-    return found
+    text = markdown(path)
+    return [(text.count("\n", 0, found.start()) + 1, found[2][:-1]) for found in FENCED.finditer(text)
+            if found[1].strip() == language]
+
+
+def outside_blocks(path):
+    return FENCED.sub("", markdown(path))
 
 
 def anchors(path):
     """The anchors that code hosts generate for the headings of a page."""
-    text = re.sub(r"^```.*?^```", "", markdown(path), flags=re.S | re.M)
-    headings = re.findall(r"^#+ (.*)$", text, re.M)
+    headings = re.findall(r"^#+ (.*)$", outside_blocks(path), re.M)
     return {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
 
 
 def check_links(root):
     errors = []
     for page in pages(root):
-        text = re.sub(r"^```.*?^```", "", markdown(page), flags=re.S | re.M)
-        for target in LINK.findall(text):
+        for target in LINK.findall(outside_blocks(page)):
             if re.match(r"\w+:", target):
                 continue
             file, _, anchor = target.partition("#")

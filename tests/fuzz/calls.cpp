@@ -1,5 +1,6 @@
 // Controllers, planners, navigators and trackers as state machines: bytes choose options, then the calls.
 #include <cmath>
+#include <random>
 #include <stdexcept>
 #include <vector>
 
@@ -7,12 +8,20 @@
 #include "navigation/navigator_calls.hpp"
 #include "solvers/controller_calls.hpp"
 #include "solvers/solver_contract.hpp"
-#include "support/random_bytes.hpp"
 #include "tracking/tracker_calls.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
 namespace slalom::fuzz {
 namespace {
+
+/// `count` texts of `size` random bytes, the same at every call.
+Seeds random_bytes(int count, std::size_t size) {
+  std::mt19937_64 random(1);
+  Seeds all(count, std::string(size, '\0'));
+  for (std::string& each : all)
+    for (char& byte : each) byte = static_cast<char>(random() & 255u);
+  return all;
+}
 
 const Target controller_target(
     "controller", 1024, []() -> Seeds { return random_bytes(40, 300); },

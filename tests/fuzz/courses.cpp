@@ -9,7 +9,7 @@
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/course/course_check.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
-#include "support/call_limits.hpp"
+#include "support/promise.hpp"
 #include "support/temporary_folder.hpp"
 #include "vehicle/course_folder.hpp"
 #include "vehicle/planner/planner_calls.hpp"

@@ -6,8 +6,7 @@
 #include <random>
 
 #include "fuzz/target.hpp"
-#include "support/promise.hpp"
-#include "support/repetitions.hpp"
+#include "support/adversarial_tries.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace slalom::fuzz {

@@ -3,14 +3,25 @@
 #include <sstream>
 
 #include "fuzz/target.hpp"
+#include "slalom/vehicle/model/identification.hpp"
 #include "src/evaluation/json.hpp"
-#include "support/identification_promise.hpp"
+#include "support/promise.hpp"
 #include "tools/recording/driven_recording.hpp"
 #include "view/recording/mcap_writer.hpp"
 #include "view/recording/replay.hpp"
 
 namespace slalom::fuzz {
 namespace {
+
+/// Throws Finding unless all estimates are finite and no deviation is negative.
+void check_identification(const vehicle::Identification& found) {
+  for (const vehicle::Identified& each : {found.steering_gain, found.steering_offset, found.delay,
+                                          found.time_constant, found.wheelbase, found.understeer})
+    testing::require(std::isfinite(each.value) && each.deviation >= 0,
+                     "estimates are finite, deviations are not negative");
+  testing::require(std::isfinite(found.speed_scale) && std::isfinite(found.residual) && found.explained <= 1,
+                   "what is explained is finite");
+}
 
 /// A drive in curves, of a car that does what it is told.
 std::string drive(int ticks) {
@@ -46,7 +57,7 @@ const Target driven_recording_target(
     [](std::string_view bytes) {
       const auto samples = tools::read_drive(scratch_file("drive.mcap", bytes), tools::Wanted::scans).samples;
       try {
-        testing::check_identification(vehicle::identify(samples));
+        check_identification(vehicle::identify(samples));
         return true;
       } catch (const std::invalid_argument&) {  // too few samples
         return false;

@@ -1,6 +1,6 @@
 #include "fuzz/target.hpp"
 
-#include "support/call_limits.hpp"
+#include "support/promise.hpp"
 
 namespace slalom::fuzz {
 

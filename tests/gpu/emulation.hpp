@@ -12,7 +12,7 @@ namespace slalom::gpu {
 template <class P>
 void emulate(const char* kernel, int blocks, int shared_bytes, const void* argument) {
   const auto& a = *static_cast<const Arguments<P>*>(argument);
-  std::vector<Four> shared(static_cast<std::size_t>(shared_bytes / 16 + 1));
+  std::vector<Four> shared(shared_bytes / 16 + 1);
   float* const memory = &shared[0].x;
   if (std::string_view(kernel) == "slalom_guides") {
     for (int guide = 0; guide < blocks; ++guide) MovingGuide<P>{a, guide, memory}.run();

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "slalom/core/derivatives/linearize.hpp"
-#include "slalom/core/problem_evaluator.hpp"
 #include "support/allocations.hpp"
+#include "support/rollouts.hpp"
 #include "support/thrown_words.hpp"
 
 namespace slalom::maps {
@@ -21,7 +21,7 @@ constexpr FieldGeometry turned{23, 17, 0.25, {3, -2, 0.7}};
 Field random_field(const FieldGeometry& geometry, unsigned seed, std::vector<double>* samples = nullptr) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-2, 2);
-  std::vector<double> values(static_cast<std::size_t>(geometry.width * geometry.height));
+  std::vector<double> values(geometry.width * geometry.height);
   for (double& v : values) v = static_cast<double>(static_cast<float>(uniform(random)));
   if (samples) *samples = values;
   return Field(geometry, values);
@@ -33,8 +33,7 @@ TEST(Field, HasItsSamplesInTheCentresOfCells) {
   for (int row = 0; row < turned.height; ++row) {
     for (int column = 0; column < turned.width; ++column) {
       const Point p = turned.center(column, row);
-      EXPECT_NEAR(field.value(p.x, p.y), samples[static_cast<std::size_t>(row * turned.width + column)],
-                  1e-6);
+      EXPECT_NEAR(field.value(p.x, p.y), samples[row * turned.width + column], 1e-6);
     }
   }
 }
@@ -125,18 +124,13 @@ TEST(Field, IsTheSameInLanesOfEveryInstructionSet) {
   std::normal_distribution<float> normal(0, 8);
   for (int row = 0; row < batch.rows(); ++row)
     for (int i = 0; i < batch.samples(); ++i) batch.data(row)[i] = normal(random);
-  for (const auto target :
-       {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
-    if (!simd::supported(target)) continue;
+  for (const auto target : slalom::testing::instruction_sets()) {
     ProblemEvaluator<Walker> evaluator({field}, target);
     evaluator.set_state({1, 2});
-    AlignedBuffer costs(batch.stride());
-    std::vector<std::uint8_t> collided(static_cast<std::size_t>(batch.stride()));
-    evaluator.evaluate(batch, 0, batch.samples(), costs.data(), collided.data());
+    const auto costs = slalom::testing::roll_out(evaluator, batch).costs;
     for (int i = 0; i < batch.samples(); ++i) {
-      Input<double, 2> u[3];
-      for (int k = 0; k < 3; ++k) u[k] = {{batch.row(k, 0)[i], batch.row(k, 1)[i]}};
-      EXPECT_NEAR(costs[i], predict(evaluator.problem(), {1.0, 2.0}, u, 3, nullptr).value, 3e-3)
+      const auto u = slalom::testing::inputs_of<2>(batch, i);
+      EXPECT_NEAR(costs[i], predict(evaluator.problem(), {1.0, 2.0}, u.data(), 3, nullptr).value, 3e-3)
           << simd::name(target) << " sample " << i;
     }
   }

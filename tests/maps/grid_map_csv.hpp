@@ -1,14 +1,36 @@
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "maps/csv_table.hpp"
 #include "slalom/maps/cell_grid.hpp"
 
 namespace slalom::testing {
+
+/// The numbers of a comma-separated file, row by row; "nan" and "inf" are read too.
+inline std::vector<std::vector<double>> read_csv_numbers(const std::filesystem::path& path,
+                                                         bool skip_header) {
+  std::ifstream stream(path);
+  if (!stream) throw std::runtime_error(path.string() + ": cannot be read");
+  std::vector<std::vector<double>> rows;
+  std::string line;
+  if (skip_header) std::getline(stream, line);
+  while (std::getline(stream, line)) {
+    auto& row = rows.emplace_back();
+    for (const char* text = line.c_str(); *text;) {
+      char* end = nullptr;
+      row.push_back(std::strtod(text, &end));
+      if (end == text) throw std::runtime_error(path.string() + ": no number: " + line);
+      text = *end == ',' ? end + 1 : end;
+      while (*text == '\r' || *text == ' ') ++text;
+    }
+  }
+  return rows;
+}
 
 /// A map of golden data: its cells, with the ring for "outside", and where they lie.
 template <int Layers>
@@ -24,44 +46,32 @@ struct GridMap {
 template <int Layers>
 GridMap<Layers> load_grid_map(const std::vector<std::filesystem::path>& layer_files, double resolution,
                               double center_x, double center_y, const float (&outside)[Layers]) {
-  const auto first = read_csv_numbers(layer_files.at(0), false);
-  const int rows = static_cast<int>(first.size()), columns = static_cast<int>(first.at(0).size());
+  std::vector<std::vector<std::vector<double>>> layers;
+  for (const auto& file : layer_files) layers.push_back(read_csv_numbers(file, false));
+  const int rows = static_cast<int>(layers[0].size()), columns = static_cast<int>(layers[0].at(0).size());
   GridMap<Layers> map{{rows, columns, resolution, center_x, center_y}, maps::CellGrid<Layers>(rows, columns)};
   map.cells.fill(outside);
-  for (std::size_t layer = 0; layer < Layers; ++layer) {
-    const auto values = layer == 0 ? first
-                        : layer < layer_files.size()
-                            ? read_csv_numbers(layer_files[layer], false)
-                            : std::vector(first.size(), std::vector<double>(first[0].size()));
-    if (values.size() != first.size())
-      throw std::runtime_error(layer_files[layer].string() + ": wrong number of rows");
-    for (int row = 0; row < rows; ++row) {
-      const auto& line = values[static_cast<std::size_t>(row)];
-      if (line.size() != first[0].size())
-        throw std::runtime_error(layer_files[layer].string() + ": wrong number of columns");
-      for (int column = 0; column < columns; ++column) {
-        map.cells.at(row, column)[layer] = static_cast<float>(line[static_cast<std::size_t>(column)]);
-      }
-    }
-  }
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      for (std::size_t layer = 0; layer < Layers; ++layer)
+        map.cells.at(row, column)[layer] =
+            layer < layers.size() ? static_cast<float>(layers[layer].at(row).at(column)) : 0.0f;
   return map;
 }
 
 /// The obstacle map `<id>_obstacle.csv` of golden data, in the robot's frame: 10 x 10 m, centre (3, 0);
-/// outside 100.
-inline GridMap<1> load_obstacle_map(const std::filesystem::path& folder, const std::string& id,
-                                    double resolution = 0.05, double center_x = 3, double center_y = 0,
-                                    float outside = 100) {
-  return load_grid_map<1>({folder / (id + "_obstacle.csv")}, resolution, center_x, center_y, {outside});
+/// outside -1.
+inline GridMap<1> load_obstacle_map(const std::filesystem::path& folder, const std::string& id) {
+  return load_grid_map<1>({folder / (id + "_obstacle.csv")}, 0.05, 3, 0, {-1});
 }
 
 /// The reference map {distance, yaw, speed, 0} of golden data, centred on the robot; outside: distance 20,
 /// yaw 2, speed 0.
 inline GridMap<4> load_reference_map(const std::filesystem::path& folder, const std::string& id,
-                                     double robot_x, double robot_y, double resolution = 0.1) {
+                                     double robot_x, double robot_y) {
   return load_grid_map<4>(
-      {folder / (id + "_distance.csv"), folder / (id + "_angle.csv"), folder / (id + "_speed.csv")},
-      resolution, robot_x, robot_y, {20, 2, 0, 1});
+      {folder / (id + "_distance.csv"), folder / (id + "_angle.csv"), folder / (id + "_speed.csv")}, 0.1,
+      robot_x, robot_y, {20, 2, 0, 1});
 }
 
 }  // namespace slalom::testing

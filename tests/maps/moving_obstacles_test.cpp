@@ -8,11 +8,10 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
-#include <vector>
 
-#include "slalom/core/problem_evaluator.hpp"
 #include "support/allocations.hpp"
 #include "support/predicted.hpp"
+#include "support/rollouts.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -211,23 +210,17 @@ TEST(MovingObstacles, EveryProblemMeetsThemInLanesAsInDouble) {
       batch.at(k, 1, i) = v;
     }
   }
-  for (const simd::Target target :
-       {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
-    if (!simd::supported(target)) continue;
+  for (const simd::Target target : testing::instruction_sets()) {
     ProblemEvaluator<Walker> evaluator(walker, target);
     evaluator.set_state({0, 0});
-    std::vector<float> costs(static_cast<std::size_t>(batch.stride()));
-    std::vector<std::uint8_t> collided(costs.size());
-    evaluator.evaluate(batch, 0, samples, costs.data(), collided.data());
+    const auto [costs, collided] = testing::roll_out(evaluator, batch);
     int collisions = 0, differ = 0;
     for (int i = 0; i < samples; ++i) {
-      const Input<double, 2> u{{double(batch.at(0, 0, i)), double(batch.at(0, 1, i))}};
-      const std::vector<Input<double, 2>> inputs(steps, u);
+      const auto inputs = testing::inputs_of<2>(batch, i);
       const Cost<double> exact = predict(walker, {0.0, 0.0}, inputs.data(), steps, nullptr);
-      const auto k = static_cast<std::size_t>(i);
       // Rounding may move a state across the edge of a box.
-      differ += std::abs(static_cast<double>(costs[k]) - exact.value) > 1e-3 * (1 + exact.value) ||
-                exact.collided != (collided[k] != 0);
+      differ +=
+          std::abs(costs[i] - exact.value) > 1e-3 * (1 + exact.value) || exact.collided != (collided[i] != 0);
       collisions += exact.collided;
     }
     EXPECT_LE(differ, 1);
@@ -270,6 +263,39 @@ TEST(MovingObstacles, RefuseOptionsOutOfRange) {
   options.max_probability = 1.5;
   EXPECT_THROW(MovingObstacles(options, 1), std::invalid_argument);
   EXPECT_THROW(MovingObstacles({}, 0), std::invalid_argument);
+}
+
+/// A square of 0.4 m that has one pose.
+const testing::Predicted standing(0.4, 0.4, {{1, {3, 0, 0}}}, 1);
+
+/// Readings that end on something that moves are dropped, whatever the turn of the scanner, and no others.
+TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
+  constexpr int beams = 360;
+  const double increment = 2 * std::numbers::pi / beams;
+  for (const double yaw : {0.0, 1.0, 3.1, -2.0}) {
+    const Pose sensor{0, 0, yaw};
+    std::vector<float> ranges(beams, 2.9f);  // on the obstacle ahead, elsewhere beside it
+    ranges[0] = 5;
+    const LaserScanView scan{ranges, -std::numbers::pi, increment, 0, 10};
+    std::vector<float> kept = ranges;
+    drop_readings_of(standing.obstacle, 0.1, sensor, scan, kept);
+    for (int i = 0; i < beams; ++i) {
+      const double angle = yaw - std::numbers::pi + i * increment, range = ranges[i];
+      const bool on =
+          std::abs(range * std::cos(angle) - 3) <= 0.3 && std::abs(range * std::sin(angle)) <= 0.3;
+      EXPECT_EQ(std::isnan(kept[i]), on) << yaw << ", beam " << i;
+    }
+  }
+}
+
+TEST(MovingReadings, StayWhereBeamsRunClockwiseOrTheObstacleHasNoPoses) {
+  const std::vector<float> ranges(360, 2.9f);
+  std::vector<float> kept = ranges;
+  drop_readings_of(standing.obstacle, 0.1, {}, {ranges, std::numbers::pi, -std::numbers::pi / 180, 0, 10},
+                   kept);
+  EXPECT_EQ(kept, ranges);
+  drop_readings_of({}, 0.1, {}, {ranges, -std::numbers::pi, std::numbers::pi / 180, 0, 10}, kept);
+  EXPECT_EQ(kept, ranges);
 }
 
 }  // namespace

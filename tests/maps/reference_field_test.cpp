@@ -1,5 +1,4 @@
 #include "slalom/maps/reference_field.hpp"
-#include "slalom/maps/published.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +6,9 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+
+#include "slalom/maps/local_cost_map.hpp"
+#include "support/allocations.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -30,7 +32,7 @@ void expect_nearest(const ReferenceField& field, const std::vector<ReferencePoin
       const double x = geometry.cell_x(row), y = geometry.cell_y(column);
       double best = 1e300;
       for (const int i : field.window()) {
-        const ReferencePoint& point = path[static_cast<std::size_t>(i)];
+        const ReferencePoint& point = path[i];
         best = std::min(best, std::hypot(point.x - x, point.y - y));
       }
       const float* cell = field.cells().at(row, column);
@@ -38,7 +40,7 @@ void expect_nearest(const ReferenceField& field, const std::vector<ReferencePoin
       // The point whose speed it has is as near as the nearest.
       bool found = false;
       for (const int i : field.window()) {
-        const ReferencePoint& point = path[static_cast<std::size_t>(i)];
+        const ReferencePoint& point = path[i];
         found |= static_cast<float>(point.speed) == cell[2] && static_cast<float>(point.yaw) == cell[1] &&
                  std::hypot(point.x - x, point.y - y) <= best + 1e-9;
       }
@@ -254,6 +256,21 @@ TEST(ReferenceField, RejectsInvalidOptions) {
   };
   refused([](auto& o) { o.points = 0; });
   refused([](auto& o) { o.outside.distance = NAN; });
+}
+
+TEST(MapUpdates, AllocateNothing) {
+  ReferenceField field(circle(300, 5));
+  LocalCostMap map;
+  const std::vector<float> ranges(1080, 2.0F);
+  const Point points[] = {{1, 1}, {2, 0}};
+  const long before = testing::allocations();
+  ASSERT_GT(before, 0) << "nothing is counted";
+  for (int i = 0; i < 5; ++i) {
+    field.update({5, 0.1 * i});
+    map.update({ranges, -2.35 + 0.01 * i, 4.7 / 1080, 0, 30});
+    map.add_points(points);
+  }
+  EXPECT_EQ(testing::allocations(), before);
 }
 
 }  // namespace

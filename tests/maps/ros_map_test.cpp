@@ -19,6 +19,7 @@ namespace {
 
 using slalom::testing::TemporaryFolder;
 using Path = std::filesystem::path;
+constexpr auto f = Occupancy::free, o = Occupancy::occupied, u = Occupancy::unknown;
 
 const std::string thresholds = "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 const std::string geometry = "image: map.pgm\nresolution: 0.05\norigin: [-1.5, 2, 0.25]\n";
@@ -49,7 +50,6 @@ TEST_F(RosMap, RowZeroIsTheBottomOfTheImage) {
   EXPECT_EQ(grid.origin.x, -1.5);
   EXPECT_EQ(grid.origin.y, 2);
   EXPECT_EQ(grid.origin.yaw, 0.25);
-  const auto f = Occupancy::free, o = Occupancy::occupied, u = Occupancy::unknown;
   EXPECT_EQ(grid.cells, (std::vector<Occupancy>{f, f, o, o, u, f}));
 }
 
@@ -68,15 +68,12 @@ TEST_F(RosMap, TheOriginAndTheSizeOfACellHaveLimits) {
 
 TEST_F(RosMap, NegateSwapsBlackAndWhite) {
   write("map.pgm", pgm);
-  const OccupancyGrid grid =
-      load_ros_map(map(geometry + "negate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"));
-  const auto f = Occupancy::free, o = Occupancy::occupied;
-  EXPECT_EQ(grid.cells, (std::vector<Occupancy>{o, o, f, f, o, o}));
+  EXPECT_EQ(load_ros_map(map(geometry + "negate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.196\n")).cells,
+            (std::vector<Occupancy>{o, o, f, f, o, o}));
 }
 
 TEST_F(RosMap, TheUnknownGreyOfAMapSaverIsUnknownThoughTheThresholdMakesItFree) {
   const std::string humble = "mode: trinary\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n";
-  const auto f = Occupancy::free, o = Occupancy::occupied, u = Occupancy::unknown;
   std::vector<std::string> notes;
   write("map.pgm", pgm);
   EXPECT_EQ(load_ros_map(map(geometry + humble), MapRule::map_server, &notes).cells,
@@ -100,17 +97,14 @@ TEST_F(RosMap, TheUnknownGreyOfAMapSaverIsUnknownThoughTheThresholdMakesItFree) 
 
 TEST_F(RosMap, RawModeReadsPercent) {
   write("map.pgm", "P2 3 2 255 0 100 50 255 0 100");
-  const OccupancyGrid grid = load_ros_map(map(geometry + thresholds + "mode: raw\n"));
-  const auto f = Occupancy::free, o = Occupancy::occupied, u = Occupancy::unknown;
-  EXPECT_EQ(grid.cells, (std::vector<Occupancy>{u, f, o, f, o, u}));
+  EXPECT_EQ(load_ros_map(map(geometry + thresholds + "mode: raw\n")).cells,
+            (std::vector<Occupancy>{u, f, o, f, o, u}));
 }
 
 TEST_F(RosMap, GreyThresholdIgnoresTheYamlRules) {
   write("map.pgm", "P2 3 2 255 128 129 205 0 1 255");
   const Path path = map("image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 1\n");
-  const OccupancyGrid grid = load_ros_map(path, MapRule::grey_threshold);
-  const auto f = Occupancy::free, o = Occupancy::occupied;
-  EXPECT_EQ(grid.cells, (std::vector<Occupancy>{o, o, f, o, f, f}));
+  EXPECT_EQ(load_ros_map(path, MapRule::grey_threshold).cells, (std::vector<Occupancy>{o, o, f, o, f, f}));
 }
 
 TEST_F(RosMap, BinaryPgmOfOneAndTwoBytes) {
@@ -257,8 +251,7 @@ TEST_F(RosMap, ATruncatedPngIsNamed) {
   for (int i = 0; i < 64 * 64; ++i) image.grey.push_back(static_cast<std::uint8_t>(i * 7919 >> 3));
   save_png(image, folder_ / "whole.png");
   EXPECT_EQ(load_image(folder_ / "whole.png").grey, image.grey);
-  std::ifstream stream(folder_ / "whole.png", std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::string bytes = testing::content(folder_ / "whole.png");
   for (const std::size_t length : {std::size_t{10}, std::size_t{30}, std::size_t{60}, bytes.size() / 2}) {
     EXPECT_THROW(load_image(write("cut.png", bytes.substr(0, length))), IoError) << length;
   }

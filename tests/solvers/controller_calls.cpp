@@ -19,7 +19,6 @@
 #include "slalom/solvers/proposals.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/set_option.hpp"
-#include "support/call_limits.hpp"
 #include "support/promise.hpp"
 
 namespace slalom::testing {
@@ -90,7 +89,7 @@ void draw_proposals(Proposals<P>& proposals, Adversary& adversary) {
   for (int i = adversary.below(3); i > 0; --i) {
     for (auto& u : inputs)
       for (double& value : u.value) value = adversary.any(-3, 3);
-    proposals.add(std::span(inputs).first(static_cast<std::size_t>(adversary.below(5))));
+    proposals.add(std::span(inputs).first(adversary.below(5)));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "slalom/slalom.hpp"
 #include "solvers/problems.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom {
 namespace {
@@ -80,7 +81,7 @@ TEST(SolveBatch, GivesThePlansOfSingleSolvesOnAnyNumberOfThreads) {
     std::vector<double> found(states.size());
     for (int k = 0; k < 2; ++k) {  // the second solve starts from each controller's own last plan
       solve_batch(std::span(batch), states, {.elapsed = 0.1}, pool,
-                  [&](int i, const auto& plan) { found[static_cast<std::size_t>(i)] = plan.inputs[0][0]; });
+                  [&](int i, const auto& plan) { found[i] = plan.inputs[0][0]; });
       for (std::size_t i = 0; i < states.size(); ++i)
         EXPECT_EQ(found[i], single[i].solve(states[i], {.elapsed = 0.1}).inputs[0][0]) << i;
     }
@@ -138,13 +139,8 @@ std::unique_ptr<Solver> make_solver(const UnboundedOptions& options, int inputs,
 }
 
 TEST(Controller, NamesTheBoundThatOptionsLack) {
-  try {
-    const Controller controller(DoubleIntegrator{}, SolverOptions(UnboundedOptions{}));
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "unbounded.input_min: missing; the options of a method must have this PerInput");
-  }
+  EXPECT_EQ(message_of([] { Controller(DoubleIntegrator{}, SolverOptions(UnboundedOptions{})); }),
+            "unbounded.input_min: missing; the options of a method must have this PerInput");
 }
 
 /// A problem that wants all samples of a batch at once.

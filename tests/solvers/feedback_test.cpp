@@ -11,6 +11,7 @@
 #include "slalom/problems/pendulum.hpp"
 #include "slalom/slalom.hpp"
 #include "support/allocations.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom {
 namespace {
@@ -84,7 +85,7 @@ Eigen::VectorXd best_inputs(const Coupled& problem, Coupled::State<double> x, in
   const int n = 2 * steps;
   const auto cost = [&](int i, int j, double size) {
     std::vector<Input<double, 2>> u(static_cast<std::size_t>(steps), Input<double, 2>{});
-    for (const int input : {i, j}) u[static_cast<std::size_t>(input / 2)].value[input % 2] += size;
+    for (const int input : {i, j}) u[input / 2].value[input % 2] += size;
     return predict(problem, x, u.data(), steps, nullptr).value;
   };
   const double rest = cost(0, 0, 0);
@@ -111,9 +112,8 @@ TEST(Feedback, IsTheDerivativeOfTheBestInputsOfALinearQuadraticProblem) {
   const auto at_rest = best_inputs(problem, {0, 0}, steps);
   const auto moved = best_inputs(problem, {1, 0}, steps), fast = best_inputs(problem, {0, 1}, steps);
   for (int i = 0; i < 2; ++i) {
-    const auto row = static_cast<std::size_t>(2 * i);
-    EXPECT_NEAR(feedback.gain(0)[row], moved[i] - at_rest[i], 1e-8);
-    EXPECT_NEAR(feedback.gain(0)[row + 1], fast[i] - at_rest[i], 1e-8);
+    EXPECT_NEAR(feedback.gain(0)[2 * i], moved[i] - at_rest[i], 1e-8);
+    EXPECT_NEAR(feedback.gain(0)[2 * i + 1], fast[i] - at_rest[i], 1e-8);
   }
 }
 
@@ -125,7 +125,7 @@ TEST(Feedback, HoldsAnUnstablePendulumBetweenSolves) {
   ASSERT_TRUE(feedback.update(controller, plan));
   problems::Pendulum::State<double> open{0.1, 0.1}, closed = open;
   for (int k = 0; k < 50; ++k) {
-    open = problem.step(open, plan.inputs[static_cast<std::size_t>(k)]);
+    open = problem.step(open, plan.inputs[k]);
     closed = problem.step(closed, feedback.input_at(k * problem.dt, closed));
   }
   EXPECT_GT(std::abs(open.angle - plan.states[50].angle), 0.5);
@@ -233,13 +233,8 @@ TEST(FeedbackGains, RejectsBoundsInTheWrongOrder) {
   InputBounds bounds(2);
   bounds.low[1] = 2;
   bounds.high[1] = -1;
-  try {
-    const FeedbackGains gains(3, 2, 5, bounds);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "feedback: bounds: the lower bound of input 1, 2, must be at most the upper bound, -1");
-  }
+  EXPECT_EQ(message_of([&] { FeedbackGains(3, 2, 5, bounds); }),
+            "feedback: bounds: the lower bound of input 1, 2, must be at most the upper bound, -1");
 }
 
 TEST(FeedbackGains, AnIndefiniteHessianCountsAsTheNearestSemidefiniteOne) {

@@ -14,35 +14,22 @@
 #include "golden.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/gaussian_fit.hpp"
+#include "solvers/problems.hpp"
 
 namespace slalom::testing {
 
 using Json = nlohmann::json;
+using detail::rows_of;
 
 /// Reads a line of JSON in which NaN, Infinity and -Infinity stand bare; they become strings.
-inline Json parse_line(const std::string& line) {
-  std::string text;
-  text.reserve(line.size() + 64);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size();) {
-    if (line[i] == '"') quoted = !quoted;
-    std::size_t length = 0;
-    if (!quoted) {
-      for (const char* token : {"NaN", "-Infinity", "Infinity"}) {
-        if (line.compare(i, std::char_traits<char>::length(token), token) == 0) {
-          length = std::char_traits<char>::length(token);
-          break;
-        }
-      }
+inline Json parse_line(std::string line) {
+  for (const char* token : {"NaN", "Infinity"})
+    for (auto at = line.find(token); at != std::string::npos; at = line.find(token, at + 3)) {
+      line.insert(line.find_first_of(",]}", at), 1, '"');
+      if (line[at - 1] == '-') --at;
+      line.insert(at, 1, '"');
     }
-    if (length == 0) {
-      text += line[i++];
-    } else {
-      text += '"' + line.substr(i, length) + '"';
-      i += length;
-    }
-  }
-  return Json::parse(text);
+  return Json::parse(line);
 }
 
 inline double number(const Json& value) {
@@ -69,40 +56,20 @@ void for_each_line(const std::filesystem::path& path, Use use) {
     if (!line.empty()) use(parse_line(line));
 }
 
-/// Control sequences [sample][row] as the solvers hold them, [row][sample], padded.
-struct Batch {
-  std::vector<float> values;
-  int samples = 0, stride = 0, rows = 0;
-
-  explicit Batch(const Json& sequences)
-      : samples(static_cast<int>(sequences.size())),
-        stride((samples + simd::padding - 1) / simd::padding * simd::padding),
-        rows(static_cast<int>(sequences.at(0).size())) {
-    values.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows));
-    for (int k = 0; k < samples; ++k)
-      for (int r = 0; r < rows; ++r)
-        view().row(r)[k] =
-            static_cast<float>(number(sequences[static_cast<std::size_t>(k)][static_cast<std::size_t>(r)]));
-  }
-  Batch(int rows_of, int samples_of)
-      : samples(samples_of),
-        stride((samples + simd::padding - 1) / simd::padding * simd::padding),
-        rows(rows_of) {
-    values.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows));
-  }
-  detail::Rows view() { return {values.data(), stride, rows}; }
-  detail::Range range() const { return {0, stride}; }
-  std::vector<float> sequence(int sample) {
-    std::vector<float> result;
-    for (int r = 0; r < rows; ++r) result.push_back(view().row(r)[sample]);
-    return result;
-  }
-};
+/// Control sequences [sample][row] as the solvers hold them.
+inline SequenceBatch batch_of(const Json& sequences) {
+  SequenceBatch batch(1, static_cast<int>(sequences.at(0).size()), static_cast<int>(sequences.size()));
+  for (int k = 0; k < batch.samples(); ++k) batch.set_sample(k, numbers<float>(sequences[k]));
+  return batch;
+}
+inline detail::Range all_of(const SequenceBatch& batch) {
+  return {0, batch.stride()};
+}
 
 /// Values [sample], padded with `fill`.
 inline std::vector<float> padded_numbers(const Json& list, float fill) {
   auto values = numbers<float>(list);
-  values.resize((values.size() + simd::padding - 1) / simd::padding * simd::padding, fill);
+  values.resize(padded(static_cast<int>(values.size())), fill);
   return values;
 }
 

@@ -84,9 +84,6 @@ TEST_P(ModeSeeking, SvgMppiCommitsWhereMppiAverages) {
   print("svg_mppi as printed", paper);
   print("svg_mppi, nominal only", nominal);
   print("svg_mppi, covariance only", covariance);
-  print("reverse_mppi", outcome(ReverseMppiOptions{.temperature = temperature}));
-  print("sv_mpc", outcome(SvMpcOptions{.temperature = temperature}));
-  print("cem", outcome(CemOptions{}));
 
   // SVG-MPPI keeps clear of the disc, by either side as the seed has it, with a narrower distribution ...
   EXPECT_LT(both.collided, seeds / 20);

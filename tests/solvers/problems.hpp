@@ -1,10 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,31 +30,6 @@ struct DoubleIntegrator {
   T terminal_cost(const State<T>& x) const {
     return T(10) * x.position * x.position + x.speed * x.speed;
   }
-
-  /// The optimal inputs from a state (Riccati recursion), which need no bounds if they are small.
-  std::vector<double> optimum(State<double> x, int horizon) const {
-    double a = 10, b = 0, c = 1;  // value function (a b; b c)
-    std::vector<std::array<double, 2>> gain(static_cast<std::size_t>(horizon));
-    for (int k = horizon - 1; k >= 0; --k) {
-      const double denominator = 0.1 + dt * dt * c;
-      const double k0 = dt * b / denominator, k1 = dt * (b * dt + c) / denominator;
-      const double a00 = 1, a01 = dt, a10 = -dt * k0, a11 = 1 - dt * k1;
-      const double na = 1 + 0.1 * k0 * k0 + a00 * (a * a00 + b * a10) + a10 * (b * a00 + c * a10);
-      const double nb = 0.1 * k0 * k1 + a00 * (a * a01 + b * a11) + a10 * (b * a01 + c * a11);
-      const double nc = 0.1 + 0.1 * k1 * k1 + a01 * (a * a01 + b * a11) + a11 * (b * a01 + c * a11);
-      gain[static_cast<std::size_t>(k)] = {k0, k1};
-      a = na;
-      b = nb;
-      c = nc;
-    }
-    std::vector<double> u;
-    for (int k = 0; k < horizon; ++k) {
-      const auto& g = gain[static_cast<std::size_t>(k)];
-      u.push_back(-g[0] * x.position - g[1] * x.speed);
-      x = step<double>(x, {{u.back()}});
-    }
-    return u;
-  }
 };
 
 /// An evaluator made of a function of a batch and a sample, which returns the cost and whether it collides.
@@ -82,6 +53,13 @@ class FunctionEvaluator final : public BatchEvaluator {
   int inputs_;
   Function function_;
 };
+
+/// The control sequence of a sample [row].
+inline std::vector<float> sequence(const SequenceBatch& batch, int sample) {
+  std::vector<float> values(batch.rows());
+  batch.get_sample(sample, values);
+  return values;
+}
 
 /// An evaluator of sequences of one input, whose cost is the sum of cost(input, step) over the steps.
 template <class Cost>

@@ -9,6 +9,8 @@
 
 #include "slalom/core/risk/risk_evaluator.hpp"
 #include "slalom/solvers/controllers.hpp"
+#include "support/rollouts.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom {
 namespace {
@@ -60,7 +62,7 @@ SequenceBatch some_inputs() {
 /// The measure of costs in double, by its definition.
 double risk_of(std::vector<double> costs, const RiskOptions& options) {
   std::sort(costs.rbegin(), costs.rend());
-  const double count = static_cast<double>(costs.size());
+  const double count = costs.size();
   double sum = 0;
   switch (options.measure) {
     case RiskMeasure::mean:
@@ -93,14 +95,10 @@ TEST_P(RiskMeasures, AgreeWithTheCostsOfEveryVariant) {
   const Glider::State<double> start{0, 0.4, 0};
   evaluator.set_state(start);
   const SequenceBatch batch = some_inputs();
-  std::vector<float> costs(static_cast<std::size_t>(batch.stride()));
-  std::vector<std::uint8_t> collided(costs.size());
-  evaluator.evaluate(batch, 0, samples, costs.data(), collided.data());
+  const auto [costs, collided] = testing::roll_out(evaluator, batch);
   int hits = 0, differ = 0;
   for (int sample = 0; sample < samples; ++sample) {
-    std::vector<Input<double, 1>> u(Glider::steps);
-    for (int k = 0; k < Glider::steps; ++k)
-      u[static_cast<std::size_t>(k)][0] = static_cast<double>(batch.at(k, 0, sample));
+    auto u = testing::inputs_of<1>(batch, sample);
     // The rates of inputs are limited in rollouts.
     hold_input_rates(Glider{}, {0.0}, u.data(), Glider::steps);
     std::vector<double> of_variants;
@@ -111,10 +109,9 @@ TEST_P(RiskMeasures, AgreeWithTheCostsOfEveryVariant) {
       of_variants.push_back(cost.value);
       hit = hit || cost.collided;
     }
-    const auto at = static_cast<std::size_t>(sample);
     const double expected = risk_of(of_variants, options_);
-    ASSERT_NEAR(static_cast<double>(costs[at]), expected, 1e-4 * (1 + expected)) << "sample " << sample;
-    ASSERT_EQ(collided[at], hit) << "sample " << sample;
+    ASSERT_NEAR(costs[sample], expected, 1e-4 * (1 + expected)) << "sample " << sample;
+    ASSERT_EQ(collided[sample], hit) << "sample " << sample;
     EXPECT_NEAR(evaluator.predict(start, u.data(), Glider::steps, nullptr).value, expected,
                 1e-5 * (1 + expected));
     hits += hit;
@@ -129,10 +126,8 @@ TEST_P(RiskMeasures, DoNotDependOnTheRangesOfSamples) {
   RiskEvaluator evaluator(Glider{}, options_);
   evaluator.set_state({0, 0.4, 0});
   const SequenceBatch batch = some_inputs();
-  const auto length = static_cast<std::size_t>(batch.stride());
-  std::vector<float> whole(length), parts(length);
-  std::vector<std::uint8_t> collided(length);
-  evaluator.evaluate(batch, 0, samples, whole.data(), collided.data());
+  auto [whole, collided] = testing::roll_out(evaluator, batch);
+  std::vector<float> parts(whole.size());
   for (int first = 0; first < samples; first += simd::padding)
     evaluator.evaluate(batch, first, std::min(simd::padding, samples - first), parts.data(), collided.data());
   whole.resize(samples);
@@ -161,22 +156,14 @@ TEST(RiskEvaluator, EqualsTheProblemForOneVariant) {
   RiskEvaluator risk(Glider{}, {});
   ProblemEvaluator plain(Glider{});
   const SequenceBatch batch = some_inputs();
-  std::vector<float> a(static_cast<std::size_t>(batch.stride())), b(a.size());
-  std::vector<std::uint8_t> collided(a.size());
   risk.set_state({0, 0.4, 0.1});
   plain.set_state({0, 0.4, 0.1});
-  risk.evaluate(batch, 0, samples, a.data(), collided.data());
-  plain.evaluate(batch, 0, samples, b.data(), collided.data());
-  EXPECT_EQ(a, b);
+  EXPECT_EQ(testing::roll_out(risk, batch).costs, testing::roll_out(plain, batch).costs);
 }
 
 TEST(RiskEvaluator, RejectsOptionsOutOfRange) {
-  try {
-    const RiskEvaluator refused(Glider{}, {.variants = 33});
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "risk.risk_variants: 33 must be in [1, 32]");
-  }
+  EXPECT_EQ(message_of([] { RiskEvaluator(Glider{}, {.variants = 33}); }),
+            "risk.risk_variants: 33 must be in [1, 32]");
 }
 
 /// The share of flights over the cliff that collide, and the mean height above it.

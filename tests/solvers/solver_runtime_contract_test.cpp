@@ -3,6 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "slalom/problems/quadrotor.hpp"
+#include "support/allocation_failures.hpp"
 #include "support/allocations.hpp"
 
 namespace slalom {
@@ -87,7 +89,7 @@ TEST_P(SolverRuntimeContract, ACopyGoesOnWithTheSameBits) {
   original.reset();  // the copy does not need it
   for (int i = 3; i < 6; ++i) {
     solve(*copy, i);
-    EXPECT_EQ(bits(*copy), expected[static_cast<std::size_t>(i - 3)]) << i;
+    EXPECT_EQ(bits(*copy), expected[i - 3]) << i;
   }
 }
 
@@ -194,6 +196,36 @@ TEST(SvMpc, OnlyTheUnclampedSolutionLeavesTheBounds) {
   };
   EXPECT_LE(furthest(true), 0.45f);
   EXPECT_GT(furthest(false), 0.45f);
+}
+
+// Memory may run out at any allocation of a construction: std::bad_alloc, and nothing is lost.
+
+SolverOptions few_samples(SolverOptions options) {
+  small(options);
+  set(options, "samples", 40);
+  return options;
+}
+
+TEST(AllocationFailure, EverySolverIsMadeOrThrows) {
+  for (const OptionSet& each : option_sets())
+    for (const int threads : {1, 3}) {
+      SolverOptions options = few_samples(each.options);
+      set(options, "threads", threads);
+      SCOPED_TRACE(each.name + ", threads " + std::to_string(threads));
+      EXPECT_GT(fail_every_allocation([&] { return make_solver(options, 2)->inputs(); }), 10);
+    }
+}
+
+TEST(AllocationFailure, EveryControllerIsMadeOrThrowsAndThenSolves) {
+  for (const char* method : solver_names()) {
+    SCOPED_TRACE(method);
+    const SolverOptions options = few_samples(solver_options(method));
+    EXPECT_GT(fail_every_allocation([&] {
+                Controller controller{problems::Quadrotor{}, options};
+                return controller.solve({}).cost;
+              }),
+              10);
+  }
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ void compare_transport(const Json& solve, const std::string& where, Comparison& 
   for (std::size_t l = 0; l < solve["svgd_iterations"].size(); ++l) {
     const Json& iteration = solve["svgd_iterations"][l];
     for (std::size_t g = 0; g < iteration["grad"].size(); ++g) {
-      Batch samples(iteration["grad_samples"][g]);
+      SequenceBatch samples = batch_of(iteration["grad_samples"][g]);
       auto totals = padded_numbers(iteration["grad_sample_costs"][g], 0);
       auto particle = numbers<float>(iteration["particles_before"][g]);
       std::vector<float> weights(totals.size()), gradient(particle.size());
@@ -48,7 +48,7 @@ void compare_transport(const Json& solve, const std::string& where, Comparison& 
                                           .inverse_variance = inverse.data(),
                                           .distance_centre = previous.data(),
                                           .distance_weight = weight.data()};
-      detail::surrogate_gradient(how, samples.view(), samples.range(), samples.samples, totals.data(),
+      detail::surrogate_gradient(how, rows_of(samples), all_of(samples), samples.samples(), totals.data(),
                                  weights.data(), gradient.data());
       const std::string at = where + " iteration " + std::to_string(l) + " guide " + std::to_string(g);
       comparison.compare(gradient, numbers<double>(iteration["grad"][g]), at + " gradient", 1e-12);
@@ -93,21 +93,21 @@ void compare_update(const Json& solve, const std::filesystem::path& csv, const s
              weights = column(csv, "weight");
   ASSERT_EQ(costs.size(), solve["num_samples"].get<std::size_t>());
 
-  Batch samples(solve["samples_first"]);
-  const auto known = static_cast<std::size_t>(samples.samples);
+  SequenceBatch samples = batch_of(solve["samples_first"]);
+  const std::size_t known = samples.samples();
   const auto mean = numbers<float>(solve["prev_control_seq"]),
              nominal = numbers<float>(solve["nominal_control_seq"]),
              variance = numbers<float>(solve["covs_clamped"]);
-  std::vector<float> coefficients(mean.size()), with_term(costs.begin(), costs.begin() + samples.samples);
-  with_term.resize(static_cast<std::size_t>(samples.stride));
+  std::vector<float> coefficients(mean.size()), with_term(costs.begin(), costs.begin() + samples.samples());
+  with_term.resize(samples.stride());
   detail::control_coefficients(temperature, discount, 1e-4, mean.data(), nominal.data(), variance.data(),
-                               samples.rows, coefficients.data());
-  detail::kernels::add_linear(samples.view(), coefficients.data(), samples.range(), with_term.data());
-  comparison.compare(with_term, {totals.begin(), totals.begin() + samples.samples}, where + " control term");
+                               samples.rows(), coefficients.data());
+  detail::kernels::add_linear(rows_of(samples), coefficients.data(), all_of(samples), with_term.data());
+  comparison.compare(with_term, {totals.begin(), totals.begin() + samples.samples()},
+                     where + " control term");
 
   std::vector<float> all(totals.begin(), totals.end());
-  all.resize((all.size() + simd::padding - 1) / simd::padding * simd::padding,
-             std::numeric_limits<float>::infinity());
+  all.resize(padded(static_cast<int>(all.size())), std::numeric_limits<float>::infinity());
   std::vector<float> w(all.size());
   const detail::Range range{0, static_cast<int>(all.size())};
   const float least = detail::kernels::minimum(all.data(), range);
@@ -120,7 +120,7 @@ void compare_update(const Json& solve, const std::filesystem::path& csv, const s
   if (known == costs.size()) {
     const std::vector<float> zero(mean.size());
     std::vector<float> solution(mean.size());
-    detail::kernels::weighted_sums(samples.view(), w.data(), zero.data(), samples.range(), solution.data());
+    detail::kernels::weighted_sums(rows_of(samples), w.data(), zero.data(), all_of(samples), solution.data());
     comparison.compare(solution, numbers<double>(solve["result_control_seq"]), where + " solution");
   }
 }

@@ -3,15 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <limits>
 #include <new>
 
 #include "support/allocations.hpp"
 
 namespace slalom::testing {
-
-/// For `fail_every_allocation`: none is left out, however many there are.
-inline constexpr long every_allocation = std::numeric_limits<long>::max();
 
 /// Calls `make` again and again, each time with another of its allocations failing: every one up to `each`,
 /// from there on fewer and fewer; it then prints how many failed. Expects that it throws std::bad_alloc or

@@ -16,7 +16,7 @@ struct AnyOthers {
   std::vector<maps::PredictedObstacle> cars;
 
   std::span<const maps::PredictedObstacle> draw(Adversary& adversary) {
-    cars.resize(static_cast<std::size_t>(adversary.below(2) ? 0 : adversary.below(20)));
+    cars.resize(adversary.below(2) ? 0 : adversary.below(20));
     poses.resize(cars.size() * maps::PredictedObstacle::max_hypotheses * times);
     const bool hostile = adversary.once_in(3);
     const auto value = [&](double low, double high) {

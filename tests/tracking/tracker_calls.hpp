@@ -10,7 +10,6 @@
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor.hpp"
 #include "support/adversary.hpp"
-#include "support/call_limits.hpp"
 #include "support/promise.hpp"
 
 /// Trackers and predictors as state machines: updates with any scan, and what every object promises.

@@ -9,7 +9,6 @@
 #include "slalom/tracking/object_tracker.hpp"
 #include "support/adversarial_tries.hpp"
 #include "support/allocation_failures.hpp"
-#include "support/repetitions.hpp"
 #include "tracking/association.hpp"
 #include "tracking/box_fit.hpp"
 #include "tracking/map_background.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "slalom/core/error.hpp"
+#include "slalom/vehicle/published/options.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
@@ -109,8 +110,7 @@ TEST_F(ConfigurationFile, IsWrittenAsItIsRead) {
   EXPECT_EQ(back.planner.max_speed, c.planner.max_speed);
 }
 
-// Shares of the grip for parts of the path, however many inputs
-// the model has.
+// Shares of the grip for parts of the path, however many inputs the model has.
 TEST_F(ConfigurationFile, HasAnyNumberOfGripShares) {
   const std::vector<double> shares{0.9, 0.8, 0.7, 1};
   for (const char* model : {"kinematic", "single_track"}) {
@@ -161,6 +161,20 @@ TEST(ConfigurationKey, IsNamedWhereAMethodRejectsIt) {
   set_option(c, "mppi.input_max", "-1");
   EXPECT_EQ(message_of([&] { make_solver(c, "mppi", 1); }),
             "mppi.input_min: 1 must be at most input_max, -1");
+}
+
+template <class Options>
+void expect_equal(const Options& file, const Options& ours) {
+  const auto a = list_options(file), b = list_options(ours);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].value, b[i].value) << a[i].declaration.name;
+}
+
+// The vehicle and the planner of the golden tests are those of `--config published`.
+TEST(PublishedConfiguration, HasThePublishedVehicleAndPlanner) {
+  const Configuration file = load_configuration(SLALOM_CONFIGS "/published.yaml");
+  expect_equal(file.vehicle, published::vehicle_options());
+  expect_equal(file.planner, published::planner_options());
 }
 
 }  // namespace

@@ -1,44 +1,86 @@
-// Checks of a course's line and profile: known answers on circles and straights between walls.
+// Speed profiles, and checks of a course's line and profile: known answers on circles and straights.
 #include "slalom/vehicle/course/course_check.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace slalom::vehicle {
 namespace {
 
 constexpr double pi = 3.141592653589793;
 
+/// Points round a circle of this radius (m), counter-clockwise or, with `way` -1, clockwise.
+std::vector<maps::Point> ring(double radius, int count, int way = 1) {
+  std::vector<maps::Point> points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * pi * way * i / count;
+    points.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return points;
+}
+
 /// A circle of `radius` (m) at `speed` (m/s) in a free square map of 20 m.
 Course circle(double radius, double speed) {
   Course course;
   course.map = {200, 200, 0.1, {-10, -10, 0}, {}};
   course.map.cells.assign(40000, maps::Occupancy::free);
-  for (int i = 0; i < 200; ++i) {
-    const double angle = 2 * pi * i / 200;
-    course.waypoints.push_back({radius * std::cos(angle), radius * std::sin(angle), 0, speed, 0});
-  }
+  for (const maps::Point& point : ring(radius, 200))
+    course.waypoints.push_back({point.x, point.y, 0, speed, 0});
   complete_course(course);
   return course;
 }
 
+/// The highest speeds along a closed path whose points are `step` (m) apart.
+std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
+                                  const SpeedLimits& limits) {
+  const std::size_t n = curvature.size();
+  return feasible_speeds(std::vector<double>(n, limits.top_speed), curvature, std::vector<double>(n, step),
+                         true, limits);
+}
+
+TEST(SpeedProfile, IsTheLateralLimitOnACircleAndTheTopSpeedOnALine) {
+  const SpeedLimits limits;
+  for (const double v : speed_profile(std::vector<double>(50, 0.5), 0.1, limits))
+    EXPECT_NEAR(v, std::sqrt(limits.lateral_acceleration / 0.5), 1e-12);
+  for (const double v : speed_profile(std::vector<double>(50, 0.0), 0.1, limits))
+    EXPECT_EQ(v, limits.top_speed);
+}
+
+TEST(SpeedProfile, LeavesASlowPointAtTheLimitsOfMotorAndBrakes) {
+  // One tight row on an otherwise straight closed path: v^2 grows by 2 a s to both sides (a is shared with
+  // turning at the tight row itself, where all of the tyres' force is used).
+  SpeedLimits limits{100, 4, 2, 3};
+  std::vector<double> curvature(200, 0.0);
+  curvature[120] = 4.0;
+  const auto v = speed_profile(curvature, 0.1, limits);
+  EXPECT_NEAR(v[120], 1.0, 1e-12);
+  EXPECT_NEAR(v[121], 1.0, 1e-12);
+  EXPECT_NEAR(v[119], 1.0, 1e-12);
+  for (int k = 0; k < 60; ++k) EXPECT_NEAR(v[121 + k] * v[121 + k], 1 + 2 * 2 * 0.1 * k, 1e-9);
+  for (int k = 0; k < 60; ++k) EXPECT_NEAR(v[119 - k] * v[119 - k], 1 + 2 * 3 * 0.1 * k, 1e-9);
+}
+
+TEST(SpeedProfile, RejectsLimitsThatAreNotPositive) {
+  const std::vector<double> curvature(10, 0.1);
+  EXPECT_THROW(speed_profile(curvature, 0.1, {0, 4, 2, 3}), std::invalid_argument);
+  EXPECT_THROW(speed_profile(curvature, 0.1, {5, -4, 2, 3}), std::invalid_argument);
+  EXPECT_THROW(speed_profile(curvature, 0.1, {5, 4, std::nan(""), 3}), std::invalid_argument);
+  EXPECT_THROW(speed_profile(curvature, 0.1, {5, 4, 2, INFINITY}), std::invalid_argument);
+  EXPECT_THROW(speed_profile({0.1, std::nan(""), 0.1}, 0.1, {5, 4, 2, 3}), std::invalid_argument);
+}
+
 TEST(PathGeometry, GivesTheCurvatureOfACircleWithItsSign) {
-  std::vector<maps::Point> points;
-  for (int i = 0; i < 100; ++i)
-    points.push_back({4 * std::cos(-2 * pi * i / 100), 4 * std::sin(-2 * pi * i / 100)});
-  const PathGeometry path = path_geometry(points);
+  const PathGeometry path = path_geometry(ring(4, 100, -1));
   EXPECT_TRUE(path.closed);
   for (const double k : path.curvature) EXPECT_NEAR(k, -0.25, 1e-3);
 }
 
 TEST(PathGeometry, DoesNotShowRoundedCoordinates) {
   // To 1 mm, at steps of 0.1 m: their second differences would give an error of 0.1 / m.
-  std::vector<maps::Point> points;
-  for (int i = 0; i < 500; ++i) {
-    const double angle = 2 * pi * i / 500;
-    points.push_back({std::round(8000 * std::cos(angle)) / 1000, std::round(8000 * std::sin(angle)) / 1000});
-  }
+  std::vector<maps::Point> points = ring(8, 500);
+  for (maps::Point& p : points) p = {std::round(1000 * p.x) / 1000, std::round(1000 * p.y) / 1000};
   for (const double k : path_geometry(points).curvature) EXPECT_NEAR(k, 0.125, 0.02);
 }
 
@@ -61,7 +103,7 @@ TEST(CourseCheck, FindsNothingOnASlowCircleInTheOpen) {
 
 TEST(CourseCheck, FindsAProfileThatAsksForTooMuchGrip) {
   Course course = circle(4, 4);
-  for (int i = 50; i < 100; ++i) course.waypoints[static_cast<std::size_t>(i)].speed = 6;  // 9 m/s^2
+  for (int i = 50; i < 100; ++i) course.waypoints[i].speed = 6;  // 9 m/s^2
   const CourseCheckOptions options{.limits = {20, 5, 100, 100}};
   const CourseCheck check = check_course(course, options);
   ASSERT_EQ(check.grip.stretches.size(), 1u);
@@ -91,7 +133,7 @@ TEST(CourseCheck, FindsALineThatIsTooNearAWall) {
 
 TEST(CourseCheck, AProfileMadeFeasiblePassesTheCheckAndIsNowhereFaster) {
   Course course = circle(4, 4);
-  for (int i = 50; i < 100; ++i) course.waypoints[static_cast<std::size_t>(i)].speed = 6;
+  for (int i = 50; i < 100; ++i) course.waypoints[i].speed = 6;
   const Course before = course;
   const CourseCheckOptions options{.limits = {20, 5, 3, 4}};
   make_feasible(course, options.limits);

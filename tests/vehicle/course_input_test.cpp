@@ -1,5 +1,4 @@
-// Spoiled course folders: each is refused with a message that names the file, the line, the key or column and
-// the rule.
+// Spoiled course folders: each is refused with file, line, key or column, and rule.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -29,6 +28,10 @@ std::function<void(const CourseFolder&)> rows(const char* text) {
 
 std::function<void(const CourseFolder&)> file(const char* name, const char* text) {
   return [name, text](const CourseFolder& folder) { folder.write(name, text); };
+}
+
+std::function<void(const CourseFolder&)> yaml(const char* text) {
+  return file("course.yaml", text);
 }
 
 std::function<void(const CourseFolder&)> without(const char* name) {
@@ -93,37 +96,27 @@ const std::vector<Spoiled>& cases() {
       {"obstacle_cell", file("opp_ref_path.csv", "1,2\n1,x\n"), {"opp_ref_path.csv:2:", "1 (y)", "'x'"}},
       {"obstacle_columns", file("opp_ref_path.csv", "1\n"), {"opp_ref_path.csv:1:", "x and y"}},
       {"obstacle_none", file("opp_ref_path.csv", "\n"), {"opp_ref_path.csv", "at least one point"}},
-      {"course_syntax", file("course.yaml", "name: x\nstart: {x: 1\n"), {"course.yaml", "YAML"}},
-      {"course_list", file("course.yaml", "- 1\n"), {"course.yaml:1:", "map of keys"}},
-      {"course_key", file("course.yaml", "name: x\nstrat: 1\n"), {"course.yaml:2:", "strat", "unknown key"}},
+      {"course_syntax", yaml("name: x\nstart: {x: 1\n"), {"course.yaml", "YAML"}},
+      {"course_list", yaml("- 1\n"), {"course.yaml:1:", "map of keys"}},
+      {"course_key", yaml("name: x\nstrat: 1\n"), {"course.yaml:2:", "strat", "unknown key"}},
       {"course_key_twice",
-       file("course.yaml", "closed: true\nname: x\nclosed: false\n"),
+       yaml("closed: true\nname: x\nclosed: false\n"),
        {"course.yaml:3:", "closed", "duplicate key"}},
-      {"start_key_twice",
-       file("course.yaml", "start: {x: 1, y: 1, yaw: 0, x: 2}\n"),
-       {"start.x", "duplicate key"}},
-      {"no_value",
-       file("course.yaml", "timeout:\nname: x\n"),
-       {"course.yaml:1:", "timeout", "must have a value"}},
-      {"two_documents", file("course.yaml", "name: x\n---\nname: y\n"), {"course.yaml:3:", "only one YAML"}},
-      {"start_key", file("course.yaml", "start: {x: 1, y: 1, jaw: 0}\n"), {"course.yaml:1:", "start.jaw"}},
-      {"start_missing",
-       file("course.yaml", "start: {x: 1, y: 1}\n"),
-       {"course.yaml:1:", "start.yaw", "missing"}},
-      {"start_type", file("course.yaml", "\nstart: 3\n"), {"course.yaml:2:", "start", "{x, y, yaw}"}},
+      {"start_key_twice", yaml("start: {x: 1, y: 1, yaw: 0, x: 2}\n"), {"start.x", "duplicate key"}},
+      {"no_value", yaml("timeout:\nname: x\n"), {"course.yaml:1:", "timeout", "must have a value"}},
+      {"two_documents", yaml("name: x\n---\nname: y\n"), {"course.yaml:3:", "only one YAML"}},
+      {"start_key", yaml("start: {x: 1, y: 1, jaw: 0}\n"), {"course.yaml:1:", "start.jaw"}},
+      {"start_missing", yaml("start: {x: 1, y: 1}\n"), {"course.yaml:1:", "start.yaw", "missing"}},
+      {"start_type", yaml("\nstart: 3\n"), {"course.yaml:2:", "start", "{x, y, yaw}"}},
       {"start_too_far",
-       file("course.yaml", "start: {x: 1, y: 1, yaw: 1e7}\n"),
+       yaml("start: {x: 1, y: 1, yaw: 1e7}\n"),
        {"course.yaml:1:", "start", "within 1e6 rad"}},
       {"start_in_wall",
-       file("course.yaml", "name: x\nstart: {x: 4.95, y: 0, yaw: 0}\n"),
+       yaml("name: x\nstart: {x: 4.95, y: 0, yaw: 0}\n"),
        {"course.yaml:2:", "start", "wall"}},
-      {"start_off_map",
-       file("course.yaml", "start: {x: 99, y: 0, yaw: 0}\n"),
-       {"course.yaml:1:", "on the map"}},
-      {"timeout", file("course.yaml", "timeout: 0\n"), {"course.yaml:1:", "timeout", "'0'", "above 0"}},
-      {"closed",
-       file("course.yaml", "closed: maybe\n"),
-       {"course.yaml:1:", "closed", "'maybe'", "true or false"}},
+      {"start_off_map", yaml("start: {x: 99, y: 0, yaw: 0}\n"), {"course.yaml:1:", "on the map"}},
+      {"timeout", yaml("timeout: 0\n"), {"course.yaml:1:", "timeout", "'0'", "above 0"}},
+      {"closed", yaml("closed: maybe\n"), {"course.yaml:1:", "closed", "'maybe'", "true or false"}},
   };
   return all;
 }
@@ -143,12 +136,10 @@ INSTANTIATE_TEST_SUITE_P(BadInput, CorruptCourse, ::testing::Range<std::size_t>(
 
 TEST(KnownCourse, RejectsACorruptTable) {
   const CourseFolder folder;
-  folder.write("known.yaml", "berlin: {start: {x: 0, y: 0, yaw: 0}, timeout: -1}\n");
-  EXPECT_THROW(known_course("berlin", {folder.path()}), IoError);
-  folder.write("known.yaml", "berlin: 5\n");
-  EXPECT_THROW(known_course("berlin", {folder.path()}), IoError);
-  folder.write("known.yaml", "[1]\n");
-  EXPECT_THROW(known_course("berlin", {folder.path()}), IoError);
+  for (const char* table : {"berlin: {start: {x: 0, y: 0, yaw: 0}, timeout: -1}\n", "berlin: 5\n", "[1]\n"}) {
+    folder.write("known.yaml", table);
+    EXPECT_THROW(known_course("berlin", {folder.path()}), IoError) << table;
+  }
 }
 
 }  // namespace

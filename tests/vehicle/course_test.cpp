@@ -46,20 +46,15 @@ TEST(Course, ReadsTheOptimisedLineForm) {
   EXPECT_DOUBLE_EQ(course.waypoints[1].speed, 2.5);
 }
 
-TEST(Course, NotesFilesThatItIgnores) {
+TEST(Course, NotesFilesThatItIgnoresButForACentreLine) {
   const CourseFolder folder;
+  folder.write("centre.csv", "# x_m, y_m, w_tr_right_m, w_tr_left_m\n0, 0, 1, 1\n");
   folder.write("times.csv", "lap, s\n1, 12.5\n");
   folder.write("planner.yaml", "samples: 5\n");
   const Course course = load_course(folder.path());
   ASSERT_EQ(course.notes.size(), 2u);
   EXPECT_NE((course.notes[0] + course.notes[1]).find("times.csv"), std::string::npos);
   EXPECT_NE((course.notes[0] + course.notes[1]).find("planner.yaml"), std::string::npos);
-}
-
-TEST(Course, KnowsACentreLineWithWidths) {
-  const CourseFolder folder;
-  folder.write("centre.csv", "# x_m, y_m, w_tr_right_m, w_tr_left_m\n0, 0, 1, 1\n");
-  EXPECT_TRUE(load_course(folder.path()).notes.empty());
 }
 
 TEST(Course, TakesObstaclePathStartAndTimeoutFromItsFiles) {

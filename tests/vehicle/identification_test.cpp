@@ -16,8 +16,7 @@ struct Truth {
   double gain = 0.93, offset = 0.012, delay = 0.047, lag = 0.085, wheelbase = 0.324, understeer = 0.004;
 };
 
-/// A minute of wavy driving by the model, in small Euler steps, sampled every 25 ms with noise of the yaw
-/// (rad).
+/// A minute of wavy driving by the model, in Euler steps, sampled every 25 ms with noise of the yaw (rad).
 std::vector<DrivenSample> drive(const Truth& car, double yaw_noise, double speed_scale = 1) {
   RandomStream random({7, 0});
   std::vector<DrivenSample> samples;

@@ -37,8 +37,7 @@ std::vector<maps::ReferencePoint> circle(const maps::Point& centre) {
   return path;
 }
 
-/// The ranges that a laser at `pose` (course centre at the origin) measures to two circular walls and a round
-/// post.
+/// The ranges from `pose` (course centre at the origin) to two circular walls and a round post.
 std::vector<float> scan_from(const maps::Pose& pose) {
   constexpr double post_x = -radius, post_y = 0.3, post_radius = 0.15;
   std::vector<float> ranges(541);

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "navigation/grids.hpp"
@@ -71,10 +70,6 @@ TEST(LocaliserCheck, EstimatesAreFiniteForAnyInput) {
   testing::try_adversaries(
       testing::repetitions(600), tally.updates,
       [&](testing::Adversary& adversary, std::uint64_t) { call_localiser(adversary, map, tally); });
-  std::printf("[ calls    ] %ld updates;", tally.updates);
-  for (int i = 0; i < 6; ++i)
-    std::printf(" %s %ld", name(static_cast<LocaliserStatus>(i)), tally.statuses[i]);
-  std::printf("\n");
   for (const LocaliserStatus status : {LocaliserStatus::uncertain, LocaliserStatus::bad_scan,
                                        LocaliserStatus::bad_odometry, LocaliserStatus::stale})
     EXPECT_GT(tally.statuses[static_cast<int>(status)], 0) << name(status);

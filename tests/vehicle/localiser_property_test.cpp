@@ -46,8 +46,7 @@ TEST(LocaliserTracking, StaysWithinCentimetresOnEveryCourse) {
       localiser.reset(seed);
       Drive drive(place, place.at(0.31 * static_cast<double>(seed)), seed);
       const Track got = track(localiser, drive, 400);
-      // On the long straights of swift nothing but parallel walls is in reach, so odometry alone says how far
-      // the car has come.
+      // On the long straights of swift only parallel walls are in reach: odometry alone knows the way driven.
       const bool long_straights = std::string(name) == "swift";
       EXPECT_LT(got.mean, long_straights ? 0.15 : 0.08) << name << " seed " << seed;
       EXPECT_LT(got.p99, long_straights ? 0.6 : 0.25) << name << " seed " << seed;

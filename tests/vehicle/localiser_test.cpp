@@ -94,11 +94,9 @@ TEST(Localiser, FindsAStandingCarInARotatedMap) {
     const LocaliserOutput& out = localiser.output();
     EXPECT_EQ(out.status, LocaliserStatus::ok);
     EXPECT_LT(error_of(out.pose, pose).distance, 0.1);
-    // The truth lies within what the covariance allows: 4 standard deviations, and a degree and a half of the
-    // map's cells.
+    // The truth is within 4 standard deviations, and 5 cm or a degree and a half for the map's cells.
     EXPECT_LT(error_of(out.pose, pose).yaw, 4 * std::sqrt(out.covariance[2][2]) + 0.026);
     EXPECT_GT(out.health, 0.9);
-    // The truth lies within what the covariance allows: 4 standard deviations, and 5 cm of the map's cells.
     EXPECT_LT(std::abs(out.pose.x - pose.x), 4 * std::sqrt(out.covariance[0][0]) + 0.05);
     EXPECT_LT(std::abs(out.pose.y - pose.y), 4 * std::sqrt(out.covariance[1][1]) + 0.05);
     EXPECT_NEAR(out.covariance[0][1], out.covariance[1][0], 1e-12);

@@ -166,7 +166,7 @@ TEST(PathTracking, AccelerationAsAnInputStaysWithinTheCarsLimitsAndThePathsSpeed
 
 TEST(PathTracking, LocalPositionIsThatInTheRobotsFrame) {
   Maps maps;
-  maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 100;  // x in (1, 2], y in (0, 1], robot frame
+  maps.obstacles[3 * 16 + 4] = 100;  // x in (1, 2], y in (0, 1], robot frame
   PathTrackingOptions options;
   options.body.model = BodyModel::box;
   Car car(options);
@@ -180,7 +180,7 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
   Maps maps;
   // Distances instead of costs: 2 m everywhere, but none where x in (1, 2], y in (0, 1].
   for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : 2.0f;
-  maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 0;
+  maps.obstacles[3 * 16 + 4] = 0;
   PathTrackingOptions options;
   options.body.model = BodyModel::discs;
   options.body.front = 1.2;

@@ -18,15 +18,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<maps::ReferencePoint> lane() {
-  return testing::lane(3);
-}
-
-PlannerOptions careful() {
-  PlannerOptions options;
-  options.stop_when_blocked = options.verify_plan = options.back_up = true;
-  return options;
-}
+const std::vector<maps::ReferencePoint> lane = testing::lane(3);
 
 VehicleOptions small_car() {
   VehicleOptions options;
@@ -41,9 +33,8 @@ SvgMppiOptions few_samples() {
   return method;
 }
 
-Planner make_planner(const PlannerOptions& options = careful(),
-                     const SvgMppiOptions& method = few_samples()) {
-  return {options, make_vehicle_model(small_car()), lane(), make_solver(method, 1)};
+Planner make_planner(const PlannerOptions& options = {}, const SvgMppiOptions& method = few_samples()) {
+  return {options, make_vehicle_model(small_car()), lane, make_solver(method, 1)};
 }
 
 /// The scan in a corridor of half width 1.5 m round the lane with a wall across it `wall` m ahead of the
@@ -63,7 +54,7 @@ TEST(Planner, FollowsAFreeLaneAtItsSpeed) {
   method.variance_max = 0.003;
   method.guides.iterations = 20;
   for (method.seed = 0; method.seed < 20; ++method.seed) {
-    Planner planner = make_planner(careful(), method);
+    Planner planner = make_planner({}, method);
     for (int i = 0; i < 5; ++i) {
       const PlannerOutput& out = planner.update({free_lane.view(), {{5, 0, 0}, 3}});
       EXPECT_EQ(out.status, PlannerStatus::ok);
@@ -125,7 +116,7 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   method.seed = 7;
   // The car goes straight on at the speed it is told; a wall across the lane stands ahead.
   const auto drive = [&](double wall) {
-    Planner planner(careful(), make_vehicle_model(car), lane(), make_solver(method, 2));
+    Planner planner({}, make_vehicle_model(car), lane, make_solver(method, 2));
     planner.reset(7);
     double x = 5, speed = 3;
     bool blocked = false;
@@ -157,9 +148,9 @@ TEST(Planner, CommandsAnglesAtWhichTheSteeringSettles) {
   method.variance = {0.03, 4};
   method.input_min = {-0.4, -6};
   method.input_max = {0.4, 6};
-  PlannerOptions options = careful();
+  PlannerOptions options;
   options.steer_resolution = 0.05;
-  Planner planner(options, make_vehicle_model(car), lane(), make_solver(method, 2));
+  Planner planner(options, make_vehicle_model(car), lane, make_solver(method, 2));
   double largest = 0;
   const testing::LaneScan scan = corridor(100, 1.5, 0.5);
   for (int i = 0; i < 10; ++i) {
@@ -173,7 +164,7 @@ TEST(Planner, CommandsAnglesAtWhichTheSteeringSettles) {
 
 TEST(Planner, ReversesFromAnObstacleInCollision) {
   for (const bool back_up : {true, false}) {
-    PlannerOptions options = careful();
+    PlannerOptions options;
     options.back_up = back_up;
     Planner planner = make_planner(options);
     const testing::LaneScan scan = corridor(0.48);
@@ -279,16 +270,16 @@ TEST(Planner, RejectsInvalidArguments) {
   };
   const auto car = [] { return make_vehicle_model(small_car()); };
   const auto solver = [](int inputs) { return make_solver(SvgMppiOptions{}, inputs); };
-  EXPECT_EQ(refusal(careful(), car(), lane(), nullptr), "planner: solver must not be null");
-  EXPECT_EQ(refusal(careful(), nullptr, lane(), solver(1)), "planner: model must not be null");
-  EXPECT_EQ(refusal(careful(), car(), lane(), solver(2)),
+  EXPECT_EQ(refusal({}, car(), lane, nullptr), "planner: solver must not be null");
+  EXPECT_EQ(refusal({}, nullptr, lane, solver(1)), "planner: model must not be null");
+  EXPECT_EQ(refusal({}, car(), lane, solver(2)),
             "planner: solver has 2 inputs per step, must have 1, like the vehicle model");
-  PlannerOptions slow = careful();
+  PlannerOptions slow;
   slow.latency = 0.9;
-  EXPECT_EQ(refusal(slow, car(), lane(), solver(1)),
+  EXPECT_EQ(refusal(slow, car(), lane, solver(1)),
             "planner.latency: together with vehicle.dead_time must be at most 32 control periods");
-  EXPECT_NE(refusal(careful(), car(), {}, solver(1)), "accepted");
-  EXPECT_EQ(refusal(careful(), car(), lane(), solver(1)), "accepted");
+  EXPECT_NE(refusal({}, car(), {}, solver(1)), "accepted");
+  EXPECT_EQ(refusal({}, car(), lane, solver(1)), "accepted");
 }
 
 }  // namespace

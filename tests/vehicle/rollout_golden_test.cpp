@@ -35,7 +35,7 @@ std::map<std::string, MapPair> load_maps(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(folder / (id + "_obstacle.csv"))) continue;
     const double x = about.at("robot_x"), y = about.at("robot_y"), yaw = about.at("robot_yaw");
     maps.emplace(id, MapPair{slalom::testing::load_reference_map(folder, id, x, y),
-                             slalom::testing::load_obstacle_map(folder, id, 0.05, 3, 0, -1), x, y, yaw});
+                             slalom::testing::load_obstacle_map(folder, id), x, y, yaw});
   }
   return maps;
 }
@@ -138,7 +138,7 @@ struct VisitedCells {
       const auto o = maps.obstacles.index(local_x, local_y);
       visited.push_back({r.v[0], o.v[0]});
       const auto seen = checked.problem.look_up(s);
-      const Input<F, 1> u{{F(k < 14 ? c.inputs[static_cast<std::size_t>(k)] : 0)}};
+      const Input<F, 1> u{{F(k < 14 ? c.inputs[k] : 0)}};
       s = checked.problem.step(s, seen, u, k);
     }
   }
@@ -191,7 +191,7 @@ void check_in_float(const Checked<Problem>& in_map, const Case& c, simd::Target 
   ProblemEvaluator<Problem> evaluator(checked.problem, target);
   evaluator.set_state(checked.template start<double>(c));
   SequenceBatch batch(14, 1, 1);
-  for (int t = 0; t < 14; ++t) batch.at(t, 0, 0) = static_cast<float>(c.inputs[static_cast<std::size_t>(t)]);
+  for (int t = 0; t < 14; ++t) batch.at(t, 0, 0) = static_cast<float>(c.inputs[t]);
   std::vector<float> costs(simd::padding);
   std::vector<std::uint8_t> collided(simd::padding);
   evaluator.evaluate(batch, 0, 1, costs.data(), collided.data());

@@ -32,13 +32,11 @@ VehicleOptions options_of(const std::string& name) {
   return options;
 }
 
-std::vector<maps::ReferencePoint> lane() {
-  return testing::lane(3);
-}
+const std::vector<maps::ReferencePoint> lane = testing::lane(3);
 
 class VehicleModelContract : public ::testing::TestWithParam<std::string> {
  protected:
-  VehicleModelContract() : field_(lane()), model_(make_vehicle_model(options_of(GetParam()))) {
+  VehicleModelContract() : field_(lane), model_(make_vehicle_model(options_of(GetParam()))) {
     field_.update({5, 0});
     const std::vector<maps::Point> obstacle = {{3, 0.4}};
     clearance_.add(obstacle);
@@ -77,7 +75,7 @@ TEST_P(VehicleModelContract, PredictsTheStartFirstAndKeepsItsTurns) {
   model_->set_start(start, 3);
   const auto end = [&](float steer) {
     std::vector<float> sequence(static_cast<std::size_t>(steps * inputs), 0);
-    for (int k = 0; k < steps; ++k) sequence[static_cast<std::size_t>(k * inputs)] = steer;
+    for (int k = 0; k < steps; ++k) sequence[k * inputs] = steer;
     std::vector<PredictedState> states(static_cast<std::size_t>(steps) + 1);
     const PredictedCost cost = model_->predict(sequence, states);
     EXPECT_TRUE(std::isfinite(cost.state) && std::isfinite(cost.collision));
@@ -111,10 +109,9 @@ TEST_P(VehicleModelContract, RolloutsCostWhatIsPredicted) {
   int differing = 0;
   for (int k = 0; k < samples; ++k) {
     for (int t = 0; t < steps; ++t)
-      for (int i = 0; i < inputs; ++i) sequence[static_cast<std::size_t>(t * inputs + i)] = batch.at(t, i, k);
+      for (int i = 0; i < inputs; ++i) sequence[t * inputs + i] = batch.at(t, i, k);
     const PredictedCost cost = model_->predict(sequence, states);
-    const double expected = cost.state + cost.collision,
-                 got = static_cast<double>(costs[static_cast<std::size_t>(k)]);
+    const double expected = cost.state + cost.collision, got = static_cast<double>(costs[k]);
     differing += std::abs(got - expected) > 1e-3 * std::max(1.0, expected);
   }
   EXPECT_LE(differing, 2) << "a position at an edge between two cells of a map may be in either";
@@ -123,13 +120,12 @@ TEST_P(VehicleModelContract, RolloutsCostWhatIsPredicted) {
 TEST_P(VehicleModelContract, IsDrivenByThePlanner) {
   Configuration configuration;
   set_option(configuration, "vehicle.model", GetParam());
-  for (const char* bound : {"input_min", "input_max"})
-    set_option(configuration, std::string("mppi.") + bound,
-               std::string(bound) == "input_min" ? "-0.4" : "0.4");
+  set_option(configuration, "mppi.input_min", "-0.4");
+  set_option(configuration, "mppi.input_max", "0.4");
   set_option(configuration, "mppi.samples", "256");
   set_option(configuration, "vehicle.outside_cost", "0");
   set_option(configuration, "vehicle.outside_terminal_cost", "0");
-  Planner planner(configuration.planner, make_vehicle_model(configuration.vehicle), lane(),
+  Planner planner(configuration.planner, make_vehicle_model(configuration.vehicle), lane,
                   make_solver(configuration, "mppi", 1));
   std::vector<float> ranges(271, 20.0f);
   for (int i = 0; i < 5; ++i) {
@@ -206,7 +202,7 @@ TEST(ProblemModel, LetsThePlannerDriveAnyVehicleProblem) {
   MppiOptions method = testing::with_control_term(1);
   method.horizon = 10;
   method.samples = 128;
-  Planner planner({}, std::make_unique<ProblemModel<Trolley>>(Trolley{}), lane(), make_solver(method, 1));
+  Planner planner({}, std::make_unique<ProblemModel<Trolley>>(Trolley{}), lane, make_solver(method, 1));
   std::vector<float> ranges(271, 20.0f);
   const PlannerOutput& out = planner.update({{ranges, -2.35, 4.7 / 270, 0.05, 30}, {{5, 0, 0}, 3}});
   EXPECT_EQ(out.status, PlannerStatus::ok);

@@ -20,33 +20,25 @@ struct SwingUp {
 
 int main(int argc, char** argv) {
   if (argc < 2) return std::puts("usage: slalom_mujoco_cart_pole cart_pole.xml [seeds]"), 2;
-  constexpr int physics_steps = 2;
-  const slalom::mujoco::Model model(argv[1]);
-  Summary summary;
-  for (std::uint64_t seed = 0; seed < seeds_of(argc, argv, "10"); ++seed) {
-    slalom::Controller controller{
-        slalom::mujoco::Evaluator{model, SwingUp{}, {.physics_steps = physics_steps}},
-        slalom::SvgMppiOptions{.horizon = 50,
-                               .samples = 64,
-                               .temperature = 0.1,
-                               .guides = {.count = 1,
-                                          .iterations = 4,
-                                          .step = 0.2,
-                                          .variance = 4,
-                                          .gradient_samples = 15,
-                                          .gradient_variance = 2,
-                                          .gradient_temperature = 0.1},
-                               .variance_min = 4,
-                               .variance_max = 8,
-                               .seed = seed}};
-    World world(model);
-    slalom::RandomStream random({.seed = seed});
+  const slalom::SvgMppiOptions options{.horizon = 50,
+                                       .samples = 64,
+                                       .temperature = 0.1,
+                                       .guides = {.count = 1,
+                                                  .iterations = 4,
+                                                  .step = 0.2,
+                                                  .variance = 4,
+                                                  .gradient_samples = 15,
+                                                  .gradient_variance = 2,
+                                                  .gradient_temperature = 0.1},
+                                       .variance_min = 4,
+                                       .variance_max = 8};
+  const auto hang = [](World& world, slalom::RandomStream& random) {
     world.data().qpos[1] = 0.1 * random.normal();
-    bool stands = true;  // in the last second of 5
-    drive(controller, world, physics_steps, 5, summary, [&](const mjData& data) {
-      if (data.time > 4) stands = stands && std::cos(data.qpos[1]) < -0.95 && std::abs(data.qpos[0]) < 1;
-    });
-    summary.succeeded += stands;
-  }
-  return summary.report("the pole stands");
+  };
+  const auto stands = [](const mjData& data) {
+    return data.time <= 4 || (std::cos(data.qpos[1]) < -0.95 && std::abs(data.qpos[0]) < 1);
+  };
+  return drive(slalom::mujoco::Model(argv[1]), SwingUp{}, options, 2, 5, seeds_of(argc, argv, "10"), hang,
+               stands)
+      .report("the pole stands");
 }

@@ -49,25 +49,37 @@ struct Summary {
   }
 };
 
-/// Drives the world with the controller's plans for some time (s); after every step `visit(data)` sees it.
-template <class Controller, class Visit>
-void drive(Controller& controller, World& world, int physics_steps, double duration, Summary& summary,
-           Visit&& visit) {
-  const auto& evaluator = controller.evaluator();
-  const double dt = evaluator.time_step();
-  const std::clock_t start = std::clock();
-  for (double t = 0; t < duration; t += dt) {
-    const auto plan = controller.solve(evaluator.state_of(world.data()), {.elapsed = dt});
-    world.step(plan.inputs[0], physics_steps);
-    visit(world.data());
+/// Drives a task for some time (s) with each seed. `begin(world, random)` sets the start; a run succeeds if
+/// `is_good(data)` holds after every step.
+template <class Task, class Options, class Begin, class IsGood>
+Summary drive(const slalom::mujoco::Model& model, const Task& task, Options options, int physics_steps,
+              double duration, std::uint64_t seeds, Begin&& begin, IsGood&& is_good) {
+  Summary summary;
+  for (options.seed = 0; options.seed < seeds; ++options.seed) {
+    slalom::Controller controller{slalom::mujoco::Evaluator{model, task, {.physics_steps = physics_steps}},
+                                  options};
+    World world(model);
+    slalom::RandomStream random({.seed = options.seed});
+    begin(world, random);
+    const auto& evaluator = controller.evaluator();
+    const double dt = evaluator.time_step();
+    bool succeeds = true;
+    const std::clock_t start = std::clock();
+    for (double t = 0; t < duration; t += dt) {
+      const auto plan = controller.solve(evaluator.state_of(world.data()), {.elapsed = dt});
+      world.step(plan.inputs[0], physics_steps);
+      if (!is_good(world.data())) succeeds = false;
+    }
+    summary.processor_time += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    summary.simulated += duration;
+    summary.rollouts += evaluator.rollouts().simulated;
+    summary.invalid += evaluator.rollouts().invalid;
+    summary.rolled_out +=
+        static_cast<double>(evaluator.rollouts().simulated) * controller.solver().horizon() * dt;
+    ++summary.runs;
+    summary.succeeded += succeeds;
   }
-  summary.processor_time += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  summary.simulated += duration;
-  summary.rollouts += evaluator.rollouts().simulated;
-  summary.invalid += evaluator.rollouts().invalid;
-  summary.rolled_out +=
-      static_cast<double>(evaluator.rollouts().simulated) * controller.solver().horizon() * dt;
-  ++summary.runs;
+  return summary;
 }
 
 /// The number of seeds that an argument asks for.

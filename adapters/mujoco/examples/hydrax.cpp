@@ -92,8 +92,7 @@ struct Walker {
   bool good(const mjData& d) const { return d.sensordata[2] > 0.9 && d.sensordata[3] > 0.75; }
 };
 
-/// Loads the scene of a task without two attributes that MuJoCo 2 does not know, and with its own number of
-/// iterations.
+/// Loads the scene of a task without the attributes that MuJoCo 2 does not know and the number of iterations.
 slalom::mujoco::Model load(const std::filesystem::path& folder) {
   const auto copies =
       std::filesystem::temp_directory_path() / ("slalom_hydrax_" + folder.filename().string());
@@ -111,25 +110,18 @@ slalom::mujoco::Model load(const std::filesystem::path& folder) {
 template <class Task, class Options>
 void solve(const std::string& clone, std::uint64_t seeds) {
   const slalom::mujoco::Model model = load(std::filesystem::path(clone) / "hydrax/models" / Task::folder);
-  double cost = 0;
-  Summary summary;
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    Options options;
-    options.horizon = Task::horizon;
-    options.samples = Task::samples;
-    options.seed = seed;
-    slalom::Controller controller{
-        slalom::mujoco::Evaluator{model, Task{}, {.physics_steps = Task::physics_steps}}, options};
-    World world(model);
-    slalom::RandomStream random({.seed = seed});
+  Options options;
+  options.horizon = Task::horizon;
+  options.samples = Task::samples;
+  const auto begin = [](World& world, slalom::RandomStream& random) {
     for (int i = 0; i < Task::positions; ++i) world.data().qpos[i] += Task::spread * random.normal();
-    bool good = true;
-    drive(controller, world, Task::physics_steps, 5, summary, [&](const mjData& data) {
-      cost += Task{}.stage_cost(model.get(), data) / static_cast<double>(seeds);
-      if (data.time > 4) good = good && Task{}.good(data);
-    });
-    summary.succeeded += good;
-  }
+  };
+  double cost = 0;
+  const auto is_good = [&](const mjData& data) {
+    cost += Task{}.stage_cost(model.get(), data) / static_cast<double>(seeds);
+    return data.time <= 4 || Task{}.good(data);
+  };
+  const Summary summary = drive(model, Task{}, options, Task::physics_steps, 5, seeds, begin, is_good);
   std::printf("%-16s %-9s %d of %d runs, mean cost %.2f, %.2f of real time\n", Task::folder, Options::method,
               summary.succeeded, summary.runs, cost, summary.simulated / summary.processor_time);
   std::fflush(stdout);

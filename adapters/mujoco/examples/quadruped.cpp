@@ -51,27 +51,16 @@ void lay_down(World& world, slalom::RandomStream& random) {
 
 int main(int argc, char** argv) {
   if (argc < 2) return std::puts("usage: slalom_mujoco_quadruped quadruped.xml [seeds]"), 2;
-  constexpr int physics_steps = 2;
-  const slalom::mujoco::Model model(argv[1]);
-  Summary summary;
-  for (std::uint64_t seed = 0; seed < seeds_of(argc, argv, "5"); ++seed) {
-    slalom::Controller controller{
-        slalom::mujoco::Evaluator{model, StandUp{}, {.physics_steps = physics_steps}},
-        slalom::MppiOptions{.horizon = 20,
-                            .samples = 64,
-                            .temperature = 0.1,
-                            .variance = 0.05,
-                            .noise = {.knots = 3},
-                            .control_cost_discount = 1,
-                            .seed = seed}};
-    World world(model);
-    slalom::RandomStream random({.seed = seed});
-    lay_down(world, random);
-    bool stands = true;  // in the last half second of 3
-    drive(controller, world, physics_steps, 3, summary, [&](const mjData& data) {
-      if (data.time > 2.5) stands = stands && height(data) > 0.25 && uprightness(data) > 0.85;
-    });
-    summary.succeeded += stands;
-  }
-  return summary.report("the quadruped stands");
+  const slalom::MppiOptions options{.horizon = 20,
+                                    .samples = 64,
+                                    .temperature = 0.1,
+                                    .variance = 0.05,
+                                    .noise = {.knots = 3},
+                                    .control_cost_discount = 1};
+  const auto stands = [](const mjData& data) {
+    return data.time <= 2.5 || (height(data) > 0.25 && uprightness(data) > 0.85);
+  };
+  return drive(slalom::mujoco::Model(argv[1]), StandUp{}, options, 2, 3, seeds_of(argc, argv, "5"), lay_down,
+               stands)
+      .report("the quadruped stands");
 }

@@ -9,8 +9,7 @@
 
 namespace slalom::mujoco::testing {
 
-/// A ball that a motor pushes along a line above the floor. `options` stands before the world, `actuators` in
-/// the list of actuators.
+/// A ball that a motor pushes along a line above the floor. `options` stands before the world.
 inline std::string ball(
     const std::string& options = "",
     const std::string& actuators = R"(<motor joint="slide" ctrllimited="true" ctrlrange="-2 3"/>)") {

@@ -9,7 +9,6 @@ import slalom
 from slalom import _slalom
 
 OPTIONS = {"flag": "bool", "integer": "int", "number": "float", "numbers": "float | Sequence[float]", "choice": "str"}
-METHOD_OF = {"".join(word.capitalize() for word in method.split("_")): method for method in slalom.methods()}
 GENERIC = {"dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "list": "list[Any]", "object": "Any", "function": "Any"}
 HEAD = """from typing import Any, Callable, Sequence
 
@@ -52,14 +51,11 @@ def signature(function):
     return ", ".join(map(argument, filter(None, re.split(r", (?=\w+: |\*)", match[1])))), translate(match[2], False)
 
 
-def option_keywords(options):
-    return "".join(f", {o['name']}: {OPTIONS[o['type']]} = ..." for o in options)
-
-
-def constructor(name, cls):
+def constructor(cls):
     """The arguments of a constructor, whose keyword arguments are options."""
-    if name in METHOD_OF:
-        return "self, problem: AnyProblem, *" + option_keywords(slalom.options(METHOD_OF[name]))
+    if hasattr(cls, "_method"):
+        return "self, problem: AnyProblem, *" + "".join(f", {option['name']}: {OPTIONS[option['type']]} = ..."
+                                                        for option in slalom.options(cls._method))
     arguments = signature(cls.__init__)[0]
     values = [m for m, value in vars(cls).items() if isinstance(value, property) and value.fset]
     if issubclass(cls, _slalom.AnyProblem) and arguments.endswith("**kwargs: Any") and values:
@@ -92,7 +88,7 @@ def class_lines(name, cls):
                 setter = "Sequence[Sequence[float]]" if kind.startswith("list") else kind
                 yield f"    @{member}.setter\n    def {member}(self, value: {setter}) -> None: ..."
         elif member == "__init__" and "->" in (value.__doc__ or ""):
-            yield f"    def __init__({constructor(name, cls)}) -> None: ..."
+            yield f"    def __init__({constructor(cls)}) -> None: ..."
         elif not member.startswith("_") and callable(getattr(value, "__func__", value)):
             arguments, result = signature(getattr(value, "__func__", value))
             if isinstance(value, staticmethod):

@@ -11,10 +11,11 @@
 import importlib.util
 
 from . import _slalom, display, plot
-from ._slalom import *  # noqa: F401,F403
-from ._slalom import __version__
-from .compiler import CompileError, compile
-from .show import show
+display.add_methods(_slalom)
+from ._slalom import *  # noqa: E402,F401,F403
+from ._slalom import __version__  # noqa: E402
+from .compiler import CompileError, compile  # noqa: E402
+from .show import show  # noqa: E402
 
 if importlib.util.find_spec("slalom._driving"):
     from . import _driving

@@ -15,9 +15,6 @@ from typing import Any, Callable, Dict, Iterable, Tuple
 
 from . import plot
 
-_PARTS = ("dynamics", "cost", "terminal_cost", "states", "inputs", "dt", "input_min", "input_max", "input_rate_max",
-          "sampler")
-
 _option_names: set[str] = set()  # names of the options of all methods
 
 Arguments = Tuple[Tuple[Any, ...], Dict[str, Any]]  # arguments by position and by name
@@ -39,24 +36,39 @@ class Options(Dict[str, Any]):
 def install(solvers: ModuleType) -> None:
     """Adds `__repr__` and `__reduce__` to the classes of the compiled module, and signatures to their methods."""
     _option_names.update(option["name"] for method in solvers.methods() for option in solvers.options(method))
+    of_network = _settable(solvers.MlpProblem)
+    arguments: dict[type, Callable[[Any], Arguments]] = {
+        solvers.Problem: lambda problem: ((), {name: getattr(problem, name)
+                                               for name in inspect.signature(solvers.Problem).parameters}),
+        solvers.RiskEvaluator: lambda risk: ((risk.problem, risk.randomize), risk.options),
+        solvers.CompiledProblem: lambda problem: ((problem.file,), problem.parameters),
+        solvers.MlpProblem: lambda problem: ((problem.network,), {name: getattr(problem, name) for name in of_network})}
     for cls in [each for each in vars(solvers).values() if isinstance(each, type)]:
         _add_signatures(solvers, cls)
         if issubclass(cls, solvers.Controller):
             setattr(cls, "__repr__", _controller_text)
             setattr(cls, "__setattr__", _refuse_attribute)
-        elif cls is solvers.Problem:
-            _constructed(cls, lambda problem: ((), {name: getattr(problem, name) for name in _PARTS}))
-        elif cls is solvers.RiskEvaluator:
-            _constructed(cls, lambda risk: ((risk.problem, risk.randomize), risk.options))
-        elif cls is solvers.CompiledProblem:
-            _constructed(cls, lambda problem: ((problem.file,), problem.parameters))
-        elif cls is solvers.MlpProblem:
-            _constructed(cls, lambda problem: ((problem.network,), {name: getattr(problem, name)
-                                                                    for name in _settable(solvers.MlpProblem)}))
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
-            _constructed(cls, lambda problem: ((), changed(problem)))
+            _constructed(cls, arguments.get(cls, lambda problem: ((), changed(problem))))
     setattr(solvers.Plan, "__repr__", _plan_text)
     setattr(solvers.Plan, "_repr_png_", lambda plan: plot._png(plot.plan, plan))
+
+
+def add_methods(solvers: ModuleType) -> None:
+    """Adds the class of each method, derived from `Controller`: SvgMppi for svg_mppi."""
+    base = solvers.Controller
+
+    def make(self: Any, problem: Any, **options: Any) -> None:
+        """__init__(self: object, problem: object, **kwargs) -> None"""
+        base.__init__(self, self._method, problem, **options)
+
+    for method in solvers.methods():
+        name = "".join(word.capitalize() for word in method.split("_"))
+        text = (f"A controller that solves its problem by the method `{method}`.\n\nThe problem is copied: `controller.problem` "
+                "is the copy, whose parameters may change between solves. Keyword arguments with their defaults:\n\n")
+        setattr(solvers, name, type(base)(name, (base,), {
+            "__module__": solvers.__name__, "__doc__": text + getattr(solvers, "_options_text")(method), "__init__": make,
+            "_method": method}))
 
 
 def set_pickles(module: ModuleType) -> None:
@@ -160,6 +172,15 @@ def _call(name: str, positional: Iterable[Any], named: dict[str, Any]) -> str:
 
     arguments = [*map(text, positional), *(f"{key}={text(value)}" for key, value in named.items() if value is not None)]
     return f"slalom.{name}({', '.join(arguments)})"
+
+
+def takes_k(function: Callable[..., Any]) -> bool:
+    """Whether a callable has a parameter `k` without a default. False if it does not tell its parameters."""
+    try:
+        k = inspect.signature(function).parameters.get("k")
+    except (TypeError, ValueError):
+        return False
+    return k is not None and k.default is k.empty
 
 
 def changed(problem: Any) -> dict[str, Any]:

@@ -9,38 +9,24 @@
 namespace slalom::python {
 namespace {
 
-/// The values of a parameter as Python has them: a float, or a list.
-py::object to_python(std::span<const double> values) {
-  if (values.size() == 1) return py::float_(values[0]);
-  return py::cast(std::vector<double>(values.begin(), values.end()));
-}
-
-/// Sets a parameter. Returns false if the problem has none of this name.
-bool set_parameter(CompiledProblem& problem, const std::string& name, const py::object& value) {
-  for (const Parameter& parameter : problem.parameters()) {
-    if (name != parameter.name) continue;
-    const auto values = py::isinstance<py::sequence>(value) || py::isinstance<py::array>(value)
-                            ? value_as<std::vector<double>>(value, name)
-                            : std::vector<double>{value_as<double>(value, name)};
-    if (values.size() != parameter.values.size())
-      throw std::invalid_argument(name + ": has " + std::to_string(values.size()) + " values, must have " +
-                                  std::to_string(parameter.values.size()));
-    std::copy(values.begin(), values.end(), parameter.values.begin());
-    return true;
-  }
-  return false;
-}
-
-std::string names_of(CompiledProblem& problem) {
+/// The parameter of a name. Throws AttributeError, with the names of all, if there is none.
+Parameter parameter_of(CompiledProblem& problem, const std::string& name) {
   std::string names;
-  for (const Parameter& parameter : problem.parameters())
-    names += (names.empty() ? "" : ", ") + std::string(parameter.name);
-  return names.empty() ? "none" : names;
+  for (const Parameter& each : problem.parameters()) {
+    if (name == each.name) return each;
+    names += (names.empty() ? "" : ", ") + std::string(each.name);
+  }
+  throw py::attribute_error("the problem has no parameter '" + name +
+                            "'; it has: " + (names.empty() ? "none" : names));
 }
 
 void set_attribute(CompiledProblem& problem, const std::string& name, const py::object& value) {
-  if (!set_parameter(problem, name, value))
-    throw py::attribute_error("the problem has no parameter '" + name + "'; it has: " + names_of(problem));
+  const Parameter parameter = parameter_of(problem, name);
+  const std::vector<double> values = numbers_of(value_as<Values>(value, name));
+  if (values.size() != parameter.values.size())
+    throw std::invalid_argument(name + ": has " + std::to_string(values.size()) + " values, must have " +
+                                std::to_string(parameter.values.size()));
+  std::copy(values.begin(), values.end(), parameter.values.begin());
 }
 
 /// Loads the library of a compiled problem, which stays loaded. Throws ImportError if that fails.
@@ -57,17 +43,6 @@ std::unique_ptr<CompiledProblem> load(const std::string& file, const py::kwargs&
 
 /// Parts of a network's problem from keyword arguments.
 using Parts = NetworkProblem::Parts;
-
-std::vector<double> numbers(const py::object& value) {
-  if (value.is_none()) return {};
-  if (py::isinstance<py::sequence>(value) || py::isinstance<py::array>(value))
-    return value_as<std::vector<double>>(value, "MlpProblem");
-  return {value_as<double>(value, "MlpProblem")};
-}
-
-py::object from_numbers(const std::vector<double>& values) {
-  return values.empty() ? py::object(py::none()) : to_python(values);
-}
 
 /// A part of a network's problem: how Python sets it, and what Python reads.
 struct Part {
@@ -93,18 +68,20 @@ Part field(const char* name, const char* help, py::object Parts::*part) {
   return {name, help, set, [=](const Parts& p) { return p.*part; }};
 }
 
-template <std::vector<double> NetworkModel::*field>
-Part weights(const char* name, const char* help) {
-  return {name, help, [](Parts& p, const py::object& value) { p.model.*field = numbers(value); },
-          [](const Parts& p) { return from_numbers(p.model.*field); }};
+Part numbers(const char* name, const char* help, std::vector<double> NetworkModel::*part) {
+  const std::string label = std::string("MlpProblem.") + name;
+  return {
+      name, help,
+      [=](Parts& p, const py::object& value) { p.model.*part = numbers_of(value_as<Values>(value, label)); },
+      [=](const Parts& p) { return from_numbers(p.model.*part); }};
 }
 
 const Part network_parts[] = {
-    weights<&NetworkModel::goal>("goal", "the state that costs nothing; default: 0"),
-    weights<&NetworkModel::state_weights>("state_weights",
-                                          "costs of the squared distances from the goal, in each step"),
-    weights<&NetworkModel::terminal_weights>("terminal_weights", "the same, after the last step"),
-    weights<&NetworkModel::input_weights>("input_weights", "costs of the squared inputs"),
+    numbers("goal", "the state that costs nothing; default: 0", &NetworkModel::goal),
+    numbers("state_weights", "costs of the squared distances from the goal, in each step",
+            &NetworkModel::state_weights),
+    numbers("terminal_weights", "the same, after the last step", &NetworkModel::terminal_weights),
+    numbers("input_weights", "costs of the squared inputs", &NetworkModel::input_weights),
     {"discs", "(x, y, radius) of discs in the plane of the first two states; a state within one collides",
      [](Parts& p, const py::object& value) {
        p.model.discs.clear();
@@ -125,15 +102,9 @@ const Part network_parts[] = {
     number("clearance", "m: a state collides where `walls` is less", &NetworkModel::clearance),
     field("field", "Field that is a part of the cost of a state, or None", &Parts::field),
     number("field_weight", "factor of `field`", &NetworkModel::field_weight),
-    {"dt", "s, duration of a step; 0: unknown",
-     [](Parts& p, const py::object& value) { p.dt = value_as<double>(value, "MlpProblem.dt"); },
-     [](const Parts& p) { return py::object(py::float_(p.dt)); }},
-    {"input_min", "least inputs: a number, one for each input, or None",
-     [](Parts& p, const py::object& value) { p.input_min = numbers(value); },
-     [](const Parts& p) { return from_numbers(p.input_min); }},
-    {"input_max", "largest inputs: a number, one for each input, or None",
-     [](Parts& p, const py::object& value) { p.input_max = numbers(value); },
-     [](const Parts& p) { return from_numbers(p.input_max); }},
+    number("dt", "s, duration of a step; 0: unknown", &NetworkModel::dt),
+    numbers("input_min", "least inputs: a number, one for each input, or None", &NetworkModel::input_min),
+    numbers("input_max", "largest inputs: a number, one for each input, or None", &NetworkModel::input_max),
 };
 
 /// Sets the parts that are given. Throws TypeError if there is no part of a name.
@@ -154,23 +125,20 @@ void bind_compiled(py::module_& module) {
   py::class_<CompiledProblem, AnyProblem>(
       module, "CompiledProblem",
       "A problem struct that `slalom.compile` has compiled. Its parameters are attributes.")
-      .def(py::init(&load), py::arg("file"))
+      .def(py::init(&load), "file"_a)
       .def_readonly("file", &CompiledProblem::file, "the file that it was loaded from")
       .def_property_readonly(
           "parameters",
           [](CompiledProblem& self) {
             py::dict all;
             for (const Parameter& parameter : self.parameters())
-              all[parameter.name] = to_python(parameter.values);
+              all[parameter.name] = from_numbers(parameter.values);
             return all;
           },
           "the parameters by name")
       .def("__getattr__",
            [](CompiledProblem& self, const std::string& name) {
-             for (const Parameter& parameter : self.parameters())
-               if (name == parameter.name) return to_python(parameter.values);
-             throw py::attribute_error("the problem has no parameter '" + name +
-                                       "'; it has: " + names_of(self));
+             return from_numbers(parameter_of(self, name).values);
            })
       .def("__setattr__", &set_attribute)
       .def("__dir__", [](CompiledProblem& self) {
@@ -182,18 +150,16 @@ void bind_compiled(py::module_& module) {
   std::string words =
       "A problem whose dynamics is a network, at the speed of C++.\n\n"
       "network: a slalom.mlp.Mlp that maps a state and the inputs of a step to the next state (with "
-      "`residual`: to "
-      "its change), together at most 64 values\n\n"
+      "`residual`: to its change), together at most 64 values\n\n"
       "The cost of a state is sum of weight * (state - goal)^2, and that of inputs sum of weight * input^2. "
-      "A "
-      "weight or bound is one number, or one for each state or input. Keyword arguments, also "
+      "A weight or bound is one number, or one for each state or input. Keyword arguments, also "
       "attributes:\n\n";
   for (const Part& part : network_parts) words += "    " + std::string(part.name) + ": " + part.help + "\n";
   py::class_<NetworkProblem, AnyProblem> problem(module, "MlpProblem", words.c_str());
   problem.def(py::init([](const py::object& network, const py::kwargs& keywords) {
-                return std::make_unique<NetworkProblem>(with_keywords({network, {}, 0, {}, {}}, keywords));
+                return std::make_unique<NetworkProblem>(with_keywords({network, {}}, keywords));
               }),
-              py::arg("network"));
+              "network"_a);
   reader(problem)("network", "the network", [](const NetworkProblem& p) { return p.parts().network; });
   for (const Part& part : network_parts)
     problem.def_property(

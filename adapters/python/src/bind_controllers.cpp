@@ -1,16 +1,13 @@
-#include <cctype>
 #include <cmath>
 #include <limits>
 
-#include "plan.hpp"
+#include "controller.hpp"
 
 namespace slalom::python {
 namespace {
 
-using Sequences = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 /// Throws std::invalid_argument unless the solver takes proposals of this shape, or there are none.
-void check_proposals(const Solver& solver, const Sequences& proposals) {
+void check_proposals(const Solver& solver, const Numbers& proposals) {
   if (proposals.size() == 0) return;
   if (!solver.takes_proposals())
     throw std::invalid_argument("proposals: the method " + std::string(solver.name()) +
@@ -19,7 +16,7 @@ void check_proposals(const Solver& solver, const Sequences& proposals) {
   if ((first != 0 && first != 1) || proposals.shape(first) != solver.horizon() ||
       proposals.shape(first + 1) != solver.inputs()) {
     const std::string one = std::to_string(solver.horizon()) + ", " + std::to_string(solver.inputs());
-    throw std::invalid_argument("proposals: have the shape " + shape_text(proposals) +
+    throw std::invalid_argument("proposals: have the shape " + shape_text(extents_of(proposals)) +
                                 ", must have (sequences, " + one + ") or (" + one + ")");
   }
   for (py::ssize_t i = 0; i < proposals.size(); ++i)
@@ -28,8 +25,7 @@ void check_proposals(const Solver& solver, const Sequences& proposals) {
 
 constexpr std::string_view gpu_prefix = "gpu.";
 
-/// `method`: its name, behind `gpu_prefix` for a controller on a GPU. Throws slalom.gpu.DeviceError if the
-/// device fails.
+/// `method`: its name, behind `gpu_prefix` for a GPU. Throws slalom.gpu.DeviceError if the device fails.
 std::unique_ptr<Controller> make_controller(std::string method, const AnyProblem& problem,
                                             const py::kwargs& keywords) {
   const bool on_gpu = method.starts_with(gpu_prefix);
@@ -52,8 +48,7 @@ py::object state_of(const py::object& self) {
   if (!controller.is_new())
     throw std::runtime_error(
         "controller: has been used, and its state cannot be pickled: pickle it before its first solve, or "
-        "copy "
-        "it with copy.copy");
+        "copy it with copy.copy");
   const std::string method = std::string(controller.on_gpu() ? gpu_prefix : "") + controller.solver().name();
   return py::make_tuple(method, self.attr("problem"), values_of(controller.options()));
 }
@@ -72,48 +67,16 @@ py::object copy(const py::object& self) {
   return made;
 }
 
-/// The class of a method: svg_mppi -> SvgMppi.
-std::string class_name(std::string_view method) {
-  std::string name;
-  for (std::size_t i = 0; i < method.size(); ++i) {
-    const bool upper = i == 0 || method[i - 1] == '_';
-    if (method[i] != '_') name += upper ? static_cast<char>(std::toupper(method[i])) : method[i];
-  }
-  return name;
-}
-
-/// Adds the class of a method, derived from `Controller`, whose constructor takes the problem and the
-/// options.
-void bind_method(py::module_& module, const py::object& controller, const std::string& method) {
-  py::dict members;
-  members["__module__"] = module.attr("__name__");
-  members["_method"] = method;
-  members["__doc__"] = "A controller that solves its problem by the method `" + method +
-                       "`.\n\nThe problem is copied: `controller.problem` is the copy, whose parameters may "
-                       "change between solves. Keyword arguments with their defaults:\n\n" +
-                       options_text(solver_options(method));
-  const std::string name = class_name(method);
-  const auto metaclass =
-      py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(Py_TYPE(controller.ptr())));
-  const py::object cls = metaclass(name, py::make_tuple(controller), members);
-  cls.attr("__init__") = py::cpp_function(
-      [controller](const py::object& self, const py::object& problem, const py::kwargs& keywords) {
-        controller.attr("__init__")(self, self.attr("_method"), problem, **keywords);
-      },
-      py::name("__init__"), py::is_method(cls), py::arg("problem"));
-  module.attr(name.c_str()) = cls;
-}
-
 }  // namespace
 
 void bind_controllers(py::module_& module) {
   bind_plan(module);
   py::class_<Controller> base(module, "Controller", "Base class of all controllers.");
-  base.def(py::init(&make_controller), py::arg("method"), py::arg("problem"))
+  base.def(py::init(&make_controller), "method"_a, "problem"_a)
       .def(
           "solve",
           [](const py::object& self, std::vector<double> state, double elapsed, double deadline,
-             const Sequences& proposals) {
+             const Numbers& proposals) {
             auto& controller = self.cast<Controller&>();
             check_proposals(controller.solver(), proposals);
             const std::vector<float> values(proposals.data(), proposals.data() + proposals.size());
@@ -122,8 +85,8 @@ void bind_controllers(py::module_& module) {
             controller.solve(self, std::move(state), {elapsed, deadline, {values, count}});
             return Plan{self, controller.solves()};
           },
-          py::arg("state"), py::arg("elapsed") = 0.0,
-          py::arg("deadline") = std::numeric_limits<double>::infinity(), py::arg("proposals") = Sequences(),
+          "state"_a, "elapsed"_a = 0.0, "deadline"_a = std::numeric_limits<double>::infinity(),
+          "proposals"_a = Numbers(),
           "Returns the plan from `state`. The warm start is shifted by `elapsed` (s), the time since the "
           "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
           "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
@@ -131,9 +94,9 @@ void bind_controllers(py::module_& module) {
       .def(py::pickle(&state_of, &from_state))
       .def("__copy__", &copy)
       .def("__deepcopy__", [](const py::object& self, const py::dict&) { return copy(self); })
-      .def("reset", &Controller::reset, py::arg("seed") = 0,
+      .def("reset", &Controller::reset, "seed"_a = 0,
            "Discards all state and starts the random numbers from `seed`.")
-      .def("set_previous_input", &Controller::set_previous_input, py::arg("input"),
+      .def("set_previous_input", &Controller::set_previous_input, "input"_a,
            "Sets the input applied before the next solve, for problems with limits on their input rates. "
            "By default it is the input that the last plan had for that time.")
       .def("prepare", &Controller::prepare,
@@ -150,7 +113,6 @@ void bind_controllers(py::module_& module) {
   read("options", "the options in use, by name", [](const Controller& c) -> py::dict {
     return py::module_::import("slalom.display").attr("Options")(values_of(c.options()));
   });
-  for (const char* method : solver_names()) bind_method(module, base, method);
   module.def(
       "solve_batch",
       [](const std::vector<py::object>& controllers, std::vector<std::vector<double>> states, double elapsed,
@@ -164,8 +126,8 @@ void bind_controllers(py::module_& module) {
         for (const py::object& each : controllers) plans.push_back({each, each.cast<Controller&>().solves()});
         return plans;
       },
-      py::arg("controllers"), py::arg("states"), py::arg("elapsed") = 0.0,
-      py::arg("deadline") = std::numeric_limits<double>::infinity(), py::arg("threads") = 1,
+      "controllers"_a, "states"_a, "elapsed"_a = 0.0, "deadline"_a = std::numeric_limits<double>::infinity(),
+      "threads"_a = 1,
       "The plans of many controllers, each from its own state and its own last plan, in parallel on "
       "`threads` threads; with callables on one. Copies of one controller draw the same noise unless each is "
       "reset with a seed of its own.");
@@ -176,9 +138,10 @@ void bind_controllers(py::module_& module) {
         return std::vector<std::string>(all.begin(), all.end());
       },
       "The names of all methods.");
+  module.def("_options_text", [](const std::string& method) { return options_text(solver_options(method)); });
   module.def(
       "options", [](const std::string& method) { return describe_options(solver_options(method)); },
-      py::arg("method"), "The options of a method: a dictionary for each.");
+      "method"_a, "The options of a method: a dictionary for each.");
 }
 
 }  // namespace slalom::python

@@ -39,9 +39,6 @@ evaluation::LapSettings take_world_options(py::dict& options) {
 py::dict lap_dict(const evaluation::LapResult& lap, const std::vector<std::array<double, 4>>& path,
                   const Environment& environment) {
   const auto solves = static_cast<py::ssize_t>(lap.solve_ms.size());
-  const auto obstacles = rows_of(lap.obstacles, [](const maps::Pose& pose) {
-    return std::array{pose.x, pose.y, pose.yaw};
-  });
   const auto waypoints = rows_of(environment.path, [](const maps::ReferencePoint& point) {
     return std::array{point.x, point.y, point.yaw, point.speed};
   });
@@ -51,11 +48,11 @@ py::dict lap_dict(const evaluation::LapResult& lap, const std::vector<std::array
       "state_cost"_a = lap.state_cost, "collision_cost"_a = lap.collision_cost,
       "mean_sequence_cost"_a = lap.mean_sequence_cost(), "mean_speed"_a = lap.mean_speed,
       "min_clearance"_a = lap.min_clearance, "solve_ms"_a = py::array_t<float>(solves, lap.solve_ms.data()),
-      "path"_a = rows_of(path, [](const auto& row) { return row; }), "obstacles"_a = obstacles);
+      "path"_a = rows_of(path, [](const auto& row) { return row; }), "obstacles"_a = rows_of(lap.obstacles));
   return py::module_::import("slalom.plot").attr("Lap")(results, waypoints);
 }
 
-void bind_planner(py::module_& module) {
+void bind_driving(py::module_& module) {
   py::class_<vehicle::Planner>(module, "Planner", "Computes steering and speed from LiDAR scan and odometry.")
       .def(py::init([](const Environment& environment, const std::string& method, const py::dict& options,
                        const std::string& config) {
@@ -64,8 +61,7 @@ void bind_planner(py::module_& module) {
                                      vehicle::make_vehicle_model(configuration.vehicle), environment.path,
                                      vehicle::make_solver(configuration, method, 1));
            }),
-           py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(), py::kw_only(),
-           py::arg("config") = "",
+           "course"_a, "method"_a = "svg_mppi", "options"_a = py::dict(), py::kw_only(), "config"_a = "",
            "`config`: 'default', 'published' or a file; otherwise the defaults of the classes. `options`: "
            "{'samples': 2000, 'planner.max_speed': 4, 'vehicle....': ...}")
       .def(
@@ -91,12 +87,14 @@ void bind_planner(py::module_& module) {
                             "speed"_a = output->command.speed, "predicted"_a = predicted,
                             "tick_time"_a = output->tick_time, "corrections"_a = output->corrections);
           },
-          py::arg("ranges"), py::kw_only(), py::arg("angle_min"), py::arg("angle_increment"),
-          py::arg("range_min") = 0.0, py::arg("range_max"), py::arg("pose"), py::arg("speed"),
+          "ranges"_a, py::kw_only(), "angle_min"_a, "angle_increment"_a, "range_min"_a = 0.0, "range_max"_a,
+          "pose"_a, "speed"_a,
           "`pose`: (x, y, yaw) of the rear axle. Returns status, steer (rad), speed (m/s), predicted [n, 4], "
           "tick_time (s) and corrections, the number of values that the final check changed.")
-      .def("reset", &vehicle::Planner::reset, py::arg("seed") = 0,
+      .def("reset", &vehicle::Planner::reset, "seed"_a = 0,
            "Discards all state and starts the random numbers from `seed`.");
+  module.def(
+      "courses", [] { return vehicle::course_names(course_folders()); }, "The names of the courses found.");
   module.def(
       "drive_lap",
       [](const std::shared_ptr<Environment>& environment, const std::string& method, std::uint64_t seed,
@@ -116,8 +114,8 @@ void bind_planner(py::module_& module) {
         }
         return lap_dict(lap, path, *environment);
       },
-      py::arg("course"), py::arg("method") = "svg_mppi", py::kw_only(), py::arg("seed") = 0,
-      py::arg("obstacles") = 0, py::arg("options") = py::dict(), py::arg("config") = "",
+      "course"_a, "method"_a = "svg_mppi", py::kw_only(), "seed"_a = 0, "obstacles"_a = 0,
+      "options"_a = py::dict(), "config"_a = "",
       "Drives one lap in lockstep and returns its results, as `slalom eval` does, with the `path` of the car "
       "[n, 4]: x, y, yaw, speed. A notebook draws them. `options` may also have those of the world, for "
       "instance {'world.friction': 0.7}.");
@@ -125,10 +123,12 @@ void bind_planner(py::module_& module) {
 
 }  // namespace
 
-void bind_driving(py::module_& module) {
-  bind_planner(module);
-  module.def(
-      "courses", [] { return vehicle::course_names(course_folders()); }, "The names of the courses found.");
-}
-
 }  // namespace slalom::python
+
+PYBIND11_MODULE(_driving, module) {
+  module.doc() = "Courses, simulator and planner of cars, and the navigator of mobile robots.";
+  pybind11::module_::import("slalom._slalom");  // registers the exceptions
+  slalom::python::bind_world(module);
+  slalom::python::bind_driving(module);
+  slalom::python::bind_navigation(module);
+}

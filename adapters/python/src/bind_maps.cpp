@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "controller.hpp"
@@ -12,7 +13,7 @@ using maps::FieldGeometry;
 using maps::Occupancy;
 using maps::OccupancyGrid;
 
-constexpr const char* placement =
+const std::string placement =
     "`resolution` is the size of a cell, m; `origin` the pose (x, y, yaw) of the grid's lower left corner in "
     "the map frame, as in a map of ROS map_server; by default (0, 0, 0).";
 
@@ -31,33 +32,18 @@ maps::Pose to_pose(const std::vector<double>& origin) {
   return {origin[0], origin[1], origin.size() == 3 ? origin[2] : 0};
 }
 
-py::tuple to_tuple(const maps::Pose& pose) {
-  return py::make_tuple(pose.x, pose.y, pose.yaw);
-}
-
-int extent(py::ssize_t count, const char* what) {
-  if (count > std::numeric_limits<int>::max())
-    throw py::value_error(std::string(what) + ": must be at most 2^31 - 1");
-  return static_cast<int>(count);
-}
-
-FieldGeometry geometry_of(int width, int height, double resolution, const std::vector<double>& origin) {
-  return {width, height, resolution, to_pose(origin)};
-}
-
-Field make_field(const py::array_t<double, py::array::c_style | py::array::forcecast>& samples,
-                 double resolution, const std::vector<double>& origin) {
+Field make_field(const Numbers& samples, double resolution, const std::vector<double>& origin) {
   if (samples.ndim() != 2)
     throw py::value_error("Field.samples: has " + std::to_string(samples.ndim()) +
                           " dimensions, must have 2: [row, column]");
-  const int height = extent(samples.shape(0), "rows"), width = extent(samples.shape(1), "columns");
-  return Field(geometry_of(width, height, resolution, origin),
+  const int height = static_cast<int>(samples.shape(0)), width = static_cast<int>(samples.shape(1));
+  return Field({width, height, resolution, to_pose(origin)},
                std::span(samples.data(), static_cast<std::size_t>(samples.size())));
 }
 
 Field field_from_function(const py::object& function, int width, int height, double resolution,
                           const std::vector<double>& origin) {
-  const FieldGeometry geometry = geometry_of(width, height, resolution, origin);
+  const FieldGeometry geometry{width, height, resolution, to_pose(origin)};
   static_cast<void>(Field(FieldGeometry{1, 1, resolution, geometry.origin}, std::array{0.0}));
   if (width < 1 || height < 1 || std::int64_t{width} * height > std::int64_t{1} << 26)
     throw py::value_error("Field.from_function: " + std::to_string(width) + " x " + std::to_string(height) +
@@ -70,19 +56,11 @@ Field field_from_function(const py::object& function, int width, int height, dou
       y.mutable_at(row, column) = center.y;
     }
   }
-  const auto samples = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(function(x, y));
-  if (!samples) throw py::error_already_set();
+  const Numbers samples(function(x, y));
   if (samples.ndim() != 2 || samples.shape(0) != height || samples.shape(1) != width)
     throw py::value_error("Field.from_function: the function must return an array of shape (" +
                           std::to_string(height) + ", " + std::to_string(width) + "), as its arguments have");
   return make_field(samples, resolution, origin);
-}
-
-/// Converts a value to an array, as numpy does.
-py::array to_array(const py::object& value) {
-  auto array = py::array::ensure(value);
-  if (!array) throw py::error_already_set();
-  return array;
 }
 
 /// An array, or a number if the array has no dimensions.
@@ -94,11 +72,9 @@ py::object result(Array&& array) {
 template <class Real>
 py::object look_up(const Field& field, const py::array& x, const py::array& y, bool gradient) {
   using Array = py::array_t<Real, py::array::c_style | py::array::forcecast>;
-  const Array xs = Array::ensure(x), ys = Array::ensure(y);
-  if (!xs || !ys) throw py::error_already_set();
+  const Array xs(x), ys(y);
   const std::vector<py::ssize_t> shape(xs.shape(), xs.shape() + xs.ndim());
-  if (xs.ndim() != ys.ndim() || !std::equal(shape.begin(), shape.end(), ys.shape()))
-    throw py::value_error("x, y: must have the same shape");
+  if (!std::ranges::equal(shape, extents_of(ys))) throw py::value_error("x, y: must have the same shape");
   const auto count = static_cast<std::size_t>(xs.size());
   const std::vector<py::ssize_t> shape_of_gradient = gradient ? shape : std::vector<py::ssize_t>{0};
   Array values(shape), dx(shape_of_gradient), dy(shape_of_gradient);
@@ -117,25 +93,23 @@ py::object look_up(const Field& field, const py::array& x, const py::array& y, b
   return py::make_tuple(result(values), result(dx), result(dy));
 }
 
-/// The value at positions, and with `gradient` its derivatives, in float32 if both arrays are, else in
-/// double.
+/// The value at positions, and with `gradient` its derivatives, in float32 if both arrays are.
 template <bool gradient>
 py::object look_up(const Field& field, const py::object& x_values, const py::object& y_values) {
-  const py::array x = to_array(x_values), y = to_array(y_values);
+  const py::array x(x_values), y(y_values);
   const bool single = py::isinstance<py::array_t<float>>(x) && py::isinstance<py::array_t<float>>(y);
   return single ? look_up<float>(field, x, y, gradient) : look_up<double>(field, x, y, gradient);
 }
 
 OccupancyGrid make_grid(const py::object& given, double resolution, const std::vector<double>& origin) {
-  const py::array cells = to_array(given);
+  const py::array cells(given);
   const bool flags = py::isinstance<py::array_t<bool>>(cells);
-  const auto values = py::array_t<int, py::array::c_style | py::array::forcecast>::ensure(cells);
-  if (!values) throw py::error_already_set();
+  const py::array_t<int, py::array::c_style | py::array::forcecast> values(cells);
   if (values.ndim() != 2)
     throw py::value_error("OccupancyGrid.cells: has " + std::to_string(values.ndim()) +
                           " dimensions, must have 2: [row, column]");
   OccupancyGrid grid{
-      extent(values.shape(1), "columns"), extent(values.shape(0), "rows"), resolution, to_pose(origin), {}};
+      static_cast<int>(values.shape(1)), static_cast<int>(values.shape(0)), resolution, to_pose(origin), {}};
   grid.cells.reserve(static_cast<std::size_t>(values.size()));
   for (py::ssize_t i = 0; i < values.size(); ++i) {
     const int cell = values.data()[i];
@@ -160,23 +134,22 @@ py::array_t<std::int8_t> cells_of(const OccupancyGrid& grid) {
 }
 
 void bind_field(py::module_& module) {
-  const std::string words = std::string(
-                                "A map that a problem looks up: a distance, a height, a cost. Its samples "
-                                "are interpolated bilinearly; beyond the outermost ones the value is that of "
-                                "the nearest point of their edge.\n\n"
-                                "samples: [row, column], row 0 at the smallest y. ") +
-                            placement;
+  const std::string words =
+      "A map that a problem looks up: a distance, a height, a cost. Its samples are interpolated bilinearly; "
+      "beyond the outermost ones the value is that of the nearest point of their edge.\n\n"
+      "samples: [row, column], row 0 at the smallest y. " +
+      placement;
   py::class_<Field> field(module, "Field", words.c_str());
-  field.def(py::init(&make_field), py::arg("samples"), py::arg("resolution"), level())
-      .def_static("from_function", &field_from_function, py::arg("function"), py::arg("width"),
-                  py::arg("height"), py::arg("resolution"), level(),
+  field.def(py::init(&make_field), "samples"_a, "resolution"_a, level())
+      .def_static("from_function", &field_from_function, "function"_a, "width"_a, "height"_a, "resolution"_a,
+                  level(),
                   "The field of function(x[height, width], y[height, width]), which is called once with the "
                   "centres of all cells, m.")
-      .def("value", &look_up<false>, py::arg("x"), py::arg("y"),
+      .def("value", &look_up<false>, "x"_a, "y"_a,
            "The value at positions of the map frame (m): arrays of one shape. float32 in, float32 out.")
-      .def("value_and_gradient", &look_up<true>, py::arg("x"), py::arg("y"),
+      .def("value_and_gradient", &look_up<true>, "x"_a, "y"_a,
            "A tuple: the value at positions of the map frame, and its derivatives by x and y.")
-      .def("relative_to", &Field::relative_to, py::arg("x"), py::arg("y"),
+      .def("relative_to", &Field::relative_to, "x"_a, "y"_a,
            "The same field for positions relative to a point of the map frame, m.")
       .def("__repr__", [](const Field& f) {
         const FieldGeometry& g = f.geometry();
@@ -193,14 +166,13 @@ void bind_field(py::module_& module) {
 }  // namespace
 
 void bind_maps(py::module_& module) {
-  const std::string words = std::string(
-                                "A map of free, occupied and unknown cells.\n\n"
-                                "cells: [row, column], row 0 at the smallest y: truth values (occupied or "
-                                "not), or numbers as in nav_msgs/OccupancyGrid: 0 is free, 100 occupied, "
-                                "anything else unknown. ") +
-                            placement;
+  const std::string words =
+      "A map of free, occupied and unknown cells.\n\n"
+      "cells: [row, column], row 0 at the smallest y: truth values (occupied or not), or numbers as in "
+      "nav_msgs/OccupancyGrid: 0 is free, 100 occupied, anything else unknown. " +
+      placement;
   py::class_<OccupancyGrid> bound(module, "OccupancyGrid", words.c_str());
-  bound.def(py::init(&make_grid), py::arg("cells"), py::arg("resolution"), level());
+  bound.def(py::init(&make_grid), "cells"_a, "resolution"_a, level());
   const auto read = reader(bound);
   read("cells", "int8 [row, column], a copy: 0 free, 100 occupied, -1 unknown", &cells_of);
   read("resolution", "m per cell", [](const OccupancyGrid& g) { return g.resolution; });
@@ -218,13 +190,13 @@ void bind_maps(py::module_& module) {
           if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
         return grid;
       },
-      py::arg("file"), "Loads a map of ROS map_server from its yaml file.");
+      "file"_a, "Loads a map of ROS map_server from its yaml file.");
   module.def(
       "signed_distance",
       [](const OccupancyGrid& grid, bool unknown_is_obstacle, bool outside_is_obstacle) {
         return maps::signed_distance(grid, {unknown_is_obstacle, outside_is_obstacle});
       },
-      py::arg("grid"), py::arg("unknown_is_obstacle") = true, py::arg("outside_is_obstacle") = true,
+      "grid"_a, "unknown_is_obstacle"_a = true, "outside_is_obstacle"_a = true,
       py::call_guard<py::gil_scoped_release>(),
       "The Field of the distance to the nearest edge of an obstacle, m: above 0 in free space, below 0 in "
       "obstacles.");

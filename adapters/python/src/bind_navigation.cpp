@@ -14,25 +14,16 @@ namespace {
 using navigation::Costmap;
 using navigation::Footprint;
 using navigation::Navigator;
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// The rows of an array, each with 2 or 3 numbers.
 std::vector<maps::Pose> poses_of(const Numbers& rows, const char* what, py::ssize_t columns) {
   if (rows.ndim() != 2 || rows.shape(1) != columns)
-    throw py::value_error(std::string(what) + ": has shape " + shape_text(rows) + ", must have shape (n, " +
-                          std::to_string(columns) + ")");
+    throw py::value_error(std::string(what) + ": has shape " + shape_text(extents_of(rows)) +
+                          ", must have shape (n, " + std::to_string(columns) + ")");
   std::vector<maps::Pose> poses;
   for (py::ssize_t i = 0; i < rows.shape(0); ++i)
     poses.push_back({rows.at(i, 0), rows.at(i, 1), columns == 3 ? rows.at(i, 2) : 0});
   return poses;
-}
-
-py::array_t<double> rows_of_poses(std::span<const maps::Pose> poses) {
-  py::array_t<double> rows({static_cast<py::ssize_t>(poses.size()), py::ssize_t{3}});
-  double* to = rows.mutable_data();
-  for (const maps::Pose& pose : poses)
-    for (const double number : {pose.x, pose.y, pose.yaw}) *to++ = number;
-  return rows;
 }
 
 void bind_costmap(py::module_& module) {
@@ -44,8 +35,8 @@ void bind_costmap(py::module_& module) {
                points.push_back({each.x, each.y});
              return Footprint(points);
            }),
-           py::arg("vertices"))
-      .def_static("rectangle", &Footprint::rectangle, py::arg("front"), py::arg("rear"), py::arg("width"),
+           "vertices"_a)
+      .def_static("rectangle", &Footprint::rectangle, "front"_a, "rear"_a, "width"_a,
                   "A rectangle: `front` and `rear` (m) are the distances from the origin to its sides.");
   py::class_<Costmap>(module, "Costmap",
                       "The distances from the cells of an OccupancyGrid to the nearest obstacle. `unknown`: "
@@ -59,7 +50,7 @@ void bind_costmap(py::module_& module) {
              if (!made.update(grid)) throw py::value_error("Costmap.grid: its origin must have the yaw 0");
              return made;
            }),
-           py::arg("grid"), py::kw_only(), py::arg("unknown") = "obstacle")
+           "grid"_a, py::kw_only(), "unknown"_a = "obstacle")
       .def(
           "update",
           [](Costmap& self, const maps::OccupancyGrid& grid,
@@ -69,27 +60,26 @@ void bind_costmap(py::module_& module) {
             if (!self.update(grid, values))
               throw py::value_error(
                   "Costmap.update: grid and prices must have the size and resolution of the first grid, and "
-                  "the "
-                  "grid the yaw 0");
+                  "the grid the yaw 0");
           },
-          py::arg("grid"), py::arg("prices") = py::none(),
+          "grid"_a, "prices"_a = py::none(),
           "Takes the cells of a grid, which may have moved, and your own prices [row, column] of them: being "
           "in a cell with price 1 costs `unknown`, and a search pays twice its length.")
-      .def("distance", &Costmap::distance, py::arg("x"), py::arg("y"),
+      .def("distance", &Costmap::distance, "x"_a, "y"_a,
            "The distance (m) from a position to the nearest obstacle.")
       .def(
           "collides",
           [](const Costmap& self, const Footprint& footprint, const std::array<double, 3>& pose) {
             return self.collides(footprint, to_pose(pose));
           },
-          py::arg("footprint"), py::arg("pose"), "Whether the body overlaps an obstacle at (x, y, yaw).");
+          "footprint"_a, "pose"_a, "Whether the body overlaps an obstacle at (x, y, yaw).");
   module.def(
       "plan_path",
       [](const Costmap& costmap, const Footprint& footprint, const std::array<double, 3>& start,
          const std::array<double, 3>& goal) {
-        return rows_of_poses(navigation::plan_path(costmap, footprint, to_pose(start), to_pose(goal)));
+        return rows_of(navigation::plan_path(costmap, footprint, to_pose(start), to_pose(goal)));
       },
-      py::arg("costmap"), py::arg("footprint"), py::arg("start"), py::arg("goal"),
+      "costmap"_a, "footprint"_a, "start"_a, "goal"_a,
       "The cheapest path [n, 3] between two poses (x, y, yaw); no rows if there is none.");
 }
 
@@ -110,8 +100,9 @@ struct PythonCost {
                    array(states.left), array(states.turn), states.step);
       const auto count = static_cast<py::ssize_t>(costs.size());
       if (term.size() != 1 && (term.ndim() != 1 || term.size() != count))
-        throw py::value_error("Navigator.set_cost: the function returned shape " + shape_text(term) +
-                              ", must return one number, or shape (" + std::to_string(count) + ",)");
+        throw py::value_error("Navigator.set_cost: the function returned shape " +
+                              shape_text(extents_of(term)) + ", must return one number, or shape (" +
+                              std::to_string(count) + ",)");
       for (py::ssize_t i = 0; i < count; ++i)
         costs[static_cast<std::size_t>(i)] += term.data()[term.size() == 1 ? 0 : i];
     } catch (...) {
@@ -139,8 +130,7 @@ struct PythonNavigator : Navigator {
 void bind_navigator(py::module_& module) {
   const std::string words =
       "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
-      "with "
-      "the options of `solver`. Other options:\n\n" +
+      "with the options of `solver`. Other options:\n\n" +
       options_text(navigation::NavigatorOptions{});
   py::class_<PythonNavigator>(module, "Navigator", words.c_str())
       .def(py::init([](const Footprint& footprint, const Costmap& costmap, const std::string& method,
@@ -151,12 +141,11 @@ void bind_navigator(py::module_& module) {
              set_from_keywords(of_solver, py::reinterpret_borrow<py::kwargs>(solver), method);
              return PythonNavigator(footprint, set, of_solver, costmap);
            }),
-           py::arg("footprint"), py::arg("costmap"), py::kw_only(), py::arg("method") = "svg_mppi",
-           py::arg("solver") = py::dict())
+           "footprint"_a, "costmap"_a, py::kw_only(), "method"_a = "svg_mppi", "solver"_a = py::dict())
       .def(
           "set_path",
           [](PythonNavigator& self, const Numbers& path) { self.set_path(poses_of(path, "path", 3)); },
-          py::arg("path"), "Follows a path [n, 3] from near the robot to the goal (docs/navigation.md).")
+          "path"_a, "Follows a path [n, 3] from near the robot to the goal (docs/navigation.md).")
       .def(
           "update",
           [](PythonNavigator& self, const std::array<double, 3>& pose, const std::array<double, 3>& velocity,
@@ -171,19 +160,18 @@ void bind_navigator(py::module_& module) {
             return py::dict("status"_a = navigation::name(result.status),
                             "command"_a = py::make_tuple(command.forward, command.left, command.turn),
                             "remaining"_a = result.remaining, "delay"_a = result.delay,
-                            "plan"_a = rows_of_poses(result.plan), "path"_a = rows_of_poses(result.path));
+                            "plan"_a = rows_of(result.plan), "path"_a = rows_of(result.path));
           },
-          py::arg("pose"), py::arg("velocity"), py::arg("costmap"), py::arg("elapsed"),
+          "pose"_a, "velocity"_a, "costmap"_a, "elapsed"_a,
           "The command for the next control period, `elapsed` (s) after the last update. `velocity` is that "
           "of the robot: forward, left (m/s), turn (rad/s). Returns status, command (as velocity), remaining "
           "(m of path), delay (s), plan [n, 3] and path [n, 3].")
-      .def("set_cost", &PythonNavigator::set_term, py::arg("function"),
+      .def("set_cost", &PythonNavigator::set_term, "function"_a,
            "Adds a term of your own to the cost of plans: function(x, y, yaw, forward, left, turn, step) "
-           "takes "
-           "arrays [n] of the states of rollouts at a step, and returns their costs per second [n]. None "
-           "removes it. `update` raises what the function raises.")
+           "takes arrays [n] of the states of rollouts at a step, and returns their costs per second [n]. "
+           "None removes it. `update` raises what the function raises.")
       .def(
-          "reset", [](PythonNavigator& self, std::uint64_t seed) { self.reset(seed); }, py::arg("seed") = 0,
+          "reset", [](PythonNavigator& self, std::uint64_t seed) { self.reset(seed); }, "seed"_a = 0,
           "Forgets the path, and starts the random numbers from `seed`.");
 }
 

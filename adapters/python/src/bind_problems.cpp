@@ -1,5 +1,3 @@
-#include <variant>
-
 #include "callable_problem.hpp"
 #include "controller.hpp"
 #include "rollouts/built_in_problems.hpp"
@@ -59,21 +57,6 @@ py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char*
   return bound;
 }
 
-/// One number, one per input, or none.
-using Limits = std::variant<std::monostate, double, std::vector<double>>;
-
-std::vector<double> to_values(const Limits& bound) {
-  if (const double* one = std::get_if<double>(&bound)) return {*one};
-  if (const auto* all = std::get_if<std::vector<double>>(&bound)) return *all;
-  return {};
-}
-
-/// The values as Python gave them.
-py::object to_limits(const std::vector<double>& values) {
-  if (values.empty()) return py::none();
-  return values.size() == 1 ? py::object(py::float_(values[0])) : py::object(py::cast(values));
-}
-
 std::span<const double> checked(const std::vector<double>& values, int count, const char* what) {
   if (static_cast<int>(values.size()) != count)
     throw std::invalid_argument(std::string(what) + ": has " + std::to_string(values.size()) +
@@ -108,14 +91,14 @@ void bind_problems(py::module_& module) {
                 self.step(checked(state, self.states(), "state"), checked(input, self.inputs(), "input"), k);
             return py::array_t<double>(static_cast<py::ssize_t>(next.size()), next.data());
           },
-          py::arg("state"), py::arg("input"), py::arg("k") = 0,
+          "state"_a, "input"_a, "k"_a = 0,
           "The state after one step, in double. `k` is the index of the step, for dynamics that take it.")
       .def(
           "collides",
           [](AnyProblem& self, const std::vector<double>& state) {
             return self.predict(checked(state, self.states(), "state"), {}).collided;
           },
-          py::arg("state"), "Whether a state collides, according to the terminal cost.");
+          "state"_a, "Whether a state collides, according to the terminal cost.");
   py::class_<CallableProblem, AnyProblem> problem(
       module, "Problem",
       "A problem of your own: callables on batches of K samples.\n\n"
@@ -131,16 +114,15 @@ void bind_problems(py::module_& module) {
       "memory, valid during the call. The result of dynamics is not copied.");
   problem
       .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
-                       double dt, const Limits& input_min, const Limits& input_max,
-                       const Limits& input_rate_max, py::object sampler) {
+                       double dt, const Values& input_min, const Values& input_max,
+                       const Values& input_rate_max, py::object sampler) {
              return std::make_unique<CallableProblem>(
-                 CallableParts{dynamics, cost, terminal_cost, states, inputs, dt, to_values(input_min),
-                               to_values(input_max), to_values(input_rate_max), sampler});
+                 CallableParts{dynamics, cost, terminal_cost, states, inputs, dt, numbers_of(input_min),
+                               numbers_of(input_max), numbers_of(input_rate_max), sampler});
            }),
-           py::arg("dynamics"), py::arg("cost"), py::arg("terminal_cost") = py::none(), py::kw_only(),
-           py::arg("states"), py::arg("inputs"), py::arg("dt") = 0.0, py::arg("input_min") = py::none(),
-           py::arg("input_max") = py::none(), py::arg("input_rate_max") = py::none(),
-           py::arg("sampler") = py::none())
+           "dynamics"_a, "cost"_a, "terminal_cost"_a = py::none(), py::kw_only(), "states"_a, "inputs"_a,
+           "dt"_a = 0.0, "input_min"_a = py::none(), "input_max"_a = py::none(),
+           "input_rate_max"_a = py::none(), "sampler"_a = py::none())
       .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
                     "s, duration of a step; 0: unknown");
   const auto read = reader(problem);
@@ -152,7 +134,7 @@ void bind_problems(py::module_& module) {
   callable("terminal_cost", &CallableParts::terminal_cost, "the callable, or None");
   callable("sampler", &CallableParts::sampler, "the callable, or None");
   const auto limits = [&](const char* name, std::vector<double> CallableParts::*field, const char* help) {
-    read(name, help, [field](const CallableProblem& p) { return to_limits(p.parts().*field); });
+    read(name, help, [field](const CallableProblem& p) { return from_numbers(p.parts().*field); });
   };
   limits("input_min", &CallableParts::input_min, "as given: a number, one for each input, or None");
   limits("input_max", &CallableParts::input_max, "as given: a number, one for each input, or None");

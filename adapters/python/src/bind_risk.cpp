@@ -113,8 +113,7 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
   RiskOptions options_;
 };
 
-/// Makes the variants: the problem, and those that `randomize` returns; variants 2m and 2m + 1 from mirrored
-/// random numbers.
+/// The problem and the variants that `randomize` makes; 2m and 2m + 1 of them from mirrored random numbers.
 RiskProblem::Variants make_variants(const AnyProblem& problem, const py::object& randomize,
                                     const RiskOptions& options) {
   if (!PyCallable_Check(randomize.ptr()))
@@ -153,7 +152,7 @@ void bind_risk(py::module_& module) {
   py::class_<RandomStream>(module, "RandomStream", "Random numbers of one variant of the world.")
       .def(
           "uniform", [](RandomStream& r, double low, double high) { return r.uniform(low, high); },
-          py::arg("low") = 0.0, py::arg("high") = 1.0, "A uniform value in [low, high).")
+          "low"_a = 0.0, "high"_a = 1.0, "A uniform value in [low, high).")
       .def("normal", &RandomStream::normal, "A standard normal value.");
   py::class_<RiskProblem, AnyProblem>(
       module, "RiskEvaluator",
@@ -164,17 +163,16 @@ void bind_risk(py::module_& module) {
       "variants: 1 ... 32; an odd number deviates to all sides alike, since the random numbers come in "
       "mirrored pairs\n"
       "measure: which measure of their costs counts: 'mean', 'worst', 'cvar' (mean of the worst share "
-      "`tail`) "
-      "or 'exponential' (weight `aversion` of high costs)\n\n"
+      "`tail`) or 'exponential' (weight `aversion` of high costs)\n\n"
       "The variants are made once, so all samples of all solves meet the same ones. A sequence collides if "
       "it collides in any.")
-      .def(py::init(&make_risk), py::arg("problem"), py::arg("randomize"), py::kw_only(),
-           py::arg("variants") = 9, py::arg("measure") = "mean", py::arg("tail") = RiskOptions{}.tail,
-           py::arg("aversion") = RiskOptions{}.aversion, py::arg("seed") = RiskOptions{}.seed)
+      .def(py::init(&make_risk), "problem"_a, "randomize"_a, py::kw_only(), "variants"_a = 9,
+           "measure"_a = "mean", "tail"_a = RiskOptions{}.tail, "aversion"_a = RiskOptions{}.aversion,
+           "seed"_a = RiskOptions{}.seed)
       .def_property_readonly(
           "problem", [](const RiskProblem& r) -> AnyProblem& { return r.variant(0); },
           py::return_value_policy::reference_internal, "the problem itself")
-      .def("variant", &RiskProblem::variant, py::return_value_policy::reference_internal, py::arg("index"),
+      .def("variant", &RiskProblem::variant, py::return_value_policy::reference_internal, "index"_a,
            "The problem (index 0) or one of its variants.")
       .def_property_readonly("randomize", &RiskProblem::randomize, "the callable")
       .def_property_readonly(

@@ -7,8 +7,6 @@
 namespace slalom::python {
 namespace {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 /// The arguments of `slalom.show` that say how a problem is drawn.
 struct Drawing {
   std::vector<double> start;
@@ -17,27 +15,27 @@ struct Drawing {
   py::object pose, figure, shapes, move, plant;
 };
 
-Array row_of(std::span<const double> values) {
-  return Array(static_cast<py::ssize_t>(values.size()), values.data());
+Numbers row_of(std::span<const double> values) {
+  return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 /// An array of points (n, 2), or of places (n, 3).
-Array places_of(const py::object& values, const std::string& what, bool may_have_yaw) {
-  const auto array = Array::ensure(values);
+Numbers places_of(const py::object& values, const std::string& what, bool may_have_yaw) {
+  const auto array = Numbers::ensure(values);
   if (!array || array.ndim() != 2 || (array.shape(1) != 2 && !(may_have_yaw && array.shape(1) == 3)))
     throw py::value_error(what + ": must be an array (n, 2)" + (may_have_yaw ? " or (n, 3)" : ""));
   return array;
 }
 
 view::Line line_of(const py::object& values, const std::string& what) {
-  const Array array = places_of(values, what, false);
+  const Numbers array = places_of(values, what, false);
   view::Line line;
   for (py::ssize_t i = 0; i < array.shape(0); ++i) line.push_back({array.at(i, 0), array.at(i, 1)});
   return line;
 }
 
 view::Shape shape_of(const py::object& values) {
-  const auto array = Array::ensure(values);
+  const auto array = Numbers::ensure(values);
   if (array && array.ndim() == 1 && array.size() == 3)
     return view::disc(array.at(0), array.at(1), array.at(2));
   if (array && array.ndim() == 1 && array.size() == 5)
@@ -97,8 +95,8 @@ class PythonSubject final : public view::Subject {
     const auto width = d.start.size(), count = states.size() / width;
     std::vector<maps::Pose> all(count);
     if (!d.pose.is_none()) {
-      const Array given({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(width)}, states.data());
-      const Array places = places_of(d.pose(given), "pose: its result", true);
+      const Numbers given({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(width)}, states.data());
+      const Numbers places = places_of(d.pose(given), "pose: its result", true);
       if (places.shape(0) != given.shape(0))
         throw py::value_error("pose: must return a place for each state");
       for (std::size_t i = 0; i < count; ++i) {
@@ -204,13 +202,11 @@ void bind_view(py::module_& module) {
                                .map = std::move(map)},
                               {.host = host, .port = port, .token = token});
            }),
-           py::arg("controller"), py::arg("start"), py::kw_only(), py::arg("x") = 0, py::arg("y") = 1,
-           py::arg("heading") = py::none(), py::arg("pose") = py::none(), py::arg("length") = 0.0,
-           py::arg("width") = 0.0, py::arg("figure") = py::none(), py::arg("shapes") = py::none(),
-           py::arg("move") = py::none(), py::arg("map") = py::none(), py::arg("plant") = py::none(),
-           py::arg("state_names") = std::vector<std::string>{},
-           py::arg("input_names") = std::vector<std::string>{}, py::arg("title") = "",
-           py::arg("host") = "127.0.0.1", py::arg("port") = 8400, py::arg("token") = "")
+           "controller"_a, "start"_a, py::kw_only(), "x"_a = 0, "y"_a = 1, "heading"_a = py::none(),
+           "pose"_a = py::none(), "length"_a = 0.0, "width"_a = 0.0, "figure"_a = py::none(),
+           "shapes"_a = py::none(), "move"_a = py::none(), "map"_a = py::none(), "plant"_a = py::none(),
+           "state_names"_a = std::vector<std::string>{}, "input_names"_a = std::vector<std::string>{},
+           "title"_a = "", "host"_a = "127.0.0.1", "port"_a = 8400, "token"_a = "")
       .def_property_readonly("address", &view::View::address, "The address of the page.")
       .def(
           "turn",
@@ -219,10 +215,9 @@ void bind_view(py::module_& module) {
             view.turn(
                 std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
           },
-          py::arg("seconds") = 0.05,
+          "seconds"_a = 0.05,
           "Executes the commands of the page and drives the step that is due; waits for one, for `seconds` "
-          "at "
-          "most.");
+          "at most.");
 }
 
 }  // namespace slalom::python

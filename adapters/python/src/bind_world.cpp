@@ -22,12 +22,6 @@ namespace {
 
 using evaluation::Environment;
 
-std::shared_ptr<const Environment> load(const std::string& course, const std::string& evaluation) {
-  const auto folders = course_folders();
-  return evaluation::load_environment(vehicle::find_course(course, folders),
-                                      evaluation::protocol_named(evaluation), folders);
-}
-
 py::dict observe(const py::object& self, std::size_t car) {
   const auto& world = self.cast<const sim::World&>();
   if (car >= world.cars()) throw py::index_error("car: must be less than the number of cars");
@@ -54,9 +48,11 @@ void bind_course(py::module_& module) {
   py::class_<Environment, std::shared_ptr<Environment>> course(module, "Course",
                                                                "A course prepared for driving.");
   course.def(py::init([](const std::string& name, const std::string& evaluation) {
-               return std::const_pointer_cast<Environment>(load(name, evaluation));
+               const Folders folders = course_folders();
+               return std::const_pointer_cast<Environment>(evaluation::load_environment(
+                   vehicle::find_course(name, folders), evaluation::protocol_named(evaluation), folders));
              }),
-             py::arg("course"), py::arg("evaluation") = "true",
+             "course"_a, "evaluation"_a = "true",
              "`course`: a name or a folder. `evaluation`: 'true' or 'published'.");
   const auto read = reader(course);
   read("name", "of the course", [](const Environment& e) { return e.course.name; });
@@ -97,13 +93,13 @@ void bind_simulated_world(py::module_& module) {
              set_from_keywords(options, keywords, "World");
              return sim::World(options, environment.track);
            }),
-           py::arg("course"))
+           "course"_a)
       .def(
           "reset",
           [](sim::World& self, std::uint64_t seed, const Poses& cars, const Poses& parked) {
             self.reset(seed, to_poses(cars), to_poses(parked));
           },
-          py::arg("seed"), py::arg("cars"), py::arg("parked") = Poses{},
+          "seed"_a, "cars"_a, "parked"_a = Poses{},
           "Restarts with driven cars at rest at `cars` and parked cars at `parked`, each (x, y, yaw).")
       .def(
           "step",
@@ -124,9 +120,9 @@ void bind_simulated_world(py::module_& module) {
               if (k % 64 == 63) check_signals();
             }
           },
-          py::arg("commands"), py::arg("steps") = 1,
+          "commands"_a, "steps"_a = 1,
           "Moves by `steps` time steps; a command is (steering angle rad, speed m/s).")
-      .def("observe", observe, py::arg("car") = 0,
+      .def("observe", observe, "car"_a = 0,
            "The measurements of a car, by name; `ranges` is a view that the next step overwrites.");
   const auto read = reader(world);
   read("time", "s since the reset", &sim::World::time);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
+
+#include "callable_results.hpp"
 
 namespace slalom::python {
 namespace {
@@ -11,33 +12,7 @@ namespace {
 /// Batches of at most this number of samples take longer to call a function than to compute.
 constexpr int small_batch = 256;
 
-template <class From, class Real>
-void add_values(const char* from, py::ssize_t stride, py::ssize_t count, Real* sums) {
-  for (py::ssize_t i = 0; i < count; ++i) {
-    From value;
-    std::memcpy(&value, from + i * stride, sizeof value);
-    sums[i] += static_cast<Real>(value);
-  }
-}
-
-/// Adds a column of an array [count, columns], or an array [count].
-template <class Real>
-void add_column(const py::array& array, py::ssize_t column, py::ssize_t count, Real* sums) {
-  const py::ssize_t offset = array.ndim() == 2 ? column * array.strides(1) : 0;
-  const char* const from = static_cast<const char*>(array.data()) + offset;
-  if (py::isinstance<py::array_t<float>>(array)) {
-    add_values<float>(from, array.strides(0), count, sums);
-  } else if (py::isinstance<py::array_t<double>>(array)) {
-    add_values<double>(from, array.strides(0), count, sums);
-  } else {
-    const auto converted = py::array_t<double, py::array::forcecast>::ensure(array);
-    if (!converted) throw py::error_already_set();
-    add_column(converted, column, count, sums);
-  }
-}
-
-/// Columns that lie together in memory, so that callables work on contiguous values: an array [rows, columns]
-/// of zeros.
+/// An array [rows, columns] of zeros whose columns are contiguous, as callables work on columns.
 py::array_t<float> columns(py::ssize_t rows, py::ssize_t count) {
   constexpr py::ssize_t width = sizeof(float);
   py::array_t<float> values({rows, count}, {width, width * rows});
@@ -45,23 +20,29 @@ py::array_t<float> columns(py::ssize_t rows, py::ssize_t count) {
   return values;
 }
 
-/// Whether a callable has a parameter `k` without a default. False if it does not tell its parameters.
+/// Values as the only row of an array.
+py::array_t<double> row(std::span<const double> values) {
+  return py::array_t<double>({py::ssize_t{1}, static_cast<py::ssize_t>(values.size())}, values.data());
+}
+
 bool takes_k(const py::object& callable) {
-  try {
-    const py::module_ inspect = py::module_::import("inspect");
-    const py::object parameters = inspect.attr("signature")(callable).attr("parameters");
-    if (!parameters.contains("k")) return false;
-    const py::object k = parameters["k"];
-    return k.attr("default").is(inspect.attr("Parameter").attr("empty"));
-  } catch (py::error_already_set& error) {
-    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
-    return false;
-  }
+  return py::module_::import("slalom.display").attr("takes_k")(callable).cast<bool>();
 }
 
 /// Calls a function of a step, with its index `k` if the function takes it.
 py::object call_step(const py::object& function, const py::array& x, const py::array& u, bool with_k, int k) {
   return with_k ? function(x, u, py::arg("k") = k) : function(x, u);
+}
+
+/// Adds a cost that a callable returned to `costs` [count] and its terms to `prediction`, if that is given.
+template <class Real>
+void add_cost(const char* what, const py::object& result, py::ssize_t count, Real* costs,
+              std::uint8_t* collided, Prediction* prediction = nullptr) {
+  visit_terms(what, result, count, collided, [&](const std::string& name, const py::array& values) {
+    const Real before = costs[0];
+    add_column(values, 0, count, costs);
+    if (prediction) prediction->add(name, static_cast<double>(costs[0] - before));
+  });
 }
 
 }  // namespace
@@ -97,32 +78,23 @@ CallableProblem::CallableProblem(CallableParts parts)
   for (const double rate : parts_.input_rate_max)
     require(rate >= 0, "input_rate_max: " + to_text(rate) + " must be at least 0");
   set_dt(parts_.dt);
-  require(parts_.input_rate_max.empty() || parts_.dt > 0,
-          "input_rate_max: requires dt, the duration of a step");
 }
-
-namespace {
-double entry(const std::vector<double>& values, int input, double otherwise) {
-  if (values.empty()) return otherwise;
-  return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(input)];
-}
-}  // namespace
 
 double CallableProblem::input_min(int input) const {
-  return entry(parts_.input_min, input, AnyProblem::input_min(input));
+  return value_for(parts_.input_min, input, AnyProblem::input_min(input));
 }
 double CallableProblem::input_max(int input) const {
-  return entry(parts_.input_max, input, AnyProblem::input_max(input));
+  return value_for(parts_.input_max, input, AnyProblem::input_max(input));
 }
 void CallableProblem::set_previous_input(std::span<const double> u) {
-  std::transform(u.begin(), u.end(), previous_.begin(), [](double v) { return static_cast<float>(v); });
+  previous_.assign(u.begin(), u.end());
 }
 void CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const {
   if (parts_.input_rate_max.empty()) return;
   const auto nu = static_cast<std::size_t>(parts_.inputs);
   for (std::size_t i = 0; i < u.size(); ++i) {
     const double before = i < nu ? previous[i] : u[i - nu];
-    const double reach = entry(parts_.input_rate_max, static_cast<int>(i % nu), 0) * parts_.dt;
+    const double reach = value_for(parts_.input_rate_max, static_cast<int>(i % nu), 0) * parts_.dt;
     u[i] = std::clamp(u[i], before - reach, before + reach);
   }
 }
@@ -141,7 +113,7 @@ std::unique_ptr<AnyProblem> CallableProblem::clone() const {
 }
 
 void CallableProblem::set_state(std::span<const double> state) {
-  std::transform(state.begin(), state.end(), state_.begin(), [](double v) { return static_cast<float>(v); });
+  state_.assign(state.begin(), state.end());
 }
 
 void CallableProblem::begin(void* owner) {
@@ -159,65 +131,16 @@ py::object CallableProblem::stage_cost(const py::array& x, const py::array& u, i
 }
 
 py::array CallableProblem::next(const py::array& x, const py::array& u, int k) const {
-  const py::object result = call_step(parts_.dynamics, x, u, dynamics_take_k_, k);
-  if (!py::isinstance<py::array>(result))
-    throw py::type_error("Problem.dynamics: returned " + py::repr(py::type::of(result)).cast<std::string>() +
-                         ", must be an array");
-  auto array = py::reinterpret_borrow<py::array>(result);
-  if (array.ndim() != 2 || array.shape(0) != x.shape(0) || array.shape(1) != parts_.states)
-    throw py::value_error("Problem.dynamics: returned shape " + shape_text(array) + ", must be " +
-                          shape_text(x));
-  return array;
+  return array_of("dynamics", call_step(parts_.dynamics, x, u, dynamics_take_k_, k),
+                  {x.shape(0), parts_.states});
 }
 
-template <class Real>
-void CallableProblem::add_cost(const char* what, const py::object& result, py::ssize_t count, Real* costs,
-                               std::uint8_t* collided, Prediction* prediction) const {
-  py::object values = result;
-  if (py::isinstance<py::tuple>(result) && py::len(result) == 2) {
-    values = py::reinterpret_borrow<py::tuple>(result)[0];
-    const auto hits =
-        py::array_t<bool, py::array::forcecast>::ensure(py::reinterpret_borrow<py::tuple>(result)[1]);
-    if (!hits || hits.ndim() != 1 || hits.shape(0) != count)
-      throw py::value_error(std::string("Problem.") + what + ": collided must have shape (" +
-                            std::to_string(count) + ",)");
-    for (py::ssize_t i = 0; i < count; ++i) collided[i] |= static_cast<std::uint8_t>(hits.at(i));
-  }
-  if (py::isinstance<py::dict>(values)) {
-    for (const auto& [name, term] : py::reinterpret_borrow<py::dict>(values)) {
-      const Real before = costs[0];
-      add_values_of(what, py::reinterpret_borrow<py::object>(term), count, costs);
-      if (prediction) prediction->add(py::str(name), static_cast<double>(costs[0] - before));
-    }
-    return;
-  }
-  const Real before = costs[0];
-  add_values_of(what, values, count, costs);
-  if (prediction)
-    prediction->add(std::string_view(what) == "terminal_cost" ? "terminal" : "stage",
-                    static_cast<double>(costs[0] - before));
-}
-
-template <class Real>
-void CallableProblem::add_values_of(const char* what, const py::object& values, py::ssize_t count,
-                                    Real* costs) const {
-  if (!py::isinstance<py::array>(values))
-    throw py::type_error(std::string("Problem.") + what + ": returned " +
-                         py::repr(py::type::of(values)).cast<std::string>() + ", must be an array");
-  auto array = py::reinterpret_borrow<py::array>(values);
-  if (array.ndim() != 1 || array.shape(0) != count)
-    throw py::value_error(std::string("Problem.") + what + ": returned shape " + shape_text(array) +
-                          ", must be (" + std::to_string(count) + ",)");
-  add_column(array, 0, count, costs);
-}
-
-/// Moves the inputs of all samples, `held` [input][sample], towards those of step `k`, no faster than
-/// allowed.
+/// Moves the inputs of all samples, `held` [input][sample], towards those of step `k` within their rates.
 void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, int count,
                                 std::vector<float>& held) const {
   float* before = held.data();
   for (int i = 0; i < parts_.inputs; ++i) {
-    const float reach = static_cast<float>(entry(parts_.input_rate_max, i, 0) * parts_.dt);
+    const float reach = static_cast<float>(value_for(parts_.input_rate_max, i, 0) * parts_.dt);
     const float* wanted = batch.row(k, i) + first;
     for (int s = 0; s < count; ++s, ++before)
       *before = std::min(std::max(wanted[s], *before - reach), *before + reach);
@@ -227,14 +150,9 @@ void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, in
 void CallableProblem::draw(SequenceBatch& noise, int first, int count, RandomKey key) const {
   const auto random = py::module_::import("numpy").attr("random").attr("default_rng")(
       py::make_tuple(key.seed, key.stream, first));
-  const auto array = py::array_t<float, py::array::forcecast>::ensure(
+  const py::array_t<float, py::array::forcecast> array(
       parts_.sampler(random, count, noise.steps(), noise.inputs()));
-  if (!array) throw py::error_already_set();
-  if (array.ndim() != 3 || array.shape(0) != count || array.shape(1) != noise.steps() ||
-      array.shape(2) != noise.inputs())
-    throw py::value_error("Problem.sampler: returned shape " + shape_text(array) + ", must be (" +
-                          std::to_string(count) + ", " + std::to_string(noise.steps()) + ", " +
-                          std::to_string(noise.inputs()) + ")");
+  check_shape("sampler", array, {count, noise.steps(), noise.inputs()});
   const auto values = array.unchecked<3>();
   for (int k = 0; k < noise.steps(); ++k)
     for (int i = 0; i < noise.inputs(); ++i)
@@ -313,17 +231,9 @@ void CallableProblem::evaluate(const SequenceBatch& batch, int first, int count,
   std::fill_n(costs + first, count, std::numeric_limits<float>::infinity());
   std::fill_n(collided + first, count, std::uint8_t{0});
 }
-namespace {
-/// Values as the only row of an array.
-py::array_t<double> row(std::span<const double> values) {
-  return py::array_t<double>({py::ssize_t{1}, static_cast<py::ssize_t>(values.size())}, values.data());
-}
-}  // namespace
-
 std::vector<double> CallableProblem::step(std::span<const double> state, std::span<const double> input,
                                           int k) {
-  const auto result =
-      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(next(row(state), row(input), k));
+  const Numbers result(next(row(state), row(input), k));
   return {result.data(), result.data() + parts_.states};
 }
 
@@ -343,8 +253,4 @@ Prediction CallableProblem::predict(std::span<const double> state, std::span<con
   result.collided = collided != 0;
   return result;
 }
-template void CallableProblem::add_values_of(const char*, const py::object&, py::ssize_t, double*) const;
-template void CallableProblem::add_cost(const char*, const py::object&, py::ssize_t, double*, std::uint8_t*,
-                                        Prediction*) const;
-
 }  // namespace slalom::python

@@ -60,16 +60,11 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
 
  private:
   void roll_out(const SequenceBatch& batch, int first, int count, float* costs, std::uint8_t* collided) const;
-  template <class Real>
-  void add_values_of(const char* what, const py::object& values, py::ssize_t count, Real* costs) const;
   void hold_step(const SequenceBatch& batch, int k, int first, int count, std::vector<float>& held) const;
   void fill(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept override;
   void draw(SequenceBatch& noise, int first, int count, RandomKey key) const;
   py::array next(const py::array& x, const py::array& u, int k) const;
   py::object stage_cost(const py::array& x, const py::array& u, int k) const;
-  template <class Real>
-  void add_cost(const char* what, const py::object& result, py::ssize_t count, Real* costs,
-                std::uint8_t* collided, Prediction* prediction = nullptr) const;
 
   CallableParts parts_;
   bool dynamics_take_k_ = false, cost_takes_k_ = false;  ///< the index of the step

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "callable_problem.hpp"
+#include "callable_results.hpp"
 
 namespace slalom::python {
 
@@ -23,18 +24,8 @@ Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<
   for (std::size_t s = 0; s < count; ++s) std::copy(state.begin(), state.end(), x.mutable_data() + s * nx);
   std::vector<std::uint8_t> collided(count);
   std::vector<double> values(count);
-  const auto add = [&](const char* what, const std::string& name, const py::object& result, std::size_t k) {
-    const auto term = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-    if (term == terms)
-      throw py::value_error(std::string("Problem.") + what + ": the term '" + name +
-                            "' is not among those of a prediction from the start; a cost must always return "
-                            "the same terms, if need be with zeros");
-    std::fill(values.begin(), values.end(), 0.0);
-    add_values_of(what, result, rows, values.data());
-    for (std::size_t s = 0; s < count; ++s) all.costs[(s * points + k) * terms + term] += values[s];
-  };
   for (std::size_t k = 0; k < points; ++k) {
-    const auto now = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(x);
+    const Numbers now(x);
     for (std::size_t s = 0; s < count; ++s) {
       std::copy_n(now.data() + s * nx, nx, all.states.data() + (s * points + k) * nx);
       if (k < points - 1) std::copy_n(&held[s * size + k * nu], nu, u.mutable_data() + s * nu);
@@ -42,20 +33,20 @@ Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<
     const bool is_last = k + 1 == points;
     if (is_last && parts_.terminal_cost.is_none()) break;
     const char* const what = is_last ? "terminal_cost" : "cost";
-    py::object cost = is_last ? parts_.terminal_cost(x) : stage_cost(x, u, static_cast<int>(k));
-    if (py::isinstance<py::tuple>(cost)) {
+    const py::object cost = is_last ? parts_.terminal_cost(x) : stage_cost(x, u, static_cast<int>(k));
+    visit_terms(what, cost, rows, collided.data(), [&](const std::string& name, const py::array& result) {
+      const auto term = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+      if (term == terms)
+        throw py::value_error(
+            std::string("Problem.") + what + ": the term '" + name +
+            "' is not among those of a prediction from the start; a cost must always return the same terms, "
+            "if need be with zeros");
       std::fill(values.begin(), values.end(), 0.0);
-      add_cost(what, cost, rows, values.data(), collided.data());
-      for (std::size_t s = 0; s < count; ++s)
-        if (collided[s] && all.collisions[s] < 0) all.collisions[s] = static_cast<int>(k);
-      cost = py::reinterpret_borrow<py::tuple>(cost)[0];
-    }
-    if (py::isinstance<py::dict>(cost)) {
-      for (const auto& [name, term] : py::reinterpret_borrow<py::dict>(cost))
-        add(what, py::str(name), py::reinterpret_borrow<py::object>(term), k);
-    } else {
-      add(what, is_last ? "terminal" : "stage", cost, k);
-    }
+      add_column(result, 0, rows, values.data());
+      for (std::size_t s = 0; s < count; ++s) all.costs[(s * points + k) * terms + term] += values[s];
+    });
+    for (std::size_t s = 0; s < count; ++s)
+      if (collided[s] && all.collisions[s] < 0) all.collisions[s] = static_cast<int>(k);
     if (!is_last) x = next(x, u, static_cast<int>(k));
   }
   return all;

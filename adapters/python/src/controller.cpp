@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <deque>
 #include <limits>
 #include <thread>
@@ -12,24 +11,9 @@
 
 namespace slalom::python {
 
-/// Marks a controller as in use. Throws std::runtime_error if another thread uses it.
-class Controller::Busy {
- public:
-  explicit Busy(Usage& usage) : flag_(usage.busy) {
-    if (flag_.exchange(true)) throw std::runtime_error("controller: another thread is using it");
-  }
-  ~Busy() { flag_ = false; }
-  Busy(const Busy&) = delete;
-  Busy& operator=(const Busy&) = delete;
-
- private:
-  std::atomic<bool>& flag_;
-};
-
 namespace {
 
-/// The options with their bounds narrowed to those of the problem. Throws std::invalid_argument if the
-/// problem has a bound that is not a number.
+/// The options with bounds narrowed to the problem's. Throws std::invalid_argument if one of these is nan.
 SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
   const auto narrow = [&](PerInput& option, auto&& pick) {
     if (!option.fits(problem.inputs())) return;  // the solver reports the error
@@ -68,23 +52,21 @@ InputBounds bounds_of(const SolverOptions& options, int inputs) {
   return bounds;
 }
 
-/// A number as Python prints it, with six digits.
-std::string short_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
+/// A number as Python prints it.
+std::string text_of(double value) {
+  return py::str(py::float_(value));
 }
 
 /// Throws std::invalid_argument if a time of the request is not one, or if the problem cannot use it.
 void check_times(const SolveRequest& request, double time_step) {
   if (!(request.elapsed >= 0 && std::isfinite(request.elapsed)))
-    throw std::invalid_argument("elapsed: " + short_text(request.elapsed) + " must be finite and at least 0");
+    throw std::invalid_argument("elapsed: " + text_of(request.elapsed) + " must be finite and at least 0");
   if (request.elapsed > 0 && !(time_step > 0))
     throw std::invalid_argument(
         "elapsed: the problem has no dt (the duration of its steps, s): make it with dt=..., or omit "
         "elapsed");
   if (!(request.deadline >= 0))
-    throw std::invalid_argument("deadline: " + short_text(request.deadline) + " must be at least 0");
+    throw std::invalid_argument("deadline: " + text_of(request.deadline) + " must be at least 0");
 }
 
 /// Warns with slalom.SymptomWarning. Throws if the program's warning filter turns it into an error.
@@ -155,6 +137,12 @@ Controller::Controller(const AnyProblem& problem, const SolverOptions& options, 
   rest();
 }
 
+/// Marks the controller as in use. Throws std::runtime_error if another thread uses it.
+Controller::Busy Controller::use() {
+  if (usage_.busy.exchange(true)) throw std::runtime_error("controller: another thread is using it");
+  return Busy(&usage_.busy);
+}
+
 /// Sets the state before the first solve: every input at the value in its bounds that is nearest to 0.
 void Controller::rest() {
   for (std::size_t i = 0; i < previous_.size(); ++i) previous_[i] = bounds_.nearest(i, 0);
@@ -162,8 +150,7 @@ void Controller::rest() {
   previous_known_ = true;
 }
 
-/// Sets the previous input to that of the last plan, `elapsed` (s) after it was made, unless the caller has
-/// set it.
+/// Sets the previous input to that of the last plan `elapsed` (s) after it was made, unless the user set it.
 void Controller::update_previous_input(double elapsed) {
   if (std::exchange(previous_known_, false)) return;
   const double step = problem_->evaluator().time_step(), last = solver_->horizon() - 1;
@@ -180,8 +167,8 @@ void Controller::set_previous_input(std::vector<double> input) {
     throw std::invalid_argument("input: has " + std::to_string(input.size()) + " values, must have " +
                                 std::to_string(previous_.size()));
   for (const double value : input)
-    if (!std::isfinite(value)) throw std::invalid_argument("input: " + short_text(value) + " must be finite");
-  const Busy busy(usage_);
+    if (!std::isfinite(value)) throw std::invalid_argument("input: " + text_of(value) + " must be finite");
+  const Busy busy = use();
   for (std::size_t i = 0; i < input.size(); ++i) previous_[i] = bounds_.nearest(i, input[i]);
   is_new_ = false;
   previous_known_ = true;
@@ -231,11 +218,11 @@ void Controller::finish() {
 void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,
                        const SolveRequest& request, int threads) {
   std::vector<Controller*> all;
-  std::vector<std::unique_ptr<Busy>> busy;
+  std::vector<Busy> busy;
   for (std::size_t i = 0; i < owners.size(); ++i) {
     all.push_back(owners[i].cast<Controller*>());
     all[i]->check(states[i], request);
-    busy.push_back(std::make_unique<Busy>(all[i]->usage_));
+    busy.push_back(all[i]->use());
   }
   // Threads that hand the interpreter lock to each other take longer than one thread.
   const bool calls_python = std::any_of(all.begin(), all.end(), [](const Controller* each) {
@@ -269,12 +256,12 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
 }
 
 std::unique_ptr<Controller> Controller::copy() {
-  const Busy busy(usage_);
+  const Busy busy = use();
   return std::unique_ptr<Controller>(new Controller(*this));
 }
 
 void Controller::reset(std::uint64_t seed) {
-  const Busy busy(usage_);
+  const Busy busy = use();
   ++solves_;
   is_new_ = false;
   solver_->reset(seed);
@@ -282,7 +269,7 @@ void Controller::reset(std::uint64_t seed) {
 }
 
 void Controller::prepare() {
-  const Busy busy(usage_);
+  const Busy busy = use();
   const py::gil_scoped_release unlock;
   solver_->prepare();
 }

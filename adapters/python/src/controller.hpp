@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <optional>
 
 #include "keywords.hpp"
@@ -24,9 +25,8 @@ class Controller {
   void solve(py::handle owner, std::vector<double> state, const SolveRequest& request) {
     solve({owner}, {std::move(state)}, request, 1);
   }
-  /// Solves with many controllers, each from its own state, on a number of threads. Throws before the first
-  /// solve if a state or a time is not valid or a controller is in use, and afterwards the first exception of
-  /// a callable.
+  /// Solves with many controllers, each from its own state. Throws before the first solve if a state or a
+  /// time is not valid or a controller is in use, and afterwards the first exception of a callable.
   static void solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,
                     const SolveRequest& request, int threads);
   void reset(std::uint64_t seed);
@@ -59,7 +59,10 @@ class Controller {
   Prediction& prediction();
 
  private:
-  class Busy;
+  struct Release {
+    void operator()(std::atomic<bool>* busy) const { *busy = false; }
+  };
+  using Busy = std::unique_ptr<std::atomic<bool>, Release>;
   /// Whether a thread uses the controller. A copy is not in use.
   struct Usage {
     Usage() = default;
@@ -69,6 +72,7 @@ class Controller {
 
   Controller(const Controller&) = default;
 
+  Busy use();
   void check(const std::vector<double>& state, const SolveRequest& request) const;
   bool start(py::handle owner, std::vector<double> state, double elapsed);
   void finish();
@@ -90,17 +94,33 @@ class Controller {
   Usage usage_;
 };
 
+/// The solution of a controller in Python. Its arrays are views of the controller's memory.
+struct Plan {
+  py::object owner;     ///< the controller
+  std::uint64_t solve;  ///< Controller::solves of this plan
+
+  /// Throws std::runtime_error if the controller has solved again.
+  Controller& controller() const {
+    auto& c = owner.cast<Controller&>();
+    if (c.solves() != solve)
+      throw std::runtime_error(
+          "plan: the controller has solved again; copy what you keep before the next solve");
+    return c;
+  }
+  const SolveResult& result() const { return controller().result(); }
+};
+
 void bind_compiled(py::module_& module);
 void bind_controllers(py::module_& module);
 void bind_maps(py::module_& module);
+void bind_plan(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_risk(py::module_& module);
 void bind_view(py::module_& module);
 
 }  // namespace slalom::python
 
-/// The type that Python sees of a problem: for a compiled one, whose own type is in its library,
-/// CompiledProblem.
+/// The type that Python sees: CompiledProblem for a compiled problem, whose own type is in its library.
 template <>
 struct pybind11::polymorphic_type_hook<slalom::python::AnyProblem> {
   /// Returns the address of the whole object and sets its type.

@@ -17,9 +17,6 @@ Folders folders_of(Folders (*search)(const std::filesystem::path&), const char* 
 Folders course_folders();
 
 /// Poses are tuples in Python.
-inline py::tuple to_tuple(const maps::Pose& pose) {
-  return py::make_tuple(pose.x, pose.y, pose.yaw);
-}
 inline maps::Pose to_pose(const std::array<double, 3>& pose) {
   return {pose[0], pose[1], pose[2]};
 }
@@ -35,7 +32,11 @@ py::array_t<double> rows_of(const Items& items, Numbers&& numbers) {
   return all;
 }
 
-void bind_driving(py::module_& module);
+/// An array [pose][x, y, yaw].
+inline py::array_t<double> rows_of(std::span<const maps::Pose> poses) {
+  return rows_of(poses, [](const maps::Pose& pose) { return std::array{pose.x, pose.y, pose.yaw}; });
+}
+
 void bind_navigation(py::module_& module);
 void bind_world(py::module_& module);
 

@@ -4,9 +4,13 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <span>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/maps/pose.hpp"
 
 /// Options as keyword arguments: names, defaults, ranges and errors are those of the C++ declarations.
 namespace slalom::python {
@@ -14,8 +18,10 @@ namespace slalom::python {
 namespace py = pybind11;
 using namespace pybind11::literals;
 
-/// Throws what a signal handler raised, such as KeyboardInterrupt. Long loops without the interpreter's lock
-/// call it.
+/// An array of doubles, row by row. Made of an object it is converted as numpy does, or throws.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Throws what a signal handler raised, such as KeyboardInterrupt; for long loops without the lock.
 inline void check_signals() {
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -29,11 +35,19 @@ auto reader(Class& bound) {
   };
 }
 
-/// The shape of an array, as Python writes it but for a single number: (3), (3, 2).
-inline std::string shape_text(const py::array& array) {
+/// A shape as Python writes it: (), (3,), (3, 2).
+inline std::string shape_text(std::span<const py::ssize_t> shape) {
   std::string text = "(";
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) text += (i ? ", " : "") + std::to_string(array.shape(i));
-  return text + ")";
+  for (const py::ssize_t size : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(size);
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+inline std::span<const py::ssize_t> extents_of(const py::array& array) {
+  return {array.shape(), static_cast<std::size_t>(array.ndim())};
+}
+
+/// Poses are tuples in Python.
+inline py::tuple to_tuple(const maps::Pose& pose) {
+  return py::make_tuple(pose.x, pose.y, pose.yaw);
 }
 
 /// Marks an array as one that must not be written.
@@ -51,6 +65,25 @@ T value_as(const py::handle& value, const std::string& name) {
     throw py::type_error(name + ": " + std::string(py::repr(py::type::handle_of(value))) +
                          " has the wrong form");
   }
+}
+
+/// Values that are given as one number, as a sequence, or not at all: None.
+using Values = std::variant<std::monostate, double, std::vector<double>>;
+inline std::vector<double> numbers_of(const Values& values) {
+  if (const double* one = std::get_if<double>(&values)) return {*one};
+  if (const auto* all = std::get_if<std::vector<double>>(&values)) return *all;
+  return {};
+}
+/// The same values for Python.
+inline py::object from_numbers(std::span<const double> values) {
+  if (values.empty()) return py::none();
+  if (values.size() == 1) return py::float_(values[0]);
+  return py::cast(std::vector<double>(values.begin(), values.end()));
+}
+/// The value for one of the inputs: the only value is that of each, and without values it is `otherwise`.
+inline double value_for(const std::vector<double>& values, int input, double otherwise) {
+  if (values.empty()) return otherwise;
+  return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(input)];
 }
 
 /// An option's value as a configuration file has it.
@@ -125,9 +158,8 @@ std::string options_text(const Options& options) {
     text += "    " + std::string(d.name) + " = " + to_text(entry.value);
     if (*d.unit) text += " [" + std::string(d.unit) + "]";
     text += ": " + std::string(d.help);
-    for (std::size_t i = 0; i < entry.choices.size(); ++i) {
+    for (std::size_t i = 0; i < entry.choices.size(); ++i)
       text += (i ? ", " : "; one of ") + entry.choices[i];
-    }
     text += "\n";
   }
   return text;

@@ -9,11 +9,6 @@ namespace slalom::python {
 
 namespace {
 
-double bound_of(const std::vector<double>& values, int input, double otherwise) {
-  if (values.empty()) return otherwise;
-  return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(input)];
-}
-
 /// Makes `values` one for each of `count`: none is 0 for all, and one value holds for all.
 void spread(std::vector<double>& values, int count, const char* name) {
   if (values.empty()) values.push_back(0);
@@ -24,6 +19,34 @@ void spread(std::vector<double>& values, int count, const char* name) {
   for (const double value : values)
     if (!std::isfinite(value))
       throw std::invalid_argument(std::string("MlpProblem.") + name + ": must be finite");
+}
+
+/// The parameters of a network, from a slalom.mlp.Mlp.
+MlpParameters parameters_of(const py::object& network) {
+  const auto values = [](const py::object& array, py::ssize_t dimensions) {
+    const auto numbers = Numbers::ensure(array);
+    if (!numbers || numbers.ndim() != dimensions)
+      throw std::invalid_argument("MlpProblem.network: an array has a wrong number of dimensions");
+    return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
+  };
+  if (!py::hasattr(network, "layers") || !py::hasattr(network, "activation"))
+    throw py::type_error("MlpProblem.network: " + py::repr(network).cast<std::string>() +
+                         " must be a slalom.mlp.Mlp");
+  MlpParameters p;
+  for (const py::handle& layer : network.attr("layers")) {
+    const auto pair = layer.cast<std::pair<py::array, py::object>>();
+    MlpParameters::Layer made{0, 0, values(pair.first, 2), values(pair.second, 1)};
+    made.outputs = static_cast<int>(pair.first.shape(0));
+    made.inputs = static_cast<int>(pair.first.shape(1));
+    p.layers.push_back(std::move(made));
+  }
+  p.activation = activation_of(network.attr("activation").cast<std::string>());
+  p.input_mean = values(network.attr("input_mean"), 1);
+  p.input_scale = values(network.attr("input_scale"), 1);
+  p.output_mean = values(network.attr("output_mean"), 1);
+  p.output_scale = values(network.attr("output_scale"), 1);
+  p.residual = network.attr("residual").cast<bool>();
+  return p;
 }
 
 }  // namespace
@@ -51,23 +74,23 @@ NetworkProblem::NetworkProblem(Parts parts) : parts_(std::move(parts)) {
   if ((!m.discs.empty() || m.has_walls || m.has_field) && m.states < 2)
     throw std::invalid_argument(
         "MlpProblem: discs, walls and field need a state of at least 2 values, x and y first");
-  for (std::vector<double>* bound : {&parts_.input_min, &parts_.input_max})
+  for (std::vector<double>* bound : {&m.input_min, &m.input_max})
     if (bound->size() > 1) spread(*bound, m.inputs, "input_min, input_max");
-  if (!(parts_.dt >= 0 && std::isfinite(parts_.dt)))
-    throw std::invalid_argument("MlpProblem.dt: " + to_text(parts_.dt) +
+  if (!(m.dt >= 0 && std::isfinite(m.dt)))
+    throw std::invalid_argument("MlpProblem.dt: " + to_text(m.dt) +
                                 " must be finite and at least 0 (0: not known)");
   state_.resize(static_cast<std::size_t>(m.states));
 }
 
 double NetworkProblem::input_min(int input) const {
-  return bound_of(parts_.input_min, input, AnyProblem::input_min(input));
+  return value_for(parts_.model.input_min, input, AnyProblem::input_min(input));
 }
 double NetworkProblem::input_max(int input) const {
-  return bound_of(parts_.input_max, input, AnyProblem::input_max(input));
+  return value_for(parts_.model.input_max, input, AnyProblem::input_max(input));
 }
 
 void NetworkProblem::set_state(std::span<const double> state) {
-  std::transform(state.begin(), state.end(), state_.begin(), [](double v) { return static_cast<float>(v); });
+  state_.assign(state.begin(), state.end());
 }
 
 std::vector<double> NetworkProblem::step(std::span<const double> state, std::span<const double> input, int) {
@@ -102,33 +125,6 @@ Prediction NetworkProblem::predict(std::span<const double> state, std::span<cons
 void NetworkProblem::evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                               std::uint8_t* collided) const noexcept {
   roll_out_network(parts_.model, state_.data(), batch, first, count, costs, collided);
-}
-
-MlpParameters parameters_of(const py::object& network) {
-  const auto values = [](const py::object& array, py::ssize_t dimensions) {
-    const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
-    if (!numbers || numbers.ndim() != dimensions)
-      throw std::invalid_argument("MlpProblem.network: an array has a wrong number of dimensions");
-    return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
-  };
-  if (!py::hasattr(network, "layers") || !py::hasattr(network, "activation"))
-    throw py::type_error("MlpProblem.network: " + py::repr(network).cast<std::string>() +
-                         " must be a slalom.mlp.Mlp");
-  MlpParameters p;
-  for (const py::handle& layer : network.attr("layers")) {
-    const auto pair = layer.cast<std::pair<py::array, py::object>>();
-    MlpParameters::Layer made{0, 0, values(pair.first, 2), values(pair.second, 1)};
-    made.outputs = static_cast<int>(pair.first.shape(0));
-    made.inputs = static_cast<int>(pair.first.shape(1));
-    p.layers.push_back(std::move(made));
-  }
-  p.activation = activation_of(network.attr("activation").cast<std::string>());
-  p.input_mean = values(network.attr("input_mean"), 1);
-  p.input_scale = values(network.attr("input_scale"), 1);
-  p.output_mean = values(network.attr("output_mean"), 1);
-  p.output_scale = values(network.attr("output_scale"), 1);
-  p.residual = network.attr("residual").cast<bool>();
-  return p;
 }
 
 }  // namespace slalom::python

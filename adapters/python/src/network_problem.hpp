@@ -13,8 +13,6 @@ class NetworkProblem final : public AnyProblem, public BatchEvaluator {
   struct Parts {
     py::object network;
     NetworkModel model;
-    double dt = 0;                                      ///< s; 0: unknown
-    std::vector<double> input_min, input_max;           ///< one value, one for each input, or none
     py::object walls = py::none(), field = py::none();  ///< a slalom.Field, or None
   };
 
@@ -25,7 +23,7 @@ class NetworkProblem final : public AnyProblem, public BatchEvaluator {
   int states() const noexcept override { return parts_.model.states; }
   int inputs() const noexcept override { return parts_.model.inputs; }
   const BatchEvaluator& evaluator() const noexcept override { return *this; }
-  double time_step() const noexcept override { return parts_.dt; }
+  double time_step() const noexcept override { return parts_.model.dt; }
   double input_min(int input) const override;
   double input_max(int input) const override;
   void set_state(std::span<const double> state) override;
@@ -42,8 +40,5 @@ class NetworkProblem final : public AnyProblem, public BatchEvaluator {
   Parts parts_;
   std::vector<float> state_;
 };
-
-/// The parameters of a network, from a slalom.mlp.Mlp.
-MlpParameters parameters_of(const py::object& network);
 
 }  // namespace slalom::python

@@ -59,8 +59,7 @@ class AnyProblem {
   virtual double unit_variance(int /*input*/) const { return 0; }
   /// Limits the rates of u [step][input], where `previous` was applied before, if the problem limits rates.
   virtual void hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {}
-  /// Sets the input applied before the next rollouts, for a problem that limits rates, or the remainder for
-  /// one with levels.
+  /// Sets the input applied before the next rollouts if the problem limits rates; with levels, the remainder.
   virtual void set_previous_input(std::span<const double>) {}
   /// Moves the remainder of a problem with levels on by the applied steps of a plan: `wanted` by the method,
   /// `held` in levels, both [step][input]. Returns false for other problems.
@@ -128,7 +127,7 @@ class BuiltIn : public Base {
   P& problem() noexcept { return evaluator_.problem(); }
   const P& problem() const noexcept { return evaluator_.problem(); }
 
-  void set_state(std::span<const double> state) override { evaluator_.set_state(to_state(state)); }
+  void set_state(std::span<const double> state) override { evaluator_.set_state(to<State>(state)); }
 
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int) override {
     const Prediction one = predict(state, input);
@@ -137,11 +136,9 @@ class BuiltIn : public Base {
 
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override {
     const std::size_t steps = inputs.size() / P::inputs;
-    std::vector<Input<double, P::inputs>> sequence(steps);
-    std::memcpy(sequence.data(), inputs.data(), inputs.size_bytes());
     std::vector<State> states(steps + 1);
     CostTermsOf<P> terms;
-    const Cost<double> cost = slalom::predict(problem(), to_state(state), sequence.data(),
+    const Cost<double> cost = slalom::predict(problem(), to<State>(state), to_sequence(inputs).data(),
                                               static_cast<int>(steps), states.data(), &terms);
     Prediction result{std::vector<double>(states.size() * state_count), cost.value, cost.collided, {}};
     for (const CostTerm& term : terms) result.terms.emplace_back(term.name, term.value);
@@ -151,7 +148,7 @@ class BuiltIn : public Base {
 
   Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps,
                         std::span<const std::string>) override {
-    return slalom::roll_out<P>(evaluator_, to_state(state), sequences, steps);
+    return slalom::roll_out<P>(evaluator_, to<State>(state), sequences, steps);
   }
 
   double input_min(int input) const override { return slalom::detail::min_input(problem(), input); }
@@ -160,21 +157,19 @@ class BuiltIn : public Base {
   void hold_rates([[maybe_unused]] std::span<const double> previous,
                   [[maybe_unused]] std::span<double> u) const override {
     if constexpr (slalom::detail::carries_inputs<P>) {
-      std::vector<Input<double, P::inputs>> sequence(u.size() / P::inputs);
-      std::memcpy(sequence.data(), u.data(), u.size_bytes());
-      hold_input_rates(problem(), to_input(previous), sequence.data(), static_cast<int>(sequence.size()));
+      auto sequence = to_sequence(u);
+      hold_input_rates(problem(), to<U>(previous), sequence.data(), static_cast<int>(sequence.size()));
       std::memcpy(u.data(), sequence.data(), u.size_bytes());
     }
   }
   void set_previous_input([[maybe_unused]] std::span<const double> u) override {
-    if constexpr (slalom::detail::carries_inputs<P>) evaluator_.set_previous_input(to_input(u));
+    if constexpr (slalom::detail::carries_inputs<P>) evaluator_.set_previous_input(to<U>(u));
   }
   bool carry([[maybe_unused]] std::span<const float> wanted, [[maybe_unused]] std::span<const double> held,
              [[maybe_unused]] std::span<double> remainder) const override {
     if constexpr (slalom::detail::has_levels<P>) {
-      std::vector<Input<double, P::inputs>> sequence(held.size() / P::inputs);
-      std::memcpy(sequence.data(), held.data(), held.size_bytes());
-      auto now = to_input(remainder);
+      const auto sequence = to_sequence(held);
+      auto now = to<U>(remainder);
       carry_remainder(problem(), wanted.data(), sequence.data(), static_cast<int>(sequence.size()), now);
       std::memcpy(remainder.data(), &now, sizeof now);
     }
@@ -182,15 +177,18 @@ class BuiltIn : public Base {
   }
 
  private:
-  static Input<double, P::inputs> to_input(std::span<const double> values) {
-    Input<double, P::inputs> u;
-    std::memcpy(&u, values.data(), sizeof u);
-    return u;
+  using U = Input<double, P::inputs>;
+
+  template <class T>
+  static T to(std::span<const double> values) {
+    T made;
+    std::memcpy(&made, values.data(), sizeof made);
+    return made;
   }
-  static State to_state(std::span<const double> values) {
-    State state;
-    std::memcpy(&state, values.data(), sizeof state);
-    return state;
+  static std::vector<U> to_sequence(std::span<const double> values) {
+    std::vector<U> sequence(values.size() / P::inputs);
+    std::memcpy(sequence.data(), values.data(), values.size_bytes());
+    return sequence;
   }
 
   ProblemEvaluator<P> evaluator_;

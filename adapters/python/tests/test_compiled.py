@@ -79,16 +79,14 @@ def test_headers_are_compiled_again_when_they_change(tmp_path, cache):
 
 @needs_compiler
 def test_mistakes_of_compiled_problems_have_the_compilers_words(monkeypatch):
-    with pytest.raises(slalom.CompileError, match="slalom: the problem needs .*stage_cost"):
-        slalom.compile(PENDULUM.replace("stage_cost", "cost"))
-    with pytest.raises(slalom.CompileError, match="<source>:.*error: .*speed"):
-        slalom.compile(PENDULUM.replace("x.rate", "x.speed", 1))
-    with pytest.raises(ValueError, match="no problem: a struct"):
-        slalom.compile("struct Nothing { int inputs; };")
-    with pytest.raises(ValueError, match="must be one of One, Two"):
-        slalom.compile("".join(f"struct {name} {{ static constexpr int inputs = 1; }};" for name in ("One", "Two")))
-    with pytest.raises(FileNotFoundError):
-        slalom.compile("no_such_header.hpp")
+    two = "".join(f"struct {name} {{ static constexpr int inputs = 1; }};" for name in ("One", "Two"))
+    for source, error, words in [
+            (PENDULUM.replace("stage_cost", "cost"), slalom.CompileError, "slalom: the problem needs .*stage_cost"),
+            (PENDULUM.replace("x.rate", "x.speed", 1), slalom.CompileError, "<source>:.*error: .*speed"),
+            ("struct Nothing { int inputs; };", ValueError, "no problem: a struct"),
+            (two, ValueError, "must be one of One, Two"), ("no_such_header.hpp", FileNotFoundError, "")]:
+        with pytest.raises(error, match=words):
+            slalom.compile(source)
     monkeypatch.setenv("CXX", "no-such-compiler")
     with pytest.raises(slalom.CompileError, match="no C.. compiler found .no-such-compiler.*set CXX"):
         slalom.compile(PENDULUM)

@@ -5,15 +5,14 @@ import pickle
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import slalom
-from slalom.mlp import Mlp
+import test_compiled
+from test_compiled import PARTS, ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 pytestmark = pytest.mark.skipif(not shutil.which("c++") or not (slalom.gpu.FOLDER / "compile.cpp").exists(),
                                 reason="no C++ compiler, or a build of the package without the GPU layer")
 IMAGES = """#include "{header}"
@@ -46,11 +45,7 @@ def emulated(tmp_path_factory):
 
 
 def network(**parts):
-    random = np.random.default_rng(0)
-    layers = [(random.normal(size=(16, 3)), random.normal(size=16)), (random.normal(size=(2, 16)) / 16, np.zeros(2))]
-    mlp = Mlp(layers, input_mean=[0.1, 0.2, 0], input_scale=[1, 2, 1], output_scale=[0.5, 1], residual=True)
-    return slalom.MlpProblem(mlp, **{"goal": [1, 0], "state_weights": [1, 0.1], "terminal_weights": 2, "dt": 0.1,
-                                     "input_weights": 0.01, "input_min": -2, "input_max": 2, **parts})
+    return slalom.MlpProblem(test_compiled.network(), **PARTS, **parts)
 
 
 OPTIONS = {"horizon": 12, "samples": 200, "temperature": 1}

@@ -12,21 +12,13 @@ import numpy as np
 import pytest
 import slalom
 from slalom.mlp import Mlp
+from test_controllers import linear
 
 FOLDER = pathlib.Path(slalom.__file__).parent
 
 
-def dynamics(x, u):
-    return np.stack([x[:, 0] + np.float32(0.1) * x[:, 1], x[:, 1] + np.float32(0.1) * u[:, 0]]).T
-
-
-def cost(x, u):
-    return x[:, 0] ** 2 + np.float32(0.1) * u[:, 0] ** 2
-
-
 def point(**changes):
-    return slalom.Problem(**{"dynamics": dynamics, "cost": cost, "states": 2, "inputs": 1, "dt": 0.1, "input_min": -2,
-                             "input_max": [2], **changes})
+    return linear(**{"input_min": -2, "input_max": [2], **changes})
 
 
 def test_problems_print_as_they_are_made():
@@ -205,7 +197,7 @@ def test_tensors_share_the_memory_of_the_solver():
 
     @on_tensors
     def tensor_cost(x, u):
-        return {"distance": x[:, 0] ** 2, "effort": 0.1 * u[:, 0] ** 2}, x[:, 0] > 100
+        return {"distance": x[:, 0] ** 2 + 0.1 * x[:, 1] ** 2, "effort": 0.1 * u[:, 0] ** 2}, x[:, 0] > 100
 
     kept = []
 

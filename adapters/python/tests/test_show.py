@@ -1,6 +1,7 @@
 """The page of a controller: a client of its WebSocket gets the drive of the controller, and its commands act."""
 
 import base64
+import contextlib
 import json
 import os
 import socket
@@ -86,15 +87,22 @@ class Client:
         self.socket.sendall(bytes([0x81, 0x80 | len(content), 0, 0, 0, 0]) + content)
 
 
+@contextlib.contextmanager
+def shown(controller, **drawing):
+    """A client of the page that shows a controller."""
+    page = slalom.show(controller, [0, 0, 0], port=0, block=False, browser=False, **drawing)
+    try:
+        yield Client(page.address)
+    finally:
+        page.close()
+
+
 @pytest.mark.parametrize("make", [garden, lambda: slalom.SvgMppi(slalom.DifferentialDrive(), horizon=20, samples=256,
                                                                    input_min=[0, -2], input_max=[1.5, 2])])
 def test_a_page_shows_the_drive_of_a_controller(make):
     moved = []
-    page = slalom.show(make(), [0, 0, 0], heading=2, shapes=lambda problem: [(*TREE, 1), [[2, 2], [3, 2], [3, 3]]],
-                       move=lambda problem, shape, x, y: moved.append((shape, x, y)), port=0, block=False,
-                       browser=False)
-    try:
-        client = Client(page.address)
+    with shown(make(), heading=2, shapes=lambda problem: [(*TREE, 1), [[2, 2], [3, 2], [3, 3]]],
+               move=lambda problem, shape, x, y: moved.append((shape, x, y))) as client:
         names = client.text("hello")["scalars"]
         frame = client.find(lambda m: isinstance(m, np.ndarray) and m[0] >= 5)
         # The same drive without a page.
@@ -111,35 +119,25 @@ def test_a_page_shows_the_drive_of_a_controller(make):
         assert set(moved) == {(0, 3.0, 1.0)}
         client.send(do="set", key="svg_mppi.samples", value="0", id=8)
         assert "must be in" in client.text("error")["message"]
-    finally:
-        page.close()
 
 
 def test_a_plan_on_the_page_keeps_the_rates_of_the_problem():
     make = lambda: garden(input_rate_max=[2, 3])
-    page = slalom.show(make(), [0, 0, 0], heading=2, port=0, block=False, browser=False)
-    try:
-        client = Client(page.address)
+    with shown(make(), heading=2) as client:
         tick = int(client.find(lambda m: isinstance(m, np.ndarray))[0])
         points, *middle = struct.unpack_from("<Idd", client.block(7))
-        shown = np.frombuffer(client.block(7), "<f4", 6 * points, 20).reshape(points, 6)[:, :2] + middle
+        places = np.frombuffer(client.block(7), "<f4", 6 * points, 20).reshape(points, 6)[:, :2] + middle
         controller, x = make(), np.zeros(3)
         for k in range(tick + 1):
             plan = controller.solve(x, elapsed=0.1 if k else 0)
             x = controller.problem.step(x, plan.inputs[0])
-        assert np.allclose(shown, plan.states[:, :2], atol=1e-5)
-    finally:
-        page.close()
+        assert np.allclose(places, plan.states[:, :2], atol=1e-5)
 
 
 def test_a_cost_without_terms_has_a_page():
-    page = slalom.show(garden(lambda x, u: {}), [0, 0, 0], port=0, block=False, browser=False)
-    try:
-        client = Client(page.address)
+    with shown(garden(lambda x, u: {})) as client:
         assert client.text("hello")["terms"] == []
         client.find(lambda m: isinstance(m, np.ndarray) and m[0] >= 1)
-    finally:
-        page.close()
 
 
 def test_a_cost_whose_terms_change_is_an_error():

@@ -25,9 +25,8 @@ class FollowerPlan {
   /// The next `place` returns the plan.
   void forget_placement() { is_placed_ = false; }
 
-  /// The part of the plan that is ahead of the robot, in the frame of the costmap, in which both poses are
-  /// given. Null if it was returned before and its frame has not moved notably since. Valid until the next
-  /// call.
+  /// The part of the plan ahead of the robot, in the frame of the costmap, in which both poses are given.
+  /// Null if it was returned before and its frame has hardly moved since. Valid until the next call.
   const std::vector<maps::Pose>* place(const maps::Pose& plan_frame, const maps::Pose& robot);
 
  private:

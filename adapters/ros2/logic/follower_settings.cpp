@@ -1,8 +1,8 @@
 #include "logic/follower_settings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
+#include <span>
 #include <stdexcept>
 
 namespace slalom::nodes {
@@ -18,29 +18,27 @@ struct Renamed {
   std::string_view name;
   const char* here;
 };
-constexpr std::array renamed_options{Renamed{"base", nullptr},         // motion_model
-                                     Renamed{"max_reverse", nullptr},  // vx_min
-                                     Renamed{"max_forward", "vx_max"},
-                                     Renamed{"max_sideways", "vy_max"},
-                                     Renamed{"max_turn", "wz_max"},
-                                     Renamed{"max_acceleration", "ax_max"},
-                                     Renamed{"max_sideways_acceleration", "ay_max"},
-                                     Renamed{"max_turn_acceleration", "az_max"},
-                                     Renamed{"min_turning_radius", "AckermannConstraints.min_turning_r"},
-                                     Renamed{"time_step", "model_dt"}};
+constexpr Renamed renamed_options[] = {{"base", nullptr},         // motion_model
+                                       {"max_reverse", nullptr},  // vx_min
+                                       {"max_forward", "vx_max"},
+                                       {"max_sideways", "vy_max"},
+                                       {"max_turn", "wz_max"},
+                                       {"max_acceleration", "ax_max"},
+                                       {"max_sideways_acceleration", "ay_max"},
+                                       {"max_turn_acceleration", "az_max"},
+                                       {"min_turning_radius", "AckermannConstraints.min_turning_r"},
+                                       {"time_step", "model_dt"}};
 /// The same for options of the method.
-constexpr std::array renamed_of_method{Renamed{"horizon", "time_steps"}, Renamed{"samples", "batch_size"},
-                                       Renamed{"temperature", "temperature"},
-                                       Renamed{"gradient_temperature", nullptr}};  // temperature
+constexpr Renamed renamed_of_method[] = {{"horizon", "time_steps"},
+                                         {"samples", "batch_size"},
+                                         {"temperature", "temperature"},
+                                         {"gradient_temperature", nullptr}};  // temperature
 
 /// The standard deviations of samples, as shares of the limits of speeds and yaw rate, where none is set.
 constexpr double usual_share = 0.4, usual_turn_share = 0.2;
 
-/// Returns the name here of an option whose name is `section` + `name` unless it is in a table; empty if it
-/// is no option here.
-template <std::size_t count>
-std::string name_here(const std::array<Renamed, count>& table, const std::string& section,
-                      std::string_view name) {
+/// The name of an option here: that of a table, or `section` + `name`; empty if it is no option here.
+std::string name_here(std::span<const Renamed> table, const std::string& section, std::string_view name) {
   for (const Renamed& each : table)
     if (each.name == name) return each.here ? each.here : "";
   return section + std::string(name);

@@ -60,8 +60,7 @@ class FollowerSettings {
 
   /// All options, with their values, ranges and rules.
   std::vector<NamedOption> list() const;
-  /// Sets an option from text. Throws std::invalid_argument with name, value and rule; nothing has changed
-  /// then.
+  /// Sets an option from text, or throws std::invalid_argument with name, value and rule.
   void set(const std::string& name, const std::string& text);
 
   /// The options that the navigation layer has not.

@@ -82,8 +82,7 @@ class InputWatch {
     return false;
   }
 
-  /// Whether the stamp of a message is valid; otherwise reports the fault. `last` is the newest stamp used so
-  /// far.
+  /// Whether the stamp of a message is valid; otherwise reports the fault. `last`: the newest stamp used.
   bool accepts(const char* what, double stamp, double last) {
     const double age = clocks_.now() - stamp;
     if (!(age >= -limits_.max_future))

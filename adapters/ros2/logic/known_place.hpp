@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "slalom/maps/pose.hpp"
+#include "logic/transforms.hpp"
 
 /// The last reliable pose of a localiser, from which one that is restarted continues.
 namespace slalom::nodes {
@@ -25,8 +25,7 @@ inline maps::Pose place_now(const KnownPlace& known, const maps::Pose& odometry)
   const double x = odometry.x - known.odometry.x, y = odometry.y - known.odometry.y;
   if (std::hypot(odometry.x, odometry.y) < std::hypot(x, y)) return known.map;
   const double turn = known.map.yaw - known.odometry.yaw;
-  return {known.map.x + x * std::cos(turn) - y * std::sin(turn),
-          known.map.y + x * std::sin(turn) + y * std::cos(turn), odometry.yaw + turn};
+  return composed({known.map.x, known.map.y, turn}, {x, y, odometry.yaw});
 }
 
 /// Writes a place and the time (s since 1970) to a file, which has the old or the new content at any time.
@@ -43,8 +42,7 @@ inline bool write_place(const std::string& file, const KnownPlace& place, double
   return stream && std::rename(fresh.c_str(), file.c_str()) == 0;
 }
 
-/// Reads the place in a file. Returns nothing if there is none, a number is not finite, or it was written in
-/// the future or more than 10 s ago.
+/// The place in a file, unless a number is not finite or it was not written within the last 10 s.
 inline std::optional<KnownPlace> read_place(const std::string& file, double time) {
   std::ifstream stream(file);
   std::array<double, 7> n{};

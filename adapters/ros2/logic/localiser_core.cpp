@@ -71,8 +71,7 @@ void LocaliserCore::start_at(const std::optional<maps::Pose>& rear) {
     localiser_->start_everywhere();
 }
 
-/// Starts at the last pose, at that of an earlier node, at the one that was told, at the start of the course,
-/// or everywhere.
+/// Starts at the last pose, that of an earlier node, that which was told, that of the course, or everywhere.
 void LocaliserCore::begin() {
   if (known_) return start_at(known_->map);
   if (settings_.earlier) return continue_from(*settings_.earlier);
@@ -138,8 +137,7 @@ void LocaliserCore::hear_scan(Stamp stamp, const std::string& frame, const maps:
   outputs_.transform(localiser_->odometry_frame(), stamp + stamp_of(settings_.transform_tolerance));
 }
 
-/// The odometry of the rear axle at the time of the scan: interpolated between messages, extrapolated by
-/// speed after the last.
+/// The odometry of the rear axle at a time: interpolated, or extrapolated by speed after the last message.
 bool LocaliserCore::odometry_at(Stamp stamp, maps::Pose& rear) const {
   if (count_ == 0) return false;
   std::size_t after = 0;

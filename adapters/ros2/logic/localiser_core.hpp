@@ -44,8 +44,7 @@ class LocaliserCore {
   };
   /// The messages that the node sends; called from within the functions below.
   struct Outputs {
-    /// A pose that can be relied on: that of the base frame in the map at the stamp of a scan, with the
-    /// covariance of `estimate`.
+    /// A pose of the base frame in the map that can be relied on, with the covariance of `estimate`.
     std::function<void(const maps::Pose& base, const vehicle::LocaliserOutput& estimate, Stamp scan)> pose;
     /// The pose of the odometry frame in the map frame, with the stamp to publish it with.
     std::function<void(const maps::Pose& odometry_frame, Stamp stamp)> transform;
@@ -61,8 +60,7 @@ class LocaliserCore {
   /// std::exception with the rule; then nothing has changed.
   void change(const Changes& changes);
 
-  /// Reads the map of the course, if there is one; to be called when the options are set. Throws
-  /// std::exception.
+  /// Reads the map of the course, if there is one, once the options are set. Throws std::exception.
   void use_course();
 
   // Messages.

@@ -6,9 +6,9 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -24,98 +24,82 @@ namespace {
 constexpr const char* mppi = "nav2_mppi_controller::MPPIController";
 
 /// The parameters that mean the same here, under the same name.
-constexpr std::array taken{"time_steps",
-                           "model_dt",
-                           "batch_size",
-                           "vx_max",
-                           "vx_min",
-                           "vy_max",
-                           "ax_max",
-                           "ay_max",
-                           "wz_max",
-                           "az_max",
-                           "vx_std",
-                           "vy_std",
-                           "wz_std",
-                           "open_loop",
-                           "visualize",
-                           "transform_tolerance",
-                           "AckermannConstraints.min_turning_r"};
+constexpr const char* taken[] = {"time_steps", "model_dt",  "batch_size", "vx_max",
+                                 "vx_min",     "vy_max",    "ax_max",     "ay_max",
+                                 "wz_max",     "az_max",    "vx_std",     "vy_std",
+                                 "wz_std",     "open_loop", "visualize",  "transform_tolerance"};
 
-/// Names of motion models as plugins of nav2 1.5, and as before.
-struct Model {
-  const char *plugin, *name;
+/// A name in nav2, and the name here.
+struct Name {
+  const char *there, *here;
 };
-constexpr std::array models{Model{"mppi::DiffDriveMotionModel", "DiffDrive"},
-                            Model{"mppi::OmniMotionModel", "Omni"},
-                            Model{"mppi::AckermannMotionModel", "Ackermann"}};
 
-/// The parameters with another name here, and that name.
-constexpr std::array renamed{std::pair{"GoalAngleCritic.threshold_to_consider", "costs.goal_reach"},
-                             std::pair{"model_delay_vx", "delay_forward"},
-                             std::pair{"model_delay_vy", "delay_sideways"},
-                             std::pair{"model_delay_wz", "delay_turn"}};
+/// Motion models as plugins of nav2 1.5, and as before.
+constexpr Name models[] = {{"mppi::DiffDriveMotionModel", "DiffDrive"},
+                           {"mppi::OmniMotionModel", "Omni"},
+                           {"mppi::AckermannMotionModel", "Ackermann"}};
 
-/// Limits of braking, which are negative there, and their names here.
-constexpr std::array braking{std::pair{"ax_min", "max_deceleration"},
-                             std::pair{"ay_min", "max_sideways_deceleration"}};
+constexpr Name renamed[] = {{"AckermannConstraints.min_turning_r", "AckermannConstraints.min_turning_r"},
+                            {"GoalAngleCritic.threshold_to_consider", "costs.goal_reach"},
+                            {"model_delay_vx", "delay_forward"},
+                            {"model_delay_vy", "delay_sideways"},
+                            {"model_delay_wz", "delay_turn"}};
+
+/// Limits of braking, which are negative there.
+constexpr Name braking[] = {{"ax_min", "max_deceleration"}, {"ay_min", "max_sideways_deceleration"}};
 
 /// A parameter that has no meaning here, and the reason; with a dot at its end, a section of such parameters.
 struct Dropped {
   const char* key;
   const char* why;
 };
-constexpr std::array dropped{
-    Dropped{"iteration_count", "there is one solve in a period; svg_mppi.guide_iterations moves its guides"},
-    Dropped{"gamma", "the weights have no control cost; svg_mppi.control_cost_discount would add it"},
-    Dropped{"retry_attempt_limit", "patience is the time that there may be no way"},
-    Dropped{"regenerate_noises", "the noise is drawn anew in every solve"},
-    Dropped{"prune_distance", "the path counts as far as the robot can drive in a plan"},
-    Dropped{"max_robot_pose_search_dist",
-            "the nearest pose is searched 0.3 m back and 1 m ahead on the path"},
-    Dropped{"enforce_path_inversion",
-            "the robot drives to every cusp, and reverses where the yaws of the path say so"},
-    Dropped{"inversion_xy_tolerance",
-            "the robot drives to every cusp, and reverses where the yaws of the path say so"},
-    Dropped{"inversion_yaw_tolerance",
-            "the robot drives to every cusp, and reverses where the yaws of the path say so"},
-    Dropped{"sgf_order", "samples are smooth: svg_mppi.noise_exponent"},
-    Dropped{"clamp_raw_controls", "all samples keep to the limits"},
-    Dropped{"publish_optimal_trajectory", "visualize publishes the plan"},
-    Dropped{"publish_critics_stats", "costs are not published"},
-    Dropped{"critic_index_to_visualize", "costs are not published"},
-    Dropped{"TrajectoryValidator.",
-            "the plan is always checked with the footprint, until the robot can brake"},
-    Dropped{"PathHandler.", "the path counts as far as the robot can drive in a plan"},
-    Dropped{"critics", "the terms of the cost are fixed; their weights are in costs"},
-    Dropped{"TrajectoryVisualizer.", "visualize publishes the plan, not the samples"},
-    Dropped{"ConstraintCritic.", "samples keep to the limits of speed and acceleration"},
-    Dropped{"CostCritic.", "distances to obstacles count, not costs of cells: costs.clearance"},
-    Dropped{"ObstaclesCritic.", "distances to obstacles count, not costs of cells: costs.clearance"},
-    Dropped{"GoalCritic.", "costs.progress and costs.final_progress draw the robot to the goal"},
-    Dropped{"GoalAngleCritic.", "the cost has another scale: costs.goal_heading"},
-    Dropped{"PathAlignCritic.", "the cost has another scale: costs.path"},
-    Dropped{"PathFollowCritic.", "the cost has another scale: costs.progress"},
-    Dropped{"PathAngleCritic.", "the cost has another scale: costs.heading"},
-    Dropped{"PreferForwardCritic.", "the cost has another scale: costs.reverse"},
-    Dropped{"TwirlingCritic.", "the cost has another scale: costs.turning"},
-    Dropped{"VelocityDeadbandCritic.", "commands keep out of the dead bands: dead_band_forward"},
+constexpr const char* every_cusp =
+    "the robot drives to every cusp, and reverses where the yaws of the path say so";
+constexpr const char* distances_count = "distances to obstacles count, not costs of cells: costs.clearance";
+constexpr Dropped dropped[] = {
+    {"iteration_count", "there is one solve in a period; svg_mppi.guide_iterations moves its guides"},
+    {"gamma", "the weights have no control cost; svg_mppi.control_cost_discount would add it"},
+    {"retry_attempt_limit", "patience is the time that there may be no way"},
+    {"regenerate_noises", "the noise is drawn anew in every solve"},
+    {"prune_distance", "the path counts as far as the robot can drive in a plan"},
+    {"max_robot_pose_search_dist", "the nearest pose is searched 0.3 m back and 1 m ahead on the path"},
+    {"enforce_path_inversion", every_cusp},
+    {"inversion_xy_tolerance", every_cusp},
+    {"inversion_yaw_tolerance", every_cusp},
+    {"sgf_order", "samples are smooth: svg_mppi.noise_exponent"},
+    {"clamp_raw_controls", "all samples keep to the limits"},
+    {"publish_optimal_trajectory", "visualize publishes the plan"},
+    {"publish_critics_stats", "costs are not published"},
+    {"critic_index_to_visualize", "costs are not published"},
+    {"TrajectoryValidator.", "the plan is always checked with the footprint, until the robot can brake"},
+    {"PathHandler.", "the path counts as far as the robot can drive in a plan"},
+    {"critics", "the terms of the cost are fixed; their weights are in costs"},
+    {"TrajectoryVisualizer.", "visualize publishes the plan, not the samples"},
+    {"ConstraintCritic.", "samples keep to the limits of speed and acceleration"},
+    {"CostCritic.", distances_count},
+    {"ObstaclesCritic.", distances_count},
+    {"GoalCritic.", "costs.progress and costs.final_progress draw the robot to the goal"},
+    {"GoalAngleCritic.", "the cost has another scale: costs.goal_heading"},
+    {"PathAlignCritic.", "the cost has another scale: costs.path"},
+    {"PathFollowCritic.", "the cost has another scale: costs.progress"},
+    {"PathAngleCritic.", "the cost has another scale: costs.heading"},
+    {"PreferForwardCritic.", "the cost has another scale: costs.reverse"},
+    {"TwirlingCritic.", "the cost has another scale: costs.turning"},
+    {"VelocityDeadbandCritic.", "commands keep out of the dead bands: dead_band_forward"},
 };
 
 constexpr const char* dead_bands = "VelocityDeadbandCritic.deadband_velocities";
 
-/// The name here of a key; null if the table has none.
-template <class Table>
-const char* other_name(const Table& table, const std::string& key) {
-  const auto found =
-      std::find_if(table.begin(), table.end(), [&](const auto& each) { return key == each.first; });
-  return found == table.end() ? nullptr : found->second;
+/// The name here of a name in nav2; null if the table has none.
+const char* other_name(std::span<const Name> table, const std::string& key) {
+  const auto found = std::ranges::find(table, key, &Name::there);
+  return found == table.end() ? nullptr : found->here;
 }
 
 /// The fate of a key that is not taken.
 std::string fate_of(const std::string& key) {
-  std::vector<std::string> names(taken.begin(), taken.end());
-  names.insert(names.end(), {"temperature", "plugin"});
+  std::vector<std::string> names(std::begin(taken), std::end(taken));
+  names.insert(names.end(), {"AckermannConstraints.min_turning_r", "temperature", "plugin"});
   for (const Dropped& each : dropped) {
     std::string name = each.key;
     const bool is_section = name.back() == '.';
@@ -167,7 +151,7 @@ class Section {
         fate = "dropped (wz_std: 0 counts)";
       else if (const char* const other = other_name(renamed, given.key))
         fate = take(given, other, text_of(given), "the name here");
-      else if (std::find(taken.begin(), taken.end(), given.key) != taken.end())
+      else if (std::ranges::find(taken, given.key) != std::end(taken))
         fate = take(given, given.key, text_of(given), "");
       else
         fate = fate_of(given.key);
@@ -241,10 +225,9 @@ class Section {
     const std::string key = model_key();
     const Given* const plugin = find(key + ".plugin");
     if (!plugin) return key == "diff_drive" ? "DiffDrive" : key;
-    for (const Model& each : models)
-      if (text_of(*plugin) == each.plugin) return each.name;
+    if (const char* const name = other_name(models, text_of(*plugin))) return name;
     std::string names;
-    for (const Model& each : models) names += (names.empty() ? "" : ", ") + std::string(each.plugin);
+    for (const Name& each : models) names += (names.empty() ? "" : ", ") + std::string(each.there);
     refuse(*plugin, "'" + text_of(*plugin) + "' must be one of " + names);
   }
   bool no_turn_sampled() const {

@@ -8,8 +8,7 @@
 
 namespace slalom::nodes {
 
-/// An option of the library under the name of its parameter: "section.option", or "option" where there are no
-/// sections.
+/// An option of the library under the name of its parameter: "section.option", or "option".
 struct NamedOption {
   std::string name;   ///< name of the parameter
   OptionEntry entry;  ///< declaration and present value

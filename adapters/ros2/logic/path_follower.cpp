@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 
 #include "slalom/core/option_access.hpp"
 
@@ -24,23 +25,19 @@ bool stands(const nav::Velocity& v) {
   return std::hypot(v.forward, v.left) < 0.01 && std::abs(v.turn) < 0.05;
 }
 
+/// The reason why a navigator does not drive, for the user; empty if it does.
 std::string why_of(nav::NavigationStatus status) {
-  switch (status) {
-    case nav::NavigationStatus::blocked:
-      return "the path is blocked and there is no way round";
-    case nav::NavigationStatus::goal_occupied:
-      return "the goal is occupied";
-    case nav::NavigationStatus::stuck:
-      return "the robot makes no progress";
-    case nav::NavigationStatus::commands_ignored:
-      return "the velocity of the robot does not follow the commands";
-    case nav::NavigationStatus::no_path:
-      return "the robot is off the costmap";
-    case nav::NavigationStatus::bad_input:
-      return "pose or velocity of the robot is not finite or too large";
-    default:
-      return "";
-  }
+  using enum nav::NavigationStatus;
+  constexpr std::pair<nav::NavigationStatus, const char*> reasons[] = {
+      {blocked, "the path is blocked and there is no way round"},
+      {goal_occupied, "the goal is occupied"},
+      {stuck, "the robot makes no progress"},
+      {commands_ignored, "the velocity of the robot does not follow the commands"},
+      {no_path, "the robot is off the costmap"},
+      {bad_input, "pose or velocity of the robot is not finite or too large"}};
+  for (const auto& [reason, words] : reasons)
+    if (reason == status) return words;
+  return "";
 }
 
 }  // namespace
@@ -125,15 +122,6 @@ void PathFollower::reset() {
   path_.clear();
 }
 
-FollowerAnswer PathFollower::update(const FollowerInput& input) {
-  try {
-    return answer(input);
-  } catch (const std::exception& error) {
-    command_ = {};
-    return {Problem::no_control, error.what(), "", {}, 0};
-  }
-}
-
 std::uint64_t PathFollower::seed() const {
   const SolverOptions solver = settings_.solver(1);
   const std::uint64_t* const seed_of_method = solver.find<std::uint64_t>("seed");
@@ -169,23 +157,24 @@ double PathFollower::elapsed_until(double time) {
   return since > 0 && since < longest_period ? since : usual_period;
 }
 
-FollowerAnswer PathFollower::answer(const FollowerInput& input) {
+FollowerAnswer PathFollower::update(const FollowerInput& input) try {
   const double elapsed = elapsed_until(input.time);
   velocity_ = settings_.own().open_loop ? command_ : input.velocity;
   if (plan_.empty() && !cancelling_) return {Problem::invalid_path, "no path was set", "", {}, 0};
   if (!costmap_) return {Problem::no_control, "there is no costmap", "", {}, 0};
   if (!footprint_) return {Problem::no_control, "the robot has no footprint", "", {}, 0};
   make_navigator(input.tolerance);
-  if (!plan_.empty()) {
-    if (const std::vector<maps::Pose>* const placed = plan_.place(input.plan_frame, input.pose))
-      navigator_->set_path(*placed);
-  }
+  if (!plan_.empty())
+    if (const auto* const placed = plan_.place(input.plan_frame, input.pose)) navigator_->set_path(*placed);
   const nav::NavigationResult result = navigator_->update(input.pose, velocity_, *costmap_, elapsed);
   predicted_.assign(result.plan.begin(), result.plan.end());
   path_.assign(result.path.begin(), result.path.end());
-  const FollowerAnswer judged = judge(result, elapsed);
-  command_ = judged.command;
-  return judged;
+  const FollowerAnswer answer = judge(result, elapsed);
+  command_ = answer.command;
+  return answer;
+} catch (const std::exception& error) {
+  command_ = {};
+  return {Problem::no_control, error.what(), "", {}, 0};
 }
 
 FollowerAnswer PathFollower::judge(const nav::NavigationResult& result, double elapsed) {

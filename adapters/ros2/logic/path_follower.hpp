@@ -9,8 +9,7 @@
 #include "logic/follower_settings.hpp"
 #include "slalom/navigation/costmap.hpp"
 
-/// The logic of a controller of nav2, without its transport: it drives a mobile robot along a plan to a goal,
-/// between the obstacles of a costmap.
+/// The logic of a controller of nav2, without its transport.
 namespace slalom::nodes {
 
 /// The cells of a nav2_costmap_2d::Costmap2D, row by row, row 0 at the bottom: 0 to 252 free, 253 free for a
@@ -54,8 +53,7 @@ struct FollowerAnswer {
   double remaining = 0;          ///< m of path to the goal
 };
 
-/// Follows plans. The options have the names of nav2's MPPI controller where they mean the same. One function
-/// at a time may run.
+/// Follows plans. Options that mean the same as in nav2's MPPI controller have its names. Not thread-safe.
 class PathFollower {
  public:
   /// Throws std::exception that lists the names if the method is unknown.
@@ -72,8 +70,7 @@ class PathFollower {
   /// Takes the outline of the robot: its vertices in order. Throws std::exception with the rule unless they
   /// are a simple polygon of 3 to 32 vertices around the origin.
   void use_footprint(const std::vector<maps::Point>& vertices);
-  /// Takes the cells of a costmap. Throws std::exception with the rule if its size or resolution is none that
-  /// the library takes.
+  /// Takes the cells of a costmap. Throws std::exception if the library takes no such size or resolution.
   void use_costmap(const CostGrid& grid);
   /// Takes a plan in its own frame, from near the robot to the goal. A plan that leads along the present one
   /// to the same goal changes nothing, so that a detour is kept. Ends a cancellation. Throws std::exception
@@ -98,7 +95,6 @@ class PathFollower {
  private:
   void make_navigator(const std::optional<GoalTolerance>& told);
   double elapsed_until(double time);
-  FollowerAnswer answer(const FollowerInput& input);
   FollowerAnswer judge(const navigation::NavigationResult& result, double elapsed);
   std::uint64_t seed() const;
   void find_share();

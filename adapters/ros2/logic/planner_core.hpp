@@ -58,8 +58,7 @@ class PlannerCore {
     std::function<void(const std::string&)> warn, inform;                 ///< the log
   };
 
-  /// Makes the planner, without the path of the course yet. Throws std::exception with a message for the
-  /// user.
+  /// Makes the planner, without the path of the course yet. Throws std::exception.
   PlannerCore(const Settings& settings, Clocks clocks, Transforms transforms, Outputs outputs);
 
   /// The options of vehicle, planner and method.
@@ -69,8 +68,7 @@ class PlannerCore {
   /// Writes all options as a configuration file; an old file is replaced. Throws std::exception.
   void save(const std::string& file) const;
 
-  /// Reads the path of the course, if there is one; to be called when the options are set. Throws
-  /// std::exception.
+  /// Reads the path of the course, if there is one, once the options are set. Throws std::exception.
   void use_course();
 
   // Messages.
@@ -81,8 +79,7 @@ class PlannerCore {
   void hear_goal_speed(double speed);                ///< m/s; 0 stops the car
   void hear_path(const Path& path);
 
-  /// Ends the drive after this many laps from here; 0: never. Throws std::exception where there is no closed
-  /// path or the number is negative.
+  /// Ends the drive after this many laps; 0: never. Throws std::exception without a closed path or below 0.
   void drive_laps(int laps);
   int laps() const;  ///< whole laps since the path was set or `drive_laps`
 

@@ -7,8 +7,7 @@
 namespace slalom::nodes {
 
 /// Whether the estimate of the pose can be used for driving. After it could not, it must be good for a
-/// moment, since some scans fit a wrong pose by chance. A mediocre estimate, as beside a parked car, must
-/// persist for longer.
+/// moment, since some scans fit a wrong pose by chance; a mediocre one, as beside a parked car, for longer.
 class PoseTrust {
  public:
   /// After a doubt the estimate is trusted again after `scans` consecutive ones of at least this health.

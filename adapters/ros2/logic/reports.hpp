@@ -47,8 +47,7 @@ class RecentValues {
   std::size_t count_ = 0, next_ = 0;
 };
 
-/// Logs at most one message per second of the steady clock. If several come within a second, the last one is
-/// logged when the second is over.
+/// Logs at most one message per second of the steady clock: the last one that came within it.
 class ThrottledLog {
  public:
   using Write = std::function<void(const std::string&)>;

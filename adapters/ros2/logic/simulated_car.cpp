@@ -14,19 +14,13 @@ sim::WorldOptions world_options(const evaluation::Environment& environment) {
   return options;
 }
 
-sim::WheelOdometryOptions odometry_options(std::uint64_t seed) {
-  sim::WheelOdometryOptions options;
-  options.seed = seed;
-  return options;
-}
-
 }  // namespace
 
 SimulatedCar::SimulatedCar(const vehicle::Course& course, std::uint64_t seed, int obstacles)
     : environment_(evaluation::make_environment(course, evaluation::Protocol::true_physics)),
       seed_(seed),
       world_(world_options(*environment_), environment_->track),
-      odometry_(parameters(), odometry_options(seed)) {
+      odometry_(parameters(), {.seed = seed}) {
   const maps::Pose& start = environment_->start;
   parked_ = sim::place_apart(environment_->course.obstacle_path, environment_->obstacle_room, obstacles, seed,
                              {start.x, start.y});

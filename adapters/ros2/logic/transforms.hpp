@@ -43,8 +43,7 @@ inline Mount mount_of(double x, double y, double z, double qx, double qy, double
           z};
 }
 
-/// The component along an axis of the base (0: x, ahead; 1: y, to the left; 2: z) of a vector along the
-/// sensor's axes.
+/// The component along an axis of the base (0: x, ahead; 1: y, left; 2: z) of a vector in the sensor's axes.
 inline double along(int axis, const Mount& mount, const double (&vector)[3]) {
   const double(&row)[3] = mount.rotation[axis];
   return row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2];

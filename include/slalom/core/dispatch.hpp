@@ -45,13 +45,13 @@ struct KernelFunctions {
     return Kernel::template run<Generic>(static_cast<Arguments&&>(arguments)...);
   }
 #if SLALOM_X86
-  SLALOM_TARGET_SSE4 static Result sse4(Arguments... arguments) {
+  SLALOM_ISA_SSE4 SLALOM_TARGET_GENERIC static Result sse4(Arguments... arguments) {
     return Kernel::template run<Sse4>(static_cast<Arguments&&>(arguments)...);
   }
-  SLALOM_TARGET_AVX2 static Result avx2(Arguments... arguments) {
+  SLALOM_ISA_AVX2 SLALOM_TARGET_GENERIC static Result avx2(Arguments... arguments) {
     return Kernel::template run<Avx2>(static_cast<Arguments&&>(arguments)...);
   }
-  SLALOM_TARGET_AVX512 static Result avx512(Arguments... arguments) {
+  SLALOM_ISA_AVX512 SLALOM_TARGET_GENERIC static Result avx512(Arguments... arguments) {
     return Kernel::template run<Avx512>(static_cast<Arguments&&>(arguments)...);
   }
 #endif
@@ -80,17 +80,9 @@ KernelPointer<Kernel> kernel(Target target) {
     throw std::logic_error("this program has kernels for one instruction set alone");
   return Functions::SLALOM_ONLY_TARGET;
 #elif SLALOM_X86
-  switch (target) {
-    case Target::avx512:
-      return Functions::avx512;
-    case Target::avx2:
-      return Functions::avx2;
-    case Target::sse4:
-      return Functions::sse4;
-    case Target::generic:
-      break;
-  }
-  return Functions::generic;
+  constexpr KernelPointer<Kernel> all[] = {Functions::generic, Functions::sse4, Functions::avx2,
+                                           Functions::avx512};
+  return all[static_cast<int>(target)];
 #else
   static_cast<void>(target);
   return Functions::generic;

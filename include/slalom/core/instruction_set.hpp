@@ -10,13 +10,6 @@
 #define SLALOM_X86 0
 #endif
 
-/// Whether the build's baseline rounds every product before it is added.
-#if SLALOM_X86 || defined(__wasm__)
-#define SLALOM_BASELINE_ROUNDS 1
-#else
-#define SLALOM_BASELINE_ROUNDS 0
-#endif
-
 #if SLALOM_X86
 /// Instruction sets of SSE4 code.
 #define SLALOM_ISA_SSE4 __attribute__((target("sse4.2")))
@@ -25,23 +18,10 @@
 /// Instruction sets of AVX-512 code.
 #define SLALOM_ISA_AVX512 \
   __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx512cd,avx2,fma,bmi,bmi2")))
-#else
-/// Instruction sets of SSE4 code.
-#define SLALOM_ISA_SSE4
-/// Instruction sets of AVX2 code.
-#define SLALOM_ISA_AVX2
-/// Instruction sets of AVX-512 code.
-#define SLALOM_ISA_AVX512
 #endif
 
-/// Attributes of a function into which all that it calls is inlined. Kernels get them from dispatch.hpp.
+/// Attribute of a function into which all that it calls is inlined. Kernels get it from dispatch.hpp.
 #define SLALOM_TARGET_GENERIC __attribute__((flatten))
-/// Attributes of a function that uses SSE4.
-#define SLALOM_TARGET_SSE4 SLALOM_ISA_SSE4 __attribute__((flatten))
-/// Attributes of a function that uses AVX2.
-#define SLALOM_TARGET_AVX2 SLALOM_ISA_AVX2 __attribute__((flatten))
-/// Attributes of a function that uses AVX-512.
-#define SLALOM_TARGET_AVX512 SLALOM_ISA_AVX512 __attribute__((flatten))
 
 /// Marks functions that a kernel calls. g++ applies `flatten` to calls at every depth, but rejects functions
 /// that are `always_inline`. clang applies it to direct calls only, so every function of a kernel is marked;
@@ -92,8 +72,12 @@ Target active_target();
 /// Tags of the instruction sets: the `lanes` of a pack, and whether products and sums are fused, that is,
 /// rounded once. `Generic` uses the build's baseline: SSE2, NEON or the SIMD128 of WebAssembly.
 struct Generic {
-  static constexpr int lanes = 4;                             ///< number of float32 values
-  static constexpr bool fused = SLALOM_BASELINE_ROUNDS == 0;  ///< whether it has fused multiply-add
+  static constexpr int lanes = 4;  ///< number of float32 values
+#if SLALOM_X86 || defined(__wasm__)
+  static constexpr bool fused = false;  ///< whether it has fused multiply-add
+#else
+  static constexpr bool fused = true;  ///< whether it has fused multiply-add
+#endif
 };
 /// SSE 4.2.
 struct Sse4 {

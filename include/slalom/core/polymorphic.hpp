@@ -13,13 +13,9 @@ class Polymorphic {
   Polymorphic() = default;
   /// Takes over an object.
   Polymorphic(std::unique_ptr<T> object) noexcept : object_(std::move(object)) {}
-  /// Copies the object.
   Polymorphic(const Polymorphic& other) : object_(other.object_ ? other.object_->clone() : nullptr) {}
-  /// Takes over the object; the other one owns nothing afterwards.
   Polymorphic(Polymorphic&&) noexcept = default;
-  /// Copies the object.
   Polymorphic& operator=(const Polymorphic& other) { return *this = Polymorphic(other); }
-  /// Takes over the object; the other one owns nothing afterwards.
   Polymorphic& operator=(Polymorphic&&) noexcept = default;
   ~Polymorphic() = default;
 

@@ -44,9 +44,7 @@ struct Input {
   /// One value for each input.
   T value[M];
 
-  /// The value of an input.
   T& operator[](int i) { return value[i]; }
-  /// The value of an input.
   const T& operator[](int i) const { return value[i]; }
   /// Number of inputs.
   static constexpr int size() { return M; }

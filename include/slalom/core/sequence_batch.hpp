@@ -16,22 +16,17 @@ class AlignedBuffer {
   AlignedBuffer() = default;
   /// `size` >= 0 values, all 0.
   explicit AlignedBuffer(std::ptrdiff_t size);
-  /// Copies the values.
   AlignedBuffer(const AlignedBuffer& other);
   /// Takes over the values; the other buffer may only be destroyed or assigned to afterwards.
   AlignedBuffer(AlignedBuffer&&) noexcept = default;
-  /// Copies the values.
   AlignedBuffer& operator=(const AlignedBuffer& other) { return *this = AlignedBuffer(other); }
-  /// Takes over the values.
   AlignedBuffer& operator=(AlignedBuffer&&) noexcept = default;
   ~AlignedBuffer() = default;
 
   float* data() noexcept { return data_.get(); }              ///< the first value
   const float* data() const noexcept { return data_.get(); }  ///< the first value
   std::ptrdiff_t size() const noexcept { return size_; }      ///< number of values
-  /// Value at an index.
   float& operator[](std::ptrdiff_t i) noexcept { return data_[i]; }
-  /// Value at an index.
   float operator[](std::ptrdiff_t i) const noexcept { return data_[i]; }
 
  private:

@@ -143,7 +143,6 @@ struct Mask {
   }
   /// Writes 1 for each lane that is true, else 0.
   SLALOM_INLINE_CALLS void store(std::uint8_t* to) const { Operations<T>::store_mask(v, to); }
-  /// The value of one lane.
   bool operator[](int lane) const {
     if constexpr (bits) {
       return ((v >> lane) & 1) != 0;
@@ -265,28 +264,28 @@ struct Pack {
   SLALOM_INLINE_CALLS friend Mask<T> operator>=(const Pack& a, const Pack& b) { return b <= a; }
   SLALOM_INLINE_CALLS friend Mask<T> operator==(const Pack& a, const Pack& b) { return (a <= b) & (b <= a); }
   SLALOM_INLINE_CALLS friend Mask<T> operator!=(const Pack& a, const Pack& b) { return !(a == b); }
+};
 
 /// An operator of a pack and a number, which stands for the same value in all lanes.
-#define SLALOM_MIXED_OPERATOR(Result, op)                             \
-  template <Number N>                                                 \
-  SLALOM_INLINE_CALLS friend Result operator op(const Pack& a, N b) { \
-    return a op Pack(b);                                              \
-  }                                                                   \
-  template <Number N>                                                 \
-  SLALOM_INLINE_CALLS friend Result operator op(N a, const Pack& b) { \
-    return Pack(a) op b;                                              \
+#define SLALOM_MIXED_OPERATOR(Result, op)                            \
+  template <class T, Number N>                                       \
+  SLALOM_INLINE_CALLS Result<T> operator op(const Pack<T>& a, N b) { \
+    return a op Pack<T>(b);                                          \
+  }                                                                  \
+  template <class T, Number N>                                       \
+  SLALOM_INLINE_CALLS Result<T> operator op(N a, const Pack<T>& b) { \
+    return Pack<T>(a) op b;                                          \
   }
-  SLALOM_MIXED_OPERATOR(Pack, +)
-  SLALOM_MIXED_OPERATOR(Pack, -)
-  SLALOM_MIXED_OPERATOR(Pack, *)
-  SLALOM_MIXED_OPERATOR(Pack, /)
-  SLALOM_MIXED_OPERATOR(Mask<T>, <)
-  SLALOM_MIXED_OPERATOR(Mask<T>, <=)
-  SLALOM_MIXED_OPERATOR(Mask<T>, >)
-  SLALOM_MIXED_OPERATOR(Mask<T>, >=)
-  SLALOM_MIXED_OPERATOR(Mask<T>, ==)
-  SLALOM_MIXED_OPERATOR(Mask<T>, !=)
+SLALOM_MIXED_OPERATOR(Pack, +)
+SLALOM_MIXED_OPERATOR(Pack, -)
+SLALOM_MIXED_OPERATOR(Pack, *)
+SLALOM_MIXED_OPERATOR(Pack, /)
+SLALOM_MIXED_OPERATOR(Mask, <)
+SLALOM_MIXED_OPERATOR(Mask, <=)
+SLALOM_MIXED_OPERATOR(Mask, >)
+SLALOM_MIXED_OPERATOR(Mask, >=)
+SLALOM_MIXED_OPERATOR(Mask, ==)
+SLALOM_MIXED_OPERATOR(Mask, !=)
 #undef SLALOM_MIXED_OPERATOR
-};
 
 }  // namespace slalom::simd

@@ -16,21 +16,9 @@ enum class Status {
 
 /// The name of a status, as it is written in results.
 constexpr const char* name(Status status) noexcept {
-  switch (status) {
-    case Status::ok:
-      return "ok";
-    case Status::deadline:
-      return "deadline";
-    case Status::all_collided:
-      return "all_collided";
-    case Status::degenerate:
-      return "degenerate";
-    case Status::non_finite_state:
-      return "non_finite_state";
-    case Status::invalid_time:
-      return "invalid_time";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"ok",         "deadline",         "all_collided",
+                                   "degenerate", "non_finite_state", "invalid_time"};
+  return names[static_cast<int>(status)];
 }
 
 }  // namespace slalom

@@ -41,9 +41,6 @@ struct LocalCostMapOptions {
   double body_inset = 0.05;
 
   PublishedCostMap published{};  ///< only to reproduce the program of K. Honda (proj-svg_mppi)
-
-  /// Throws std::invalid_argument naming the field, its value and the rule.
-  void validate() const;
 };
 
 template <class Options, class Visit>

@@ -68,9 +68,6 @@ struct MovingObstacleOptions {
   double soft_cost = 20;
   double deviations = 1;
   double max_probability = 0.2;
-
-  /// Throws std::invalid_argument naming the option, its value and the rule.
-  void validate() const { validate_options(*this, "moving_obstacles"); }
 };
 
 template <class Options, class Visit>

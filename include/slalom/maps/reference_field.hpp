@@ -33,9 +33,6 @@ struct ReferenceFieldOptions {
   /// With 0 the distance of positions behind the nearest point is that to the window's first point, not to
   /// the path.
   int points_behind = 10;
-
-  /// Throws std::invalid_argument naming the field, its value and the rule.
-  void validate() const;
 };
 
 template <class Options, class Visit>

@@ -102,6 +102,8 @@ class SolverBase : public Solver {
   const std::vector<float>& high() const noexcept { return high_; }  ///< upper bounds, [row]
   /// Moves a control sequence [row] into the bounds.
   void clamp(float* sequence) const noexcept;
+  /// Moves a control sequence [row] forward by `steps` >= 0, as `shift_sequence` does, in place.
+  void move_forward(float* sequence, double steps) noexcept;
 
   /// Evaluates a batch on all threads, until the deadline. `costs` and `collided` have `batch.stride()`
   /// entries. Costs that are not finite, and those of samples that were not reached, become +infinity.
@@ -126,10 +128,10 @@ class SolverBase : public Solver {
   std::shared_ptr<ThreadPool> pool_;
   std::uint64_t seed_;
   std::uint64_t solves_ = 0;
-  std::vector<float> low_, high_;  ///< [row]
-  bool small_variance_ = false;    ///< whether the deviations are below a hundredth of the ranges
-  double steady_cost_ = 0;         ///< least cost of the solve since which it has stayed the same
-  double highest_cost_ = 0;        ///< highest least cost since the last reset
+  std::vector<float> low_, high_, moved_;  ///< [row]
+  bool small_variance_ = false;            ///< whether the deviations are below a hundredth of the ranges
+  double steady_cost_ = 0;                 ///< least cost of the solve since which it has stayed the same
+  double highest_cost_ = 0;                ///< highest least cost since the last reset
 };
 
 /// Moves a control sequence [step][input] forward by `shift` >= 0 steps, by linear interpolation, and holds

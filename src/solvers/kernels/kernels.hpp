@@ -41,6 +41,12 @@ struct WeightSums {
   Real weight = 0;   ///< sum of w
   Real squared = 0;  ///< sum of w^2
   Real cost = 0;     ///< sum of w * cost
+
+  /// The effective sample size; 0 without weights.
+  double effective() const noexcept {
+    const double w = weight;
+    return squared > 0 ? w * w / squared : 0;
+  }
 };
 
 /// Statistics of the costs of a range of samples.
@@ -96,11 +102,6 @@ class Matrix {
   std::vector<T>& values() noexcept { return values_; }
   /// All entries, row after row.
   const std::vector<T>& values() const noexcept { return values_; }
-
-  void swap(Matrix& other) noexcept {
-    std::swap(columns_, other.columns_);
-    values_.swap(other.values_);
-  }
 
  private:
   std::ptrdiff_t columns_ = 0;

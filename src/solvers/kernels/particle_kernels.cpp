@@ -10,7 +10,7 @@ namespace slalom::detail::kernels {
 
 namespace {
 
-/// Gradients of particles. The index of sample s of particle p is s * particle_stride + p.
+/// The index of sample s of particle p is s * particle_stride + p.
 struct ParticleGradients {
   template <class Target>
   SLALOM_KERNEL static void run(const GradientSettings& g, const Rows& v, const Rows& theta, Range range,
@@ -51,8 +51,6 @@ struct ParticleGradients {
   }
 };
 
-/// Makes samples around particles from normal values: clamp(theta_p + deviation z, low, high). Samples from
-/// `zero_mean_from` on are around zero.
 struct SampleAround {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows& samples, const Rows& theta, const SamplingDistribution& to,
@@ -130,9 +128,9 @@ SLALOM_INLINE void stein_block(const Rows& x, const Rows& gradient, int count, f
   }
 }
 
-/// phi of the particles `range`, given all `count` particles: see stein.hpp. The sums are computed in blocks
-/// of two packs of particles and four others, so that loaded values are used more than once. With the
-/// repulsion split into sum_j k (g_j + c x_j) - c x_i sum_j k, each pair and row costs three operations.
+/// The sums are computed in blocks of two packs of particles and four others, so that loaded values are used
+/// more than once. With the repulsion split into sum_j k (g_j + c x_j) - c x_i sum_j k, each pair and row
+/// costs three operations.
 struct SteinDirections {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows& x, const Rows& gradient, int count, float bandwidth, Range range,

@@ -66,7 +66,7 @@ SLALOM_INLINE void colour_packs(const Rows& z, const float* factor, int first, i
   }
 }
 
-/// z <- L z over the rows first, first + step, ... of one input, from the last row to the first, in place.
+/// From the last row to the first, in place.
 struct Colour {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows& z, const float* factor, int first, int step, Range range) {
@@ -208,8 +208,7 @@ struct Scale {
   }
 };
 
-/// Sums of w (v - centre), or of w (v - centre)^2, for each row. Uses four running sums, so that additions do
-/// not depend on each other.
+/// Uses four running sums, so that additions do not depend on each other.
 template <bool squares>
 struct WeightedPowers {
   template <class Target>

@@ -116,9 +116,7 @@ class CemSolver final : public SolverBase {
       std::copy(mean_.begin(), mean_.end(), best_.begin());
     result_.status = status;
     result_.iterations = iteration;
-    const StageTimes times = result_.times;
     detail::report_samples(batch, statistics, batch.sum_weights(batch.samples()), result_);
-    result_.times = times;
     next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());
     return result_;
@@ -136,12 +134,8 @@ class CemSolver final : public SolverBase {
 
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    const auto move = [&](float* sequence) {
-      shift_sequence(sequence, horizon(), inputs(), steps, elite_mean_.data());
-      std::copy(elite_mean_.begin(), elite_mean_.end(), sequence);
-    };
-    move(mean_.data());
-    for (int i = 0; i < kept_count_; ++i) move(kept(i).data());
+    move_forward(mean_.data(), steps);
+    for (int i = 0; i < kept_count_; ++i) move_forward(kept(i).data(), steps);
   }
 
   std::span<float> kept(int index) noexcept {

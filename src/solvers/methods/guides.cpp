@@ -39,10 +39,7 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
     return kernels::exponential_weights(totals, totals, least, static_cast<float>(temperature), block,
                                         weights);
   };
-  const auto effective_size = [&](double t) {
-    const WeightSums<float> sums = weigh(t);
-    return static_cast<double>(sums.weight) * sums.weight / sums.squared;
-  };
+  const auto effective_size = [&](double t) { return weigh(t).effective(); };
   const double temperature =
       s.temperature > 0 ? s.temperature
                         : default_temperature({totals + block.first, static_cast<std::size_t>(samples)},
@@ -98,7 +95,7 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       abscissa_(path_costs_.size()) {
   for (int r = 0; r < rows_; ++r) {
     const double variance = deviation_[r];
-    inverse_[r] = static_cast<float>(inverse_variance(variance, reproduction().inverse_variance_offset));
+    inverse_[r] = static_cast<float>(inverse_variance(variance, options_.published.inverse_variance_offset));
     deviation_[r] = static_cast<float>(std::sqrt(variance));
   }
 }
@@ -121,7 +118,7 @@ void Guides::shift(double steps) noexcept {
   for (int g = 0; g < count_; ++g) {
     shift_sequence(theta_[g], options_.horizon, inputs_, steps, shifted_[g]);
   }
-  theta_.swap(shifted_);
+  std::swap(theta_, shifted_);
   round_to_float();
 }
 
@@ -148,8 +145,7 @@ void Guides::take_in(const BatchEvaluator& evaluator, const float* solution) noe
 /// apart.
 void Guides::restart_others(RandomKey key) noexcept {
   if (!options_.guides.restart || count_ == 1) return;
-  std::copy_n(theta_[best_], rows_, shifted_[0]);
-  std::copy_n(shifted_[0], rows_, theta_[0]);
+  if (best_ != 0) std::copy_n(theta_[best_], rows_, theta_[0]);
   best_ = 0;
   fill_normal(ends_, 0, padded(count_), key);
   if (shape_.pinned()) shape_.apply(ends_, {0, padded(count_)});
@@ -206,8 +202,8 @@ void Guides::estimate_gradient(int g) noexcept {
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
   SurrogateGradient gradient;
   gradient.temperature = static_cast<float>(options_.guides.gradient_temperature);
-  gradient.subtract_minimum = reproduction().subtract_minimum;
-  gradient.floor = reproduction().gradient_floor;
+  gradient.subtract_minimum = options_.published.subtract_minimum;
+  gradient.floor = options_.published.gradient_floor;
   gradient.centre = guides_[g];
   gradient.inverse_variance = inverse_.data();
   if (options_.guides.weight == GuideWeight::importance) gradient.linear = linear_.data();
@@ -226,7 +222,7 @@ void Guides::step(int g, int iteration) noexcept {
   for (int r = 0; r < rows_; ++r) {
     const double slope = gradient_[g][r];
     theta[r] += step_[r] * slope;
-    if (reproduction().clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
+    if (options_.published.clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
     if (!(std::abs(theta[r]) < 1e30)) theta[r] = solution_[r];
   }
   std::copy_n(theta, rows_, guides_[g]);
@@ -238,7 +234,7 @@ void Guides::begin_move(const float* solution, const float* nominal, int shares)
   for (int r = 0; r < rows_; ++r) {
     const double inverse =
         weight_temperature() *
-        inverse_variance<double>(weight_variance_[r], reproduction().inverse_variance_offset);
+        inverse_variance<double>(weight_variance_[r], options_.published.inverse_variance_offset);
     const double u = solution[r], n = nominal[r];
     solution_[r] = solution[r];
     linear_[r] = static_cast<float>(inverse * (u - n));
@@ -294,8 +290,8 @@ float Guides::cost(const BatchEvaluator& evaluator, const float* sequence) noexc
 /// Computes q* (equation (5)) at points of the paths: exp(-S / lambda), multiplied by the density around the
 /// nominal sequence if the fit target is the optimal density. The sum over the points is 1.
 void Guides::densities(double temperature, std::span<const int> points) noexcept {
-  const bool with_prior = reproduction().fit_target == FitTarget::optimal_density;
-  if (!with_prior) temperature = reproduction().fit_temperature;
+  const bool with_prior = options_.published.fit_target == FitTarget::optimal_density;
+  if (!with_prior) temperature = options_.published.fit_temperature;
   double largest = -std::numeric_limits<double>::infinity();
   log_error_ = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -309,7 +305,7 @@ void Guides::densities(double temperature, std::span<const int> points) noexcept
     density_[i] = logarithm;
     largest = std::max(largest, logarithm);
   }
-  double sum = reproduction().normaliser_offset;
+  double sum = options_.published.normaliser_offset;
   for (std::size_t i = 0; i < points.size(); ++i) sum += density_[i] = std::exp(density_[i] - largest);
   for (std::size_t i = 0; i < points.size(); ++i) density_[i] /= sum;
 }
@@ -318,23 +314,24 @@ void Guides::densities(double temperature, std::span<const int> points) noexcept
 double Guides::fit_row(int r, std::span<const int> points) noexcept {
   const int count = static_cast<int>(points.size());
   for (int i = 0; i < count; ++i) abscissa_[i] = path_[points[i]][r];
-  const bool published = reproduction().fit_absolute_curvature;
+  const bool published = options_.published.fit_absolute_curvature;
   const GaussianFit fit =
       published ? fit_gaussian_as_published(abscissa_.data(), square_.data(), logarithm_.data(), count)
                 : fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), count, log_error_);
   const double variance = fitted_variance(fit, published);
-  return reproduction().fit_standard_deviation ? std::sqrt(variance) : variance;
+  return options_.published.fit_standard_deviation ? std::sqrt(variance) : variance;
 }
 
 void Guides::fit_variance(double temperature, float* variance) noexcept {
   int count = 0;
   for (int l = 0; l < iterations_; ++l)
     for (int g = 0; g < count_; ++g)
-      if (reproduction().fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
+      if (options_.published.fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
   const std::span points(fit_points_.data(), count);
-  const bool has_temperature = temperature > 0 || reproduction().fit_target == FitTarget::state_cost;
-  const bool known = has_temperature && best_cost_ < infinite &&
-                     count >= (reproduction().fit_absolute_curvature ? 1 : 3);  // three determine a curvature
+  const bool has_temperature = temperature > 0 || options_.published.fit_target == FitTarget::state_cost;
+  const bool known =
+      has_temperature && best_cost_ < infinite &&
+      count >= (options_.published.fit_absolute_curvature ? 1 : 3);  // three determine a curvature
   if (known) {
     densities(temperature, points);
     fit_weights(density_.data(), count, square_.data(), logarithm_.data());

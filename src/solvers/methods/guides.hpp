@@ -87,8 +87,6 @@ class Guides {
   std::span<const float> path_costs() const noexcept;
 
  private:
-  /// The differences between the program proj-svg_mppi and the paper, all off by default.
-  const PublishedSvgMppi& reproduction() const noexcept { return options_.published; }
   void fill_blocks(RandomKey key, int first, int last) noexcept;
   void estimate_gradient(int guide) noexcept;
   void step(int guide, int iteration) noexcept;

@@ -30,7 +30,6 @@ class MppiSolver final : public SolverBase {
         shift_(options.shift_warm_start),
         update_(options, inputs),
         mean_(size()),
-        shifted_(size()),
         zero_(size()),
         first_variance_(spread(options.variance)),
         variance_(size()) {
@@ -70,10 +69,7 @@ class MppiSolver final : public SolverBase {
     const Deadline deadline(start, request.deadline);
     result_.times = {};
     const double shift = shift_ ? warm_start_shift(evaluator, request) : 0;
-    if (shift > 0) {
-      shift_sequence(mean_.data(), horizon(), inputs(), shift, shifted_.data());
-      std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
-    }
+    if (shift > 0) move_forward(mean_.data(), shift);
     update_.samples().propose(request.proposals);
     make_updates(evaluator, deadline);
     next_solve();
@@ -109,8 +105,7 @@ class MppiSolver final : public SolverBase {
   Annealing annealing_;
   bool shift_;
   detail::MppiUpdate update_;
-  std::vector<float> mean_, shifted_, zero_;      ///< [row]
-  std::vector<float> first_variance_, variance_;  ///< [row]
+  std::vector<float> mean_, zero_, first_variance_, variance_;  ///< [row]
   bool has_solution_ = false;
 };
 

@@ -8,14 +8,6 @@
 
 namespace slalom::detail {
 
-namespace {
-
-double effective(const WeightSums<double>& sums) {
-  return sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
-}
-
-}  // namespace
-
 WeightSums<double> Weighting::weigh(SampleSet& samples, float least, ThreadPool& pool) noexcept {
   return samples.weigh(least, static_cast<float>(temperature_), pool);
 }
@@ -24,7 +16,7 @@ WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool, int out
   const double wanted =
       std::max(share_ > 0 ? share_ * samples.samples() : default_effective_size(samples.samples()), 1.0);
   const float least = samples.mix_totals(0, pool);
-  const double scale = samples.mean_excess(least);
+  const double scale = mean_excess(samples.totals(), least);
   const auto weigh_at = [&](double temperature) {
     temperature_ = temperature;
     return weigh(samples, samples.mix_totals(static_cast<float>(temperature), pool), pool);
@@ -32,7 +24,7 @@ WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool, int out
   if (!(scale > 0)) return weigh_at(given_temperature_ > 0 ? given_temperature_ : 1.0);
   const double found = seek_temperature(wanted, scale, temperature_, [&](double temperature) {
     const WeightSums<double> sums = weigh_at(temperature);
-    return effective(outsiders > 0 ? samples.sum_weights(samples.samples() - outsiders) : sums);
+    return (outsiders > 0 ? samples.sum_weights(samples.samples() - outsiders) : sums).effective();
   });
   return weigh_at(found);
 }
@@ -74,6 +66,8 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
       samples_.draw_and_evaluate(evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from},
                                  seeks ? nullptr : linear_.data(), pool, deadline);
 
+  result.times.draw += statistics.draw_time;
+  result.times.evaluate += statistics.evaluate_time;
   const auto evaluated = Clock::now();
   WeightSums<double> sums;
   if (statistics.finite > 0) {

@@ -36,7 +36,7 @@ class ReverseMppiSolver final : public SolverBase {
         linear_(size()),
         inverse_(size()),
         zero_(size()),
-        shifted_(size()),
+        last_mean_(size()),
         sums_(size() * detail::moments),
         moment_mean_(size()),
         moment_variance_(size()),
@@ -78,8 +78,8 @@ class ReverseMppiSolver final : public SolverBase {
     const Deadline deadline(begin, request.deadline);
     result_.times = {};
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
-    copy(start_, now_);
-    copy(start_rejected_, now_rejected_);
+    now_ = start_;
+    now_rejected_ = start_rejected_;
 
     detail::BatchStatistics statistics;
     Status status = Status::deadline;
@@ -103,8 +103,6 @@ class ReverseMppiSolver final : public SolverBase {
   }
 
  private:
-  /// The departures of the program of proj-svg_mppi from the paper, all off by default.
-  const PublishedReverseMppi& reproduction() const noexcept { return options_.published; }
   /// Lets the result point to this solver's values.
   void bind_result() noexcept {
     result_.inputs = result_.mean = now_.mean;
@@ -113,19 +111,10 @@ class ReverseMppiSolver final : public SolverBase {
     if (result_.samples) detail::bind_samples(samples_, result_);
   }
 
-  static void copy(const Gaussian& from, Gaussian& to) noexcept {
-    std::copy(from.mean.begin(), from.mean.end(), to.mean.begin());
-    std::copy(from.variance.begin(), from.variance.end(), to.variance.begin());
-  }
-
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    for (Gaussian* g : {&start_, &start_rejected_}) {
-      for (std::vector<float>* values : {&g->mean, &g->variance}) {
-        shift_sequence(values->data(), horizon(), inputs(), steps, shifted_.data());
-        std::copy(shifted_.begin(), shifted_.end(), values->begin());
-      }
-    }
+    for (Gaussian* g : {&start_, &start_rejected_})
+      for (std::vector<float>* values : {&g->mean, &g->variance}) move_forward(values->data(), steps);
   }
 
   /// Draws the samples of an iteration, with rejection near bad samples if `reject_samples` is set.
@@ -152,7 +141,7 @@ class ReverseMppiSolver final : public SolverBase {
   void keep_probabilities() noexcept {
     const detail::Range range{0, inflated_.stride()};
     float* logarithms = own_distance_.data();
-    if (reproduction().rejection == RejectionModel::published) {
+    if (options_.published.rejection == RejectionModel::published) {
       rejection_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
                      now_rejected_.variance.data());
       detail::kernels::published_rejection(inflated_.row_view(), rejection_.rows(), range, logarithms);
@@ -189,7 +178,7 @@ class ReverseMppiSolver final : public SolverBase {
 
   detail::BatchStatistics evaluate(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
-                                 reproduction().inverse_variance_offset, now_.mean.data(), zero_.data(),
+                                 options_.published.inverse_variance_offset, now_.mean.data(), zero_.data(),
                                  now_.variance.data(), rows(), linear_.data());
     const detail::BatchStatistics statistics = samples_.evaluate(evaluator, linear_.data(), pool(), deadline);
     result_.times.evaluate += statistics.evaluate_time;
@@ -203,7 +192,7 @@ class ReverseMppiSolver final : public SolverBase {
     const detail::Range range{0, samples_.stride()};
     const detail::ReverseSums sums = detail::reverse_weights(
         samples_.totals().data(), static_cast<float>(options_.temperature),
-        static_cast<float>(options_.negative_ratio), static_cast<float>(reproduction().normaliser_offset),
+        static_cast<float>(options_.negative_ratio), static_cast<float>(options_.published.normaliser_offset),
         range, evaluated_.data(), rejected_.data());
     if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
       const float equal = 1.0f / statistics.finite;
@@ -213,9 +202,9 @@ class ReverseMppiSolver final : public SolverBase {
     const Gaussian& before = now_;
     for (std::size_t r = 0; r < size(); ++r)
       inverse_[r] =
-          detail::inverse_variance<float>(before.variance[r], reproduction().inverse_variance_offset);
-    std::copy(before.mean.begin(), before.mean.end(), shifted_.begin());
-    samples_.two_moments(evaluated_.data(), rejected_.data(), shifted_.data(), sums_.data(), pool());
+          detail::inverse_variance<float>(before.variance[r], options_.published.inverse_variance_offset);
+    std::copy(before.mean.begin(), before.mean.end(), last_mean_.begin());
+    samples_.two_moments(evaluated_.data(), rejected_.data(), last_mean_.data(), sums_.data(), pool());
     if (sums.rejected > 0) descend(2, now_rejected_);
     descend(0, now_);
     result_.times.update += detail::seconds(begin, detail::Clock::now());
@@ -227,7 +216,7 @@ class ReverseMppiSolver final : public SolverBase {
   /// distribution.
   void descend(std::size_t list, Gaussian& g) noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale = reproduction().dimensionless_variance ? inverse_[r] : 1.0;
+      const double scale = options_.published.dimensionless_variance ? inverse_[r] : 1.0;
       moment_mean_[r] = static_cast<float>(sums_[r * detail::moments + list]);
       moment_variance_[r] = static_cast<float>(sums_[r * detail::moments + list + 1] * scale);
     }
@@ -242,9 +231,7 @@ class ReverseMppiSolver final : public SolverBase {
 
   void report(const detail::BatchStatistics& statistics) noexcept {
     std::copy_n(evaluated_.begin(), samples_.weights().size(), samples_.weights().begin());
-    const StageTimes times = result_.times;
     detail::report_samples(samples_, statistics, samples_.sum_weights(samples_.samples()), result_);
-    result_.times = times;
     result_.temperature = options_.temperature;
   }
 
@@ -262,7 +249,7 @@ class ReverseMppiSolver final : public SolverBase {
   detail::SampleSet samples_, inflated_;
   Gaussian now_, now_rejected_, start_, start_rejected_;
   std::vector<float> first_variance_, min_variance_, deviation_, linear_, inverse_, zero_,
-      shifted_;                                       ///< [row]
+      last_mean_;                                     ///< [row]
   std::vector<double> sums_;                          ///< [row]
   std::vector<float> moment_mean_, moment_variance_;  ///< [row]
   detail::PublishedRejection rejection_;

@@ -13,7 +13,6 @@ struct ReverseSums {
   double evaluated = 0;   ///< sum of the positive parts before they are normalised
   double rejected = 0;    ///< sum of the negative parts
   double log_growth = 0;  ///< log of sum exp((J - min J) / lambda); above 709 the sum overflows `double`
-  bool usable = false;    ///< whether some J is finite
 };
 
 /// Mode-seeking weights (Kobayashi and Fukumoto 2022): good samples attract, bad ones repel.
@@ -34,7 +33,6 @@ inline ReverseSums reverse_weights(const float* totals, float temperature, float
   std::fill(evaluated + range.first, evaluated + end, 0.0f);
   std::fill(rejected + range.first, rejected + end, 0.0f);
   if (!(least < infinite)) return sums;
-  sums.usable = true;
   const float falling =
       kernels::exponential_weights(totals, totals, least, temperature, range, evaluated).weight + offset;
   // exp((J - max) / lambda) = exp((min' - J') / lambda) with J' = -J.

@@ -47,9 +47,4 @@ inline int pair_distances(const Rows& x, int count, float* values) noexcept {
   return pairs;
 }
 
-/// One entry of the gradient of the log of a Gaussian prior at x: -Sigma^-1 (x - m).
-inline float prior_gradient(float x, float mean, float inverse_variance) noexcept {
-  return -inverse_variance * (x - mean);
-}
-
 }  // namespace slalom::detail

@@ -41,10 +41,10 @@ class SvMpcSolver final : public SolverBase {
         limited_step_(step_),
         zero_(size()),
         particle_(size()),
-        shifted_(size()),
         sums_(size()) {
     for (std::size_t r = 0; r < size(); ++r) {
-      inverse_[r] = detail::inverse_variance<float>(deviation_[r], reproduction().inverse_variance_offset);
+      inverse_[r] =
+          detail::inverse_variance<float>(deviation_[r], options_.published.inverse_variance_offset);
       deviation_[r] = std::sqrt(deviation_[r]);
     }
     reset(options.seed);
@@ -56,7 +56,7 @@ class SvMpcSolver final : public SolverBase {
     copy->bind_result();
     return copy;
   }
-  bool keeps_bounds() const noexcept override { return reproduction().clamp_solution; }
+  bool keeps_bounds() const noexcept override { return options_.published.clamp_solution; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -81,13 +81,14 @@ class SvMpcSolver final : public SolverBase {
 
     const detail::BatchStatistics statistics =
         particles_.evaluate(evaluator, control_.data(), pool(), deadline);
+    result_.times.evaluate += statistics.evaluate_time;
     const auto evaluated = detail::Clock::now();
     const bool usable = statistics.finite > 0 && finite_particles();
     detail::WeightSums<double> sums;
     result_.guides = {};
     if (usable) {
       sums = particles_.weigh(statistics.minimum_total, static_cast<float>(options_.temperature), pool());
-      detail::kernels::scale(static_cast<float>(1.0 / (sums.weight + reproduction().normaliser_offset)),
+      detail::kernels::scale(static_cast<float>(1.0 / (sums.weight + options_.published.normaliser_offset)),
                              {0, particles_.stride()}, particles_.weights().data());
       update_solution();
     } else {
@@ -110,8 +111,6 @@ class SvMpcSolver final : public SolverBase {
 
  private:
   static constexpr int tile = 128;  ///< particles per task
-  /// The departures of the program of proj-svg_mppi from the paper, all off by default.
-  const PublishedSvMpc& reproduction() const noexcept { return options_.published; }
   /// Lets the result point to this solver's values.
   void bind_result() noexcept {
     result_.inputs = solution_;
@@ -130,22 +129,20 @@ class SvMpcSolver final : public SolverBase {
   void draw_particles() noexcept {
     std::fill(mean_.begin(), mean_.end(), 0.0f);
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
-    for (std::size_t r = 0; r < size(); ++r) shifted_[r] = std::sqrt(variance_[r]);
+    for (std::size_t r = 0; r < size(); ++r) particle_[r] = std::sqrt(variance_[r]);
     particles_.draw(key(65535),
-                    {mean_.data(), shifted_.data(), low().data(), high().data(), particles_.samples()},
+                    {mean_.data(), particle_.data(), low().data(), high().data(), particles_.samples()},
                     pool());
   }
 
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    for (std::vector<float>* const values : {&mean_, &solution_, &variance_}) {
-      shift_sequence(values->data(), horizon(), inputs(), steps, shifted_.data());
-      std::copy(shifted_.begin(), shifted_.end(), values->begin());
-    }
+    for (std::vector<float>* const values : {&mean_, &solution_, &variance_})
+      move_forward(values->data(), steps);
     for (int k = 0; k < particles_.samples(); ++k) {
       particles_.values().get_sample(k, particle_);
-      shift_sequence(particle_.data(), horizon(), inputs(), steps, shifted_.data());
-      particles_.values().set_sample(k, shifted_);
+      move_forward(particle_.data(), steps);
+      particles_.values().set_sample(k, particle_);
     }
   }
 
@@ -154,14 +151,14 @@ class SvMpcSolver final : public SolverBase {
   void set_prior() noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
       prior_inverse_[r] =
-          detail::inverse_variance<float>(variance_[r], reproduction().inverse_variance_offset);
+          detail::inverse_variance<float>(variance_[r], options_.published.inverse_variance_offset);
       const float curvature = prior_inverse_[r] + inverse_[r];
       limited_step_[r] =
           options_.limit_step && curvature > 0 ? std::min(step_[r], 1.0f / curvature) : step_[r];
-      linear_[r] = reproduction().gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
+      linear_[r] = options_.published.gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
     }
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
-                                 reproduction().inverse_variance_offset, mean_.data(), zero_.data(),
+                                 options_.published.inverse_variance_offset, mean_.data(), zero_.data(),
                                  variance_.data(), rows(), control_.data());
   }
 
@@ -172,7 +169,7 @@ class SvMpcSolver final : public SolverBase {
     pool().run(parts, [&](int t) { estimate_gradients(evaluator, iteration, part(t)); });
     const detail::Rows x = particles_.row_view();
     const int count = particles_.samples();
-    const int values = reproduction().bandwidth == BandwidthModel::squared_norms
+    const int values = options_.published.bandwidth == BandwidthModel::squared_norms
                            ? detail::squared_norms(x, count, distances_.data())
                            : detail::pair_distances(x, count, distances_.data());
     const float h = count > 1 ? detail::bandwidth(distances_.data(), values, count) : 1.0f;
@@ -198,8 +195,8 @@ class SvMpcSolver final : public SolverBase {
     const detail::GradientSettings how{options_.gradient_samples,
                                        stride,
                                        static_cast<float>(options_.temperature),
-                                       reproduction().subtract_minimum,
-                                       static_cast<float>(reproduction().gradient_floor),
+                                       options_.published.subtract_minimum,
+                                       static_cast<float>(options_.published.gradient_floor),
                                        linear_.data(),
                                        inverse_.data()};
     detail::kernels::particle_gradients(how, v, x, r, exponents_.data(), detail::rows_of(gradient_));
@@ -207,15 +204,15 @@ class SvMpcSolver final : public SolverBase {
       if (!(prior_inverse_[row] > 0)) continue;
       float* g = gradient_.data(row);
       for (int k = r.first; k < r.first + r.count; ++k)
-        g[k] += reproduction().inverted_prior
+        g[k] += options_.published.inverted_prior
                     ? detail::published_prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row])
-                    : detail::prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row]);
+                    : -prior_inverse_[row] * (x.row(row)[k] - mean_[row]);
     }
   }
 
   void step(detail::Range r) noexcept {
     constexpr float infinite = std::numeric_limits<float>::infinity();
-    const bool clamps = reproduction().clamp_particles;
+    const bool clamps = options_.published.clamp_particles;
     for (int row = 0; row < rows(); ++row) {
       float* x = particles_.values().data(row);
       const float* direction = phi_.data(row);
@@ -236,7 +233,7 @@ class SvMpcSolver final : public SolverBase {
   void update_solution() noexcept {
     particles_.weighted_squares(mean_.data(), sums_.data(), pool());
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale = reproduction().dimensionless_variance ? prior_inverse_[r] : 1.0;
+      const double scale = options_.published.dimensionless_variance ? prior_inverse_[r] : 1.0;
       const float least = std::min(min_variance_[r], first_variance_[r]);
       variance_[r] = std::clamp(static_cast<float>(sums_[r] * scale), least, 1e12f);
     }
@@ -248,7 +245,7 @@ class SvMpcSolver final : public SolverBase {
       const auto best = std::max_element(weights.begin(), weights.end()) - weights.begin();
       particles_.values().get_sample(static_cast<int>(best), solution_);
     }
-    if (reproduction().clamp_solution) clamp(solution_.data());
+    if (options_.published.clamp_solution) clamp(solution_.data());
   }
 
   SvMpcOptions options_;
@@ -259,8 +256,8 @@ class SvMpcSolver final : public SolverBase {
   SequenceBatch gradient_, phi_;
   std::vector<float> distances_;
   std::vector<float> solution_, mean_, variance_, first_variance_, min_variance_, deviation_, inverse_,
-      prior_inverse_, linear_, control_, step_, limited_step_, zero_, particle_, shifted_;  ///< [row]
-  std::vector<double> sums_;                                                                ///< [row]
+      prior_inverse_, linear_, control_, step_, limited_step_, zero_, particle_;  ///< [row]
+  std::vector<double> sums_;                                                      ///< [row]
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ class SvgMppiSolver final : public SolverBase {
         guides_(options, inputs, low(), high()),
         update_(options, inputs),
         mean_(size()),
-        shifted_(size()),
+        proposal_(size()),
         nominal_(size()),
         order_(options.samples),
         kept_((most_elites + 1) * size()),
@@ -130,9 +130,9 @@ class SvgMppiSolver final : public SolverBase {
     for (int i = 0; i < proposals.sequences; ++i) {
       const float* const proposal = proposals.values.data() + static_cast<std::size_t>(i) * size();
       for (std::size_t r = 0; r < size(); ++r)
-        shifted_[r] = std::isfinite(proposal[r]) ? proposal[r] : mean_[r];
-      clamp(shifted_.data());
-      guides_.take_in(evaluator, shifted_.data());
+        proposal_[r] = std::isfinite(proposal[r]) ? proposal[r] : mean_[r];
+      clamp(proposal_.data());
+      guides_.take_in(evaluator, proposal_.data());
     }
   }
 
@@ -224,14 +224,9 @@ class SvgMppiSolver final : public SolverBase {
 
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    shift_sequence(mean_.data(), horizon(), inputs(), steps, shifted_.data());
-    std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
-    shift_sequence(nominal_.data(), horizon(), inputs(), steps, shifted_.data());
-    std::swap_ranges(nominal_.begin(), nominal_.end(), shifted_.begin());
-    for (int i = 0; i < elites_; ++i) {
-      shift_sequence(kept(i), horizon(), inputs(), steps, shifted_.data());
-      std::copy(shifted_.begin(), shifted_.end(), kept(i));
-    }
+    move_forward(mean_.data(), steps);
+    move_forward(nominal_.data(), steps);
+    for (int i = 0; i < elites_; ++i) move_forward(kept(i), steps);
     guides_.shift(steps);
   }
 
@@ -240,7 +235,7 @@ class SvgMppiSolver final : public SolverBase {
   int elites_ = 0;  ///< number of elites
   detail::Guides guides_;
   detail::MppiUpdate update_;
-  std::vector<float> mean_, shifted_, nominal_;   ///< [row]
+  std::vector<float> mean_, proposal_, nominal_;  ///< [row]
   std::vector<int> order_;                        ///< sample indices, by cost
   std::vector<float> kept_;                       ///< [most_elites + 1][row]
   std::vector<double> squares_;                   ///< [row]

@@ -8,8 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "solvers/kernels/kernels.hpp"
-
 namespace slalom::detail {
 
 namespace {

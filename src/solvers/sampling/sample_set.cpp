@@ -188,7 +188,7 @@ void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const Sampli
     const float* proposal = proposals_ + static_cast<std::ptrdiff_t>(k - first) * rows();
     for (int row = 0; row < rows(); ++row) {
       const float value = std::isfinite(proposal[row]) ? proposal[row] : to.mean[row];
-      values_[row][static_cast<std::size_t>(k)] = std::clamp(value, to.low[row], to.high[row]);
+      values_[row][k] = std::clamp(value, to.low[row], to.high[row]);
     }
   }
 }
@@ -236,17 +236,6 @@ float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
     least_[tile] = kernels::minimum(totals_.data(), r);
   });
   return *std::min_element(least_.begin(), least_.end());
-}
-
-double SampleSet::mean_excess(float least) const noexcept {
-  double sum = 0;
-  int counted = 0;
-  for (const float total : totals()) {
-    if (!(total < infinite)) continue;
-    sum += static_cast<double>(total) - static_cast<double>(least);
-    ++counted;
-  }
-  return counted > 0 ? sum / counted : 0;
 }
 
 WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool) noexcept {
@@ -326,11 +315,9 @@ void report_samples(const SampleSet& set, const BatchStatistics& statistics, con
   bind_samples(set, result);
   result.minimum_cost = statistics.minimum_cost;
   result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
-  result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
+  result.effective_sample_size = sums.effective();
   result.collided_share =
       statistics.evaluated > 0 ? static_cast<double>(statistics.collided) / statistics.evaluated : 0;
-  result.times.draw += statistics.draw_time;
-  result.times.evaluate += statistics.evaluate_time;
 }
 
 }  // namespace slalom::detail

@@ -96,9 +96,6 @@ class SampleSet {
   /// Sets the totals to cost + factor * term and returns the lowest.
   float mix_totals(float factor, ThreadPool& pool) noexcept;
 
-  /// The mean of the finite totals, relative to the lowest, `least`.
-  double mean_excess(float least) const noexcept;
-
   /// Sets the weights to exp((least - total) / temperature), which are not normalised, and returns their
   /// sums.
   WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;
@@ -173,7 +170,7 @@ void control_coefficients(double temperature, double discount, double inverse_va
 /// Points the spans of a result to the samples of `set`.
 void bind_samples(const SampleSet& set, SolveResult& result) noexcept;
 
-/// Writes the samples of `set`, their statistics and the sums of their weights to a result.
+/// Writes the samples of `set`, their statistics but the times, and the sums of their weights to a result.
 void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
                     SolveResult& result) noexcept;
 

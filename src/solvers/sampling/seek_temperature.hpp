@@ -55,20 +55,25 @@ double seek_temperature(double wanted, double scale, double start, EffectiveSize
   return scale * std::exp(at);
 }
 
-/// The temperature of the weights of samples with these totals, if no option states it; 1 if all are equal.
-/// `least`: the lowest total. Totals that are not finite do not count.
-template <class EffectiveSize>
-double default_temperature(std::span<const float> totals, double least, EffectiveSize&& effective_size) {
-  double excess = 0;
+/// The mean of the finite totals, relative to the lowest, `least`; 0 if none is finite.
+inline double mean_excess(std::span<const float> totals, double least) noexcept {
+  double sum = 0;
   int counted = 0;
   for (const float total : totals) {
     if (!std::isfinite(total)) continue;
-    excess += static_cast<double>(total) - least;
+    sum += total - least;
     ++counted;
   }
-  if (!(excess > 0)) return 1;
+  return counted > 0 ? sum / counted : 0;
+}
+
+/// The temperature of the weights of samples with these totals, if no option states it; 1 if all are equal.
+/// `least`: the lowest total.
+template <class EffectiveSize>
+double default_temperature(std::span<const float> totals, double least, EffectiveSize&& effective_size) {
+  const double excess = mean_excess(totals, least);
   const double wanted = std::max(default_effective_size(static_cast<int>(totals.size())), 1.0);
-  return seek_temperature(wanted, excess / counted, 0, effective_size);
+  return excess > 0 ? seek_temperature(wanted, excess, 0, effective_size) : 1;
 }
 
 }  // namespace slalom::detail

@@ -5,13 +5,6 @@
 namespace slalom::vehicle {
 namespace {
 
-/// Returns the key with its section.
-std::string resolved(std::string_view key, std::string_view default_section) {
-  if (key.find('.') == std::string_view::npos && !default_section.empty())
-    return std::string(default_section) + "." + std::string(key);
-  return std::string(key);
-}
-
 [[noreturn]] void throw_unknown_key(const Configuration& configuration, std::string_view key) {
   std::string sections;
   std::vector<std::string> keys;
@@ -74,7 +67,9 @@ std::unique_ptr<Solver> make_solver(const Configuration& configuration, std::str
 
 void set_option(Configuration& configuration, std::string_view key, std::string_view text,
                 std::string_view default_section) {
-  const std::string full = resolved(key, default_section);
+  std::string full(key);
+  if (full.find('.') == std::string::npos && !default_section.empty())
+    full = std::string(default_section) + "." + full;
   const auto dot = full.find('.');
   bool found = false;
   try {

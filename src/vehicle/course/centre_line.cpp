@@ -112,25 +112,21 @@ Curve rounded(const Curve& polygon, const std::vector<double>& radii, const Trac
   return curve;
 }
 
-double winding(const std::vector<double>& curvature, double spacing) {
-  double sum = 0;
-  for (const double k : curvature) sum += std::abs(k) * spacing;
-  return sum / (2 * pi);
-}
-
 bool acceptable(const Curve& curve, const TrackGeneratorOptions& options, double min_winding,
                 double max_winding) {
   const double radius = min_radius(options);
-  const auto bends = curvature(curve, 2);
-  for (const double k : bends)
+  const double spacing = options.length / static_cast<double>(curve.size());
+  double turned = 0;  // rad, to either side
+  for (const double k : curvature(curve, 2)) {
     if (std::abs(k) > 1 / radius) return false;
-  const double winds = winding(bends, options.length / static_cast<double>(curve.size()));
+    turned += std::abs(k) * spacing;
+  }
+  const double winds = turned / (2 * pi);
   if (winds < min_winding - 0.01 || winds > max_winding) return false;
   return min_gap(curve, pi * radius) >= options.width + 2 * options.wall;
 }
 
-/// Turns the curve about the origin so that it is as small as possible in y, so that maps and pictures have
-/// the least empty area.
+/// Turns the curve about the origin to the least extent in y: its map has the least empty area.
 void lay_flat(Curve& curve) {
   double best_height = 0, best_angle = 0;
   for (int k = 0; k < 60; ++k) {

@@ -9,8 +9,7 @@
 #include "slalom/core/read_file.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/ros_map.hpp"
-#include "vehicle/course/course_csv.hpp"
-#include "vehicle/course/course_yaml.hpp"
+#include "vehicle/course/course_readers.hpp"
 #include "vehicle/racing/cell_regions.hpp"
 
 namespace slalom::vehicle {
@@ -93,8 +92,7 @@ fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vect
                   ignored);
 }
 
-/// Drops a last row that repeats the first, then requires at least three points, of which successive ones
-/// differ.
+/// Drops a last row that repeats the first; requires at least three points, of which successive ones differ.
 void check_points(std::vector<Waypoint>& points, std::vector<int>& lines, const fs::path& file) {
   if (points.size() > 1 && distance(points.front(), points.back()) == 0) {
     points.pop_back();
@@ -163,15 +161,6 @@ fs::path path_folder(const fs::path& folder) {
   return maps.filename() == "map" && fs::is_directory(path) ? path : folder;
 }
 
-void load_path(Course& course, const fs::path& folder) {
-  detail::CsvForm form = detail::CsvForm::other;
-  const fs::path file = find_waypoints(folder, form, course.notes);
-  std::vector<int> lines;
-  course.waypoints = detail::read_waypoints(file, form, lines);
-  check_points(course.waypoints, lines, file);
-  check_on_map(course, lines, file);
-}
-
 }  // namespace
 
 void complete_course(Course& course, std::optional<bool> closed) {
@@ -199,7 +188,12 @@ Course load_course(const fs::path& folder, maps::MapRule rule) {
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
   course.map = maps::load_ros_map(find_map(folder, course.notes), rule, &course.notes);
-  load_path(course, paths);
+  detail::CsvForm form = detail::CsvForm::other;
+  const fs::path line = find_waypoints(paths, form, course.notes);
+  std::vector<int> rows;
+  course.waypoints = detail::read_waypoints(line, form, rows);
+  check_points(course.waypoints, rows, line);
+  check_on_map(course, rows, line);
   if (const fs::path points = paths / obstacle_file; fs::exists(points))
     course.obstacle_path = detail::read_points(points);
   const fs::path file = folder / course_file;
@@ -245,13 +239,12 @@ maps::OccupancyGrid reachable_map(const Course& course) {
     const maps::Point cell = in_cells(map, {point.x, point.y});
     const int column = saturate_cast<int>(std::floor(cell.x)), row = saturate_cast<int>(std::floor(cell.y));
     if (!map.contains(column, row)) continue;
-    if (const int region = free.at(column, row); region >= 0) reached[static_cast<std::size_t>(region)] = 1;
+    if (const int region = free.at(column, row); region >= 0) reached[region] = 1;
   }
   for (int row = 0; row < map.height; ++row)
     for (int column = 0; column < map.width; ++column) {
       const int region = free.at(column, row);
-      if (region >= 0 && !reached[static_cast<std::size_t>(region)])
-        map.at(column, row) = maps::Occupancy::unknown;
+      if (region >= 0 && !reached[region]) map.at(column, row) = maps::Occupancy::unknown;
     }
   return map;
 }

@@ -9,6 +9,8 @@
 namespace slalom::vehicle {
 namespace {
 
+constexpr double tolerance = 0.05;  // share above the limits of acceleration, since files are rounded
+
 /// The points of a path, whose elements have x and y.
 template <class Path>
 std::vector<maps::Point> points_of(const Path& path) {
@@ -49,18 +51,16 @@ class Stretches {
   Stretches(double length, bool most) : length_(length), most_(most) {}
 
   void add(double begin, double end, const maps::Point& place, double value, bool broken) {
-    if (broken) {
-      broken_ += end - begin;
-      auto& stretches = found_.stretches;
-      if (stretches.empty() || begin - stretches.back().end > join)
-        stretches.push_back({begin, end, place, value});
-      CourseStretch& stretch = stretches.back();
-      stretch.end = end;
-      if (most_ ? value > stretch.value : value < stretch.value) {
-        stretch.worst = place;
-        stretch.value = value;
-      }
-    }
+    if (!broken) return;
+    broken_ += end - begin;
+    auto& stretches = found_.stretches;
+    if (stretches.empty() || begin - stretches.back().end > join)
+      stretches.push_back({begin, end, place, value});
+    CourseStretch& stretch = stretches.back();
+    stretch.end = end;
+    if (most_ ? value <= stretch.value : value >= stretch.value) return;
+    stretch.worst = place;
+    stretch.value = value;
   }
 
   CourseFinding found() {
@@ -115,7 +115,7 @@ void check_grip(const Course& course, const PathGeometry& path, const CourseChec
     const double asked = std::hypot(across, along);
     check.max_acceleration = std::max(check.max_acceleration, asked);
     stretches.add(begin, begin + path.step[i], {course.waypoints[i].x, course.waypoints[i].y}, asked,
-                  used > 1 + options.tolerance || v > limits.top_speed);
+                  used > 1 + tolerance || v > limits.top_speed);
     begin += path.step[i];
   }
   check.grip = stretches.found();

@@ -1,4 +1,4 @@
-#include "vehicle/course/course_csv.hpp"
+#include "vehicle/course/course_readers.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -108,10 +108,6 @@ Columns optimised_line_columns(const std::filesystem::path& file, const Line& he
   return columns;
 }
 
-Columns raceline_form_columns() {
-  return {';', raceline_columns, 1, 2, 5, "x_m", "y_m", "vx_mps"};
-}
-
 bool is_comment(const Line& line) {
   return line.text.front() == '#';
 }
@@ -137,8 +133,9 @@ std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm 
   const auto content = read_lines(file);
   std::size_t first = 0;
   while (first < content.size() && is_comment(content[first])) ++first;
-  const Columns columns = form == CsvForm::optimised_line ? optimised_line_columns(file, content[first++])
-                                                          : raceline_form_columns();
+  const Columns columns = form == CsvForm::optimised_line
+                              ? optimised_line_columns(file, content[first++])
+                              : Columns{';', raceline_columns, 1, 2, 5, "x_m", "y_m", "vx_mps"};
   std::vector<Waypoint> waypoints;
   lines.clear();
   for (; first < content.size(); ++first) {

@@ -3,20 +3,13 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/vehicle/course/course.hpp"
-#include "vehicle/course/course_yaml.hpp"
 #include "vehicle/known_folders.hpp"
 
 namespace slalom::vehicle {
-namespace {
-
 namespace fs = std::filesystem;
 
-constexpr const char* known_file = "known.yaml";
-
-}  // namespace
-
 std::vector<fs::path> course_roots(const fs::path& program_folder) {
-  return detail::known_folders(program_folder, "courses", known_file, "SLALOM_COURSES_DIR");
+  return detail::known_folders(program_folder, "courses", "known.yaml", "SLALOM_COURSES_DIR");
 }
 
 std::vector<std::string> course_names(const std::vector<fs::path>& roots) {
@@ -41,13 +34,6 @@ fs::path find_course(const std::string& name_or_folder, const std::vector<fs::pa
       name_or_folder, 0,
       "is neither a folder nor the name of a course (known: " + detail::listed(course_names(roots), "none") +
           "; searched: " + detail::listed(roots) + ")");
-}
-
-std::optional<KnownCourse> known_course(const std::string& name, const std::vector<fs::path>& roots) {
-  for (const auto& root : roots)
-    if (const fs::path file = root / known_file; fs::exists(file))
-      return detail::read_known_course(file, name);
-  return std::nullopt;
 }
 
 }  // namespace slalom::vehicle

@@ -1,11 +1,12 @@
-#include "vehicle/course/course_yaml.hpp"
+#include "vehicle/course/course_readers.hpp"
 
 #include "slalom/core/error.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/maps/yaml_text.hpp"
 #include "vehicle/yaml_file.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle {
+namespace detail {
 namespace {
 
 /// One value of a file, with its position for messages.
@@ -100,16 +101,6 @@ CourseFile read_course_file(const std::filesystem::path& file) {
   return result;
 }
 
-std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, const std::string& name) {
-  const YAML::Node root = load_yaml(file);
-  if (!root.IsMap()) throw IoError(file.string(), 0, "must be a map of course names to {start, timeout}");
-  const YAML::Node node = root[name];
-  if (!node) return std::nullopt;
-  const Value entry(file, name, node);
-  if (!node.IsMap()) entry.reject("must be {start, timeout}");
-  return KnownCourse{entry.member("start").pose(), entry.member("timeout").positive()};
-}
-
 bool may_be_map(const std::filesystem::path& file) {
   try {
     const YAML::Node root = load_yaml(file);
@@ -119,4 +110,22 @@ bool may_be_map(const std::filesystem::path& file) {
   }
 }
 
-}  // namespace slalom::vehicle::detail
+}  // namespace detail
+
+std::optional<KnownCourse> known_course(const std::string& name,
+                                        const std::vector<std::filesystem::path>& roots) {
+  for (const auto& folder : roots) {
+    const std::filesystem::path file = folder / "known.yaml";
+    if (!std::filesystem::exists(file)) continue;
+    const YAML::Node root = detail::load_yaml(file);
+    if (!root.IsMap()) throw IoError(file.string(), 0, "must be a map of course names to {start, timeout}");
+    const YAML::Node node = root[name];
+    if (!node) return std::nullopt;
+    const detail::Value entry(file, name, node);
+    if (!node.IsMap()) entry.reject("must be {start, timeout}");
+    return KnownCourse{entry.member("start").pose(), entry.member("timeout").positive()};
+  }
+  return std::nullopt;
+}
+
+}  // namespace slalom::vehicle

@@ -53,8 +53,7 @@ Resampling divided_by_step(const Curve& curve, bool closed, double step) {
 }
 
 Curve resampled(const Curve& curve, int count) {
-  // Equal chords between the old points are only nearly equal between the new ones; the second pass corrects
-  // that.
+  // Equal chords between the old points are only nearly equal between the new ones, hence the second pass.
   const auto pieces = static_cast<std::size_t>(count);
   return divided(divided(curve, true, pieces).points, true, pieces).points;
 }

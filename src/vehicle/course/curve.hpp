@@ -53,8 +53,7 @@ Resampling divided_by_step(const Curve& curve, bool closed, double step);
 /// `count` points at equal steps along a closed curve.
 Curve resampled(const Curve& curve, int count);
 
-/// The signed curvature (1/m) at every point of a closed curve: of the circle through it and the points
-/// `reach` rows before and after.
+/// The signed curvatures (1/m) of a closed curve: of circles through points `reach` rows before and after.
 std::vector<double> curvature(const Curve& curve, int reach);
 
 /// Unit normals to the left, from the points before and after.
@@ -92,8 +91,7 @@ inline Curve smoothed(const Curve& curve, double width, bool closed = true) {
   return smoothed(curve, closed, length(curve, closed) / static_cast<double>(curve.size()), width);
 }
 
-/// The least distance (m) between points that are more than `apart` m of a closed curve away from each other,
-/// either way round.
+/// The least distance (m) of points that are over `apart` m of a closed curve from each other, either way.
 double min_gap(const Curve& curve, double apart);
 
 }  // namespace slalom::vehicle::detail

@@ -11,11 +11,7 @@
 namespace slalom::vehicle {
 namespace {
 
-using detail::Curve;
-using detail::dot;
-using detail::operator+;
-using detail::operator-;
-using detail::operator*;
+using namespace detail;  // curves, and the operators of points
 
 constexpr double relaxation = 1.6;  // 1 is Gauss-Seidel, below 2 converges
 constexpr double tolerance = 1e-6;  // m per sweep
@@ -89,7 +85,7 @@ std::vector<double> minimum_curvature_offsets(const std::vector<maps::Point>& ce
     throw std::invalid_argument("centre_line: " + std::to_string(centre_line.size()) +
                                 " points; at least 8 are needed");
   if (!(bound >= 0)) throw std::invalid_argument("bound: " + to_text(bound) + " must be at least 0 m");
-  return solve(centre_line, detail::normals(centre_line), bound);
+  return solve(centre_line, normals(centre_line), bound);
 }
 
 }  // namespace slalom::vehicle

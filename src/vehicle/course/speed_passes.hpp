@@ -10,8 +10,7 @@ namespace slalom::vehicle::detail {
 
 /// One pass forward and one backward along a line of points with these speeds. `forwards` and `backwards`
 /// take the points at which a piece of it begins and ends as they drive it, and its length (m); they may
-/// lower the speed of the second. `step[i]` is the way (m) from point i to the next, from the last to the
-/// first.
+/// lower the speed of the second. `step` has the ways (m) from each point to the next, the last to the first.
 template <class Forwards, class Backwards>
 void for_each_piece(const std::vector<double>& speed, std::span<const double> step, bool closed,
                     const Forwards& forwards, const Backwards& backwards) {

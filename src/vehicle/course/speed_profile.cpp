@@ -9,25 +9,10 @@
 #include "vehicle/require.hpp"
 
 namespace slalom::vehicle {
-namespace {
-
-double yaw_of(const maps::Point& from, const maps::Point& to) {
-  return std::atan2(to.y - from.y, to.x - from.x);
-}
-
-}  // namespace
 
 SpeedLimits grip_limits(double friction, double top_speed, double acceleration, double braking) {
   const double grip = friction * gravity;
   return {top_speed, grip, std::min(grip, acceleration), std::min(grip, braking)};
-}
-
-std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
-                                  const SpeedLimits& limits) {
-  detail::require(step > 0, "step", step, "above 0");
-  const std::size_t n = curvature.size();
-  return feasible_speeds(std::vector<double>(n, limits.top_speed), curvature, std::vector<double>(n, step),
-                         true, limits);
 }
 
 std::vector<double> feasible_speeds(std::span<const double> given, std::span<const double> curvature,
@@ -56,7 +41,8 @@ std::vector<double> feasible_speeds(std::span<const double> given, std::span<con
   return speed;
 }
 
-PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bool> closed, double arm) {
+PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bool> closed) {
+  constexpr double arm = 0.4;  // m, of the chords before and after a point
   PathGeometry path;
   const std::size_t n = points.size();
   path.step.assign(n, 0);
@@ -68,6 +54,9 @@ PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bo
     if (i + 1 < n) longest = std::max(longest, path.step[i]);
   }
   path.closed = closed.value_or(path.step[n - 1] <= 3 * longest);
+  const auto yaw_of = [&](std::size_t from, std::size_t to) {
+    return std::atan2(points[to].y - points[from].y, points[to].x - points[from].x);
+  };
   for (std::size_t i = 0; i < n; ++i) {
     std::size_t before = i, after = i;
     double way_before = 0, way_after = 0;
@@ -80,8 +69,7 @@ PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bo
       after = (after + 1) % n;
     }
     if (before == i || after == i) continue;  // an end of an open path
-    const double turned =
-        maps::wrap_angle(yaw_of(points[i], points[after]) - yaw_of(points[before], points[i]));
+    const double turned = maps::wrap_angle(yaw_of(i, after) - yaw_of(before, i));
     path.curvature[i] =
         2 * turned / (distance(points[before], points[i]) + distance(points[i], points[after]));
   }

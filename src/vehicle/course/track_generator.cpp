@@ -2,25 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "slalom/vehicle/course/raceline.hpp"
-#include "vehicle/course/curve.hpp"
 #include "vehicle/course/track_parts.hpp"
 #include "vehicle/require.hpp"
 
 namespace slalom::vehicle {
 namespace {
 
-using detail::Curve;
-using detail::dot;
-using detail::operator+;
-using detail::operator-;
-using detail::operator*;
+using namespace detail;  // curves, and the operators of points
 
 constexpr double program_step = 0.25;   // m between the points of the raceline's quadratic program
 constexpr double raceline_step = 0.11;  // m
 constexpr int curvature_reach = 3;      // rows, reduces the noise of second differences
+constexpr double border = 0.3;          // m of unknown cells around the walls
 
 Curve make_raceline(const Curve& centre_line, const TrackGeneratorOptions& options) {
   // A multiple of 16 halves evenly down to the coarsest level.
@@ -36,7 +33,8 @@ std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, 
   const std::size_t n = line.size();
   const double step = detail::length(line) / static_cast<double>(n);
   auto curvature = detail::curvature(line, curvature_reach);
-  auto speed = speed_profile(curvature, step, limits);
+  auto speed = feasible_speeds(std::vector<double>(n, limits.top_speed), curvature,
+                               std::vector<double>(n, step), true, limits);
   const auto first = static_cast<std::ptrdiff_t>(detail::start_row(speed));
   std::rotate(line.begin(), line.begin() + first, line.end());
   std::rotate(curvature.begin(), curvature.begin() + first, curvature.end());
@@ -45,18 +43,21 @@ std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, 
   std::vector<RacelinePoint> raceline(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t next = (i + 1) % n;
-    const maps::Point ahead = line[next] - line[(i + n - 1) % n];
+    const maps::Point at = line[i], ahead = line[next] - line[(i + n - 1) % n];
+    const double arc = static_cast<double>(i) * step, yaw = std::atan2(ahead.y, ahead.x);
     const double acceleration = (speed[next] * speed[next] - speed[i] * speed[i]) / (2 * step);
-    raceline[i] = {static_cast<double>(i) * step,
-                   line[i].x,
-                   line[i].y,
-                   std::atan2(ahead.y, ahead.x),
-                   curvature[i],
-                   speed[i],
-                   acceleration};
+    raceline[i] = {arc, at.x, at.y, yaw, curvature[i], speed[i], acceleration};
     lap_time += 2 * step / (speed[i] + speed[next]);
   }
   return raceline;
+}
+
+/// The row of a curve that is nearest to a point.
+std::size_t nearest_row(const Curve& curve, maps::Point point) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i)
+    if (dot(curve[i] - point, curve[i] - point) < dot(curve[best] - point, curve[best] - point)) best = i;
+  return best;
 }
 
 /// The places of parked cars: along the raceline, moved to one side so that there is room to pass on the
@@ -70,22 +71,61 @@ std::vector<maps::Point> make_obstacle_path(const Curve& centre_line, const Curv
   std::vector<maps::Point> path;
   double side = 1;
   for (std::size_t i = 0; i < centre_line.size(); ++i) {
-    const auto nearest = *std::min_element(line.begin(), line.end(), [&](maps::Point a, maps::Point b) {
-      return dot(a - centre_line[i], a - centre_line[i]) < dot(b - centre_line[i], b - centre_line[i]);
-    });
-    const double offset = dot(nearest - centre_line[i], normals[i]);
+    const double offset = dot(line[nearest_row(line, centre_line[i])] - centre_line[i], normals[i]);
     if (std::abs(offset) > switch_over) side = offset > 0 ? 1 : -1;
     path.push_back(centre_line[i] + (side * std::max(side * offset, least)) * normals[i]);
   }
   return path;
 }
 
-/// The row of a curve that is nearest to a point.
-std::size_t nearest_row(const Curve& curve, maps::Point point) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < curve.size(); ++i)
-    if (dot(curve[i] - point, curve[i] - point) < dot(curve[best] - point, curve[best] - point)) best = i;
-  return best;
+double squared_distance(maps::Point p, maps::Point a, maps::Point b) {
+  const maps::Point along = b - a;
+  const double t = std::clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0);
+  const maps::Point d = p - (a + t * along);
+  return dot(d, d);
+}
+
+/// The map of a track: cells are free up to half the width from the centre line, occupied in the wall beyond,
+/// unknown elsewhere. Cell borders lie on multiples of the resolution.
+maps::OccupancyGrid draw_map(const Curve& centre_line, const TrackGeneratorOptions& options) {
+  const double half = 0.5 * options.width, reach = half + options.wall, resolution = options.resolution;
+  const double inf = std::numeric_limits<double>::infinity();
+  maps::Point low{inf, inf}, high{-inf, -inf};
+  for (const maps::Point& p : centre_line) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  const auto cells_below = [&](double v) { return std::floor((v - reach - border) / resolution); };
+  const double left = cells_below(low.x), bottom = cells_below(low.y);
+  maps::OccupancyGrid grid;
+  grid.resolution = resolution;
+  grid.origin = {left * resolution, bottom * resolution, 0};
+  grid.width = saturate_cast<int>(std::ceil((high.x + reach + border) / resolution) - left);
+  grid.height = saturate_cast<int>(std::ceil((high.y + reach + border) / resolution) - bottom);
+
+  std::vector<double> squared(static_cast<std::size_t>(grid.width) * grid.height, inf);
+  for (std::size_t i = 0; i < centre_line.size(); ++i) {
+    const maps::Point a = centre_line[i], b = centre_line[(i + 1) % centre_line.size()];
+    const auto index = [&](double v, double first) {
+      return saturate_cast<int>(std::floor(v / resolution) - first);
+    };
+    const int x0 = index(std::min(a.x, b.x) - reach, left), x1 = index(std::max(a.x, b.x) + reach, left);
+    const int y0 = index(std::min(a.y, b.y) - reach, bottom), y1 = index(std::max(a.y, b.y) + reach, bottom);
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) {
+        const maps::Point centre{(left + x + 0.5) * resolution, (bottom + y + 0.5) * resolution};
+        double& least = squared[static_cast<std::size_t>(y) * grid.width + x];
+        least = std::min(least, squared_distance(centre, a, b));
+      }
+  }
+  grid.cells.resize(squared.size());
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    const double distance = std::sqrt(squared[i]);
+    grid.cells[i] = distance <= half    ? maps::Occupancy::free
+                    : distance <= reach ? maps::Occupancy::occupied
+                                        : maps::Occupancy::unknown;
+  }
+  return grid;
 }
 
 }  // namespace
@@ -168,7 +208,7 @@ GeneratedTrack generate_track(const TrackGeneratorOptions& options) {
   const auto first = static_cast<std::ptrdiff_t>(nearest_row(centre_line, {0, 0}));
   std::rotate(centre_line.begin(), centre_line.begin() + first, centre_line.end());
   track.obstacle_path = make_obstacle_path(centre_line, line, options);
-  track.map = detail::draw_map(centre_line, options);
+  track.map = draw_map(centre_line, options);
   track.centre_line = std::move(centre_line);
   return track;
 }

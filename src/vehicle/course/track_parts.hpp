@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "slalom/vehicle/course/track_generator.hpp"
 #include "vehicle/course/curve.hpp"
 
@@ -23,20 +20,14 @@ struct Style {
 };
 const Style& style_of(TrackCharacter character) noexcept;
 
-/// The tightest radius (m) that a centre line may have: the inner wall must fit, and a 1/10 car must be able
-/// to follow it.
+/// The tightest radius (m) of a centre line: the inner wall must fit, and a 1/10 car must be able to follow.
 double min_radius(const TrackGeneratorOptions& options);
 
 /// A closed centre line as generate_track specifies it, in equal steps of about 0.1 m, with its longest
 /// extent about along x. Throws std::invalid_argument if none is found.
 Curve make_centre_line(const TrackGeneratorOptions& options);
 
-/// The map of a track: cells are free up to half the width from the centre line, occupied in the wall beyond,
-/// unknown elsewhere. Cell borders lie on multiples of the resolution.
-maps::OccupancyGrid draw_map(const Curve& centre_line, const TrackGeneratorOptions& options);
-
-/// The row in the middle of the longest part of a closed line at (nearly) the highest speed: a start with a
-/// free view.
+/// The row in the middle of the longest part of a closed line at (nearly) the highest speed, a good start.
 std::size_t start_row(const std::vector<double>& speed);
 
 }  // namespace slalom::vehicle::detail

@@ -8,10 +8,9 @@ namespace slalom::vehicle::detail {
 
 /// A grid of hypotheses about car and ground.
 struct HypothesisGrid {
-  static constexpr int delays = 9;  ///< number of steering delays
-  static constexpr int gains = 5;   ///< number of steering gains
-  static constexpr int frictions =
-      16;  ///< number of frictions, a multiple of the lanes of any instruction set
+  static constexpr int delays = 9;      ///< number of steering delays
+  static constexpr int gains = 5;       ///< number of steering gains
+  static constexpr int frictions = 16;  ///< a multiple of the lanes of any instruction set
   static constexpr int count = delays * gains * frictions;
   std::array<float, gains> gain;
   std::array<float, frictions> friction;

@@ -70,9 +70,8 @@ ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, cons
       evidence_(log_prior_.size()),
       lateral_error_(log_prior_.size()),
       yaw_error_(log_prior_.size()) {
-  for (int g = 0; g < gains; ++g) grid_.gain[static_cast<std::size_t>(g)] = static_cast<float>(gain_at(g));
-  for (int f = 0; f < frictions; ++f)
-    grid_.friction[static_cast<std::size_t>(f)] = static_cast<float>(friction_at(f));
+  for (int g = 0; g < gains; ++g) grid_.gain[g] = static_cast<float>(gain_at(g));
+  for (int f = 0; f < frictions; ++f) grid_.friction[f] = static_cast<float>(friction_at(f));
   std::size_t at = 0;
   for (int d = 0; d < delays; ++d)
     for (int g = 0; g < gains; ++g)
@@ -100,21 +99,21 @@ void ParameterEstimator::send(double steer) noexcept {
 }
 
 const ParameterEstimator::Moment& ParameterEstimator::ago(int periods) const noexcept {
-  return history_[static_cast<std::size_t>((newest_ + kept - periods) % kept)];
+  return history_[(newest_ + kept - periods) % kept];
 }
 
 /// Computes the wheels' angle one period later, for each delay. The newest command was sent at the beginning
 /// of the period; two commands act in it, one after the other.
 void ParameterEstimator::turn_wheels(Moment& next) const noexcept {
-  const auto sent = [&](int i) { return sent_[static_cast<std::size_t>(std::min(i, kept - 1))]; };
+  const auto sent = [&](int i) { return sent_[std::min(i, kept - 1)]; };
   for (int d = 0; d < delays; ++d) {
     const double periods = delay_at(d) / period_;
     const int whole = saturate_cast<int>(periods + 1e-6);
     const double older_share = std::max(0.0, periods - whole);
-    double angle = ago(0).angle[static_cast<std::size_t>(d)];
+    double angle = ago(0).angle[d];
     angle = dynamics_.lagged(angle, sent(whole + 1), older_share * period_);
     angle = dynamics_.lagged(angle, sent(whole), (1 - older_share) * period_);
-    next.angle[static_cast<std::size_t>(d)] = angle;
+    next.angle[d] = angle;
   }
 }
 
@@ -135,7 +134,7 @@ const ParameterEstimate& ParameterEstimator::update(const MeasuredMotion& now) n
   next.motion = now;
   turn_wheels(next);
   newest_ = (newest_ + 1) % kept;
-  history_[static_cast<std::size_t>(newest_)] = next;
+  history_[newest_] = next;
   moments_ = std::min(moments_ + 1, kept);
   if (moments_ > window_ + 2 && continues()) {
     weigh();
@@ -211,13 +210,12 @@ void ParameterEstimator::learn_offset(double straightness) noexcept {
   offset = std::clamp(offset + share * period_ / offset_time * missing, -largest_offset, largest_offset);
 }
 
-/// Returns the quantile of the friction's logarithm. The density is constant in the interval around a grid
-/// point.
+/// Returns the quantile of the friction's logarithm, whose density is constant around each grid point.
 double ParameterEstimator::log_quantile(const std::array<double, frictions>& shares,
                                         double quantile) const noexcept {
   double below = 0;
   for (int f = 0; f < frictions; ++f) {
-    const double share = shares[static_cast<std::size_t>(f)];
+    const double share = shares[f];
     if (below + share >= quantile)
       return std::log(friction_at(f)) + ratio() * ((quantile - below) / share - 0.5);
     below += share;

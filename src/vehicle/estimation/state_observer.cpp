@@ -10,7 +10,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-enum Index { x, y, yaw, speed, yaw_rate, lateral, bias };
+enum Index { x, y, yaw, speed, yaw_rate, lateral, bias, wheel_error };
 
 // Standard deviations of measurements: a speed, and the means over a control period of gyro and
 // accelerometers (with their bias).
@@ -23,7 +23,10 @@ constexpr double reset_distance = 0.5;  // m or rad; a pose further from the pre
 constexpr double slow = 0.5;            // m/s, below it tyres do not slip
 constexpr double max_slip = 1.2;        // rad
 constexpr double max_variance = 1e6;    // m^2 and rad^2, of a pose
-constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
+constexpr double bias_spread = 0.02, bias_drift = 1e-4;    // rad/s, at the start and in a period
+constexpr double wheel_spread = 0.03, wheel_drift = 1e-4;  // shares, at the start and in a period
+constexpr double wheel_slip = 0.01;  // s^2/m, share by which wheels slip for each m/s^2 along the car
+constexpr double max_wheel_error = 0.2;
 constexpr double max_bias = 0.5;  // rad/s, largest bias of a working gyro; more comes from a wrong reading
 
 /// The product of two matrices. Its sums have a fixed order on every machine.
@@ -108,20 +111,23 @@ StateObserver::Vector StateObserver::moved(const DynamicVehicleModel& model, con
                    slip_from(from[lateral], from[speed])};
   move(model, car, -period_, 0);
   steer = car.steer;
-  return Vector{car.pose.x, car.pose.y, car.pose.yaw, car.speed, car.yaw_rate, car.speed * std::sin(car.slip),
-                from[bias]};
+  return Vector{car.pose.x, car.pose.y,       car.pose.yaw,
+                car.speed,  car.yaw_rate,     car.speed * std::sin(car.slip),
+                from[bias], from[wheel_error]};
 }
 
 /// Restarts the filter, with the state of a car whose tyres do not slip.
 void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput& input) noexcept {
   const VehicleTraits traits = model.traits();
   const double slope = std::tan(now_.steer) / traits.wheelbase;
-  const double gyro = known_ ? state_[bias] : 0;
-  now_ = {input.pose, input.speed, now_.steer, input.speed * slope, std::atan(traits.rear_length * slope)};
+  const double gyro = known_ ? state_[bias] : 0, wheels = known_ ? state_[wheel_error] : 0;
+  const double driven = input.speed / (1 + wheels);
+  now_ = {input.pose, driven, now_.steer, driven * slope, std::atan(traits.rear_length * slope)};
   state_ = Vector{now_.pose.x, now_.pose.y,   now_.pose.yaw,
                   now_.speed,  now_.yaw_rate, now_.speed * std::sin(now_.slip),
-                  gyro};
+                  gyro,        wheels};
   const double bias_variance = known_ ? covariance_(bias, bias) : square(bias_spread);
+  const double wheel_variance = known_ ? covariance_(wheel_error, wheel_error) : square(wheel_spread);
   covariance_.setZero();
   const PoseCovariance pose = with_noise(input.covariance, position_noise_, heading_noise_);
   for (std::size_t i = 0; i < pose.size(); ++i)
@@ -131,6 +137,7 @@ void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput&
   covariance_(yaw_rate, yaw_rate) = square(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
   covariance_(lateral, lateral) = square(0.05 * std::abs(input.speed) + 0.01);
   covariance_(bias, bias) = bias_variance;
+  covariance_(wheel_error, wheel_error) = wheel_variance;
 }
 
 /// Predicts state and covariance one period ahead: F P F' + Q.
@@ -145,7 +152,8 @@ void StateObserver::predict(const DynamicVehicleModel& model, const std::optiona
                square(acceleration_noise * dt),
                square(yaw_acceleration_noise * dt),
                square(sideways_noise * dt),
-               square(bias_drift)};
+               square(bias_drift),
+               square(wheel_drift)};
   if (imu) use_accelerometers(*imu, before, slope, noise);
   covariance_ = product<Matrix>(product<Matrix>(slope, covariance_), slope.transpose());
   covariance_.diagonal() += noise;
@@ -220,6 +228,16 @@ void StateObserver::correct_pose(const ObserverInput& input) noexcept {
   }
 }
 
+/// Takes the measured speed (m/s) of a car that accelerates (m/s^2): wheels slip along the way, too.
+void StateObserver::correct_speed(double measured, double acceleration) noexcept {
+  const double share = 1 + state_[wheel_error];
+  Vector row = share * Vector::Unit(speed);
+  row[wheel_error] = state_[speed];
+  correct(row, measured - share * state_[speed],
+          square(speed_noise) + square(wheel_slip * acceleration * state_[speed]));
+  state_[wheel_error] = std::clamp(state_[wheel_error], -max_wheel_error, max_wheel_error);
+}
+
 void StateObserver::update(const DynamicVehicleModel& model, const ObserverInput& input,
                            double friction) noexcept {
   friction_ = friction;
@@ -231,13 +249,15 @@ void StateObserver::update(const DynamicVehicleModel& model, const ObserverInput
     known_ = true;
     return;
   }
+  const double before = state_[speed];
   predict(model, input.imu);
+  const double acceleration = (state_[speed] - before) / period_;
   const double turned = maps::wrap_angle(input.pose.yaw - state_[yaw]);
   if (!(std::hypot(input.pose.x - state_[x], input.pose.y - state_[y]) < reset_distance &&
         std::abs(turned) < reset_distance))
     return begin(model, input);
   correct_pose(input);
-  correct(Vector::Unit(speed), input.speed - state_[speed], square(speed_noise));
+  correct_speed(input.speed, acceleration);
   if (input.imu)
     correct(Vector::Unit(yaw_rate) + Vector::Unit(bias),
             input.imu->yaw_rate - state_[yaw_rate] - state_[bias], square(gyro_noise));

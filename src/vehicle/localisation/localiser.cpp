@@ -49,7 +49,6 @@ constexpr double near_place = 0.5, near_yaw = 0.3;
 constexpr double trust_unit = 0.3, max_trust = 5, doubt_keeps = 0.93, min_trust = 0.3;
 constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
 
-/// Whether a pose is a number and as large as that of a car may be.
 /// The pose `to` in the frame of `from`.
 maps::Pose relative(const maps::Pose& from, const maps::Pose& to) {
   const maps::Point p = maps::inverse_transform(from, {to.x, to.y});
@@ -61,17 +60,12 @@ maps::Pose compose(const maps::Pose& frame, const maps::Pose& pose) {
   return {p.x, p.y, maps::wrap_angle(frame.yaw + pose.yaw)};
 }
 
-const LocaliserOptions& checked(const LocaliserOptions& options) {
-  options.validate();
-  return options;
-}
-
 }  // namespace
 
 struct Localiser::Implementation {
   Implementation(const maps::OccupancyGrid& map, const LocaliserOptions& o)
-      : options(checked(o)),
-        origin(detail::checked(map).origin),
+      : options(o),
+        origin(map.origin),
         sensor(std::make_shared<SensorTables>(map, options)),
         free_cells(std::make_shared<FreeCells>(map)),
         particles(options, free_cells),
@@ -132,8 +126,7 @@ struct Localiser::Implementation {
   bool settled = false;                ///< the place was given, or a search ended with it
   bool lost = false;                   ///< no place is known, and no scan was used since
   double search_until = -1;            ///< s, stamp
-  double place_log_fit =
-      0;  ///< log fit of the particles' place, averaged as those of the search's hypotheses are
+  double place_log_fit = 0;            ///< log fit of the particles' place, averaged as of hypotheses
 };
 
 /// Moves the particles by what the odometry says since the last update.
@@ -200,8 +193,7 @@ void Localiser::Implementation::use_scan() noexcept {
   estimate();
   slow = slow == 0 ? fit : slow + slow_rate * (fit - slow);
   fast = fast == 0 ? fit : fast + fast_rate * (fit - fast);
-  output.resampled = output.effective_samples < resample_below * particles.count();
-  if (output.resampled) particles.resample(next_key());
+  if (output.effective_samples < resample_below * particles.count()) particles.resample(next_key());
   look_elsewhere();
 }
 
@@ -242,24 +234,24 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   place_log_fit = best->log_fit;
   trust = 0;
   settled = false;
-  output.relocated = true;
   estimate();
 }
 
 void LocaliserOptions::validate() const {
   validate_options(*this, "localiser");
-  if (max_particles < min_particles) {
+  if (max_particles < min_particles)
     throw std::invalid_argument("localiser.max_particles: " + std::to_string(max_particles) +
                                 " must be at least min_particles, " + std::to_string(min_particles));
-  }
-  if (min_beams > beams) {
+  if (min_beams > beams)
     throw std::invalid_argument("localiser.min_beams: " + std::to_string(min_beams) +
                                 " must be at most beams, " + std::to_string(beams));
-  }
 }
 
-Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options)
-    : implementation_(std::make_unique<Implementation>(map, options)) {}
+Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
+  options.validate();
+  detail::check_map(map);
+  implementation_ = std::make_unique<Implementation>(map, options);
+}
 Localiser::~Localiser() = default;
 Localiser::Localiser(const Localiser& other)
     : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
@@ -292,8 +284,6 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
     out.update_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return out;
   };
-  out.relocated = false;
-  out.resampled = false;
   out.beams = 0;
   if (!maps::is_plausible(input.odometry) || !(std::abs(input.stamp) <= LocaliserInput::latest))
     return finish(LocaliserStatus::bad_odometry);

@@ -10,8 +10,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// Sums of weight over the occupied bins of (x, y, yaw), in a hash table of fixed size that is cleared in
-/// constant time.
+/// Sums of weight over occupied bins of (x, y, yaw): a hash table of fixed size, cleared in constant time.
 class PoseBins {
  public:
   /// Room for `most` occupied bins.

@@ -25,6 +25,11 @@ inline void put_pose(SequenceBatch& to, int i, const maps::Pose& pose) noexcept 
   to.at(0, 2, i) = static_cast<float>(pose.yaw);
 }
 
+/// The samples of such a batch as particles.
+inline ParticlePoses poses_of(const SequenceBatch& batch, int count) noexcept {
+  return {batch.row(0, 0), batch.row(0, 1), batch.row(0, 2), count};
+}
+
 /// The free cells of a map, to draw poses from.
 class FreeCells {
  public:
@@ -67,8 +72,8 @@ class Particles {
         now_(1, 3, options.max_particles),
         next_(1, 3, options.max_particles),
         noise_(1, 3, options.max_particles),
-        log_fit_(static_cast<std::size_t>(padded(options.max_particles))),
-        weights_(static_cast<std::size_t>(options.max_particles)),
+        log_fit_(padded(options.max_particles)),
+        weights_(options.max_particles),
         cumulative_(weights_.size()),
         guide_(weights_.size()),
         bins_(options.max_particles, bin_size, bin_angle),
@@ -76,11 +81,10 @@ class Particles {
 
   void spread_about(const maps::Pose& pose, double deviation, double yaw_deviation, RandomKey key) noexcept {
     fill_normal(noise_, 0, noise_.stride(), key);
-    for (int i = 0; i < options_.max_particles; ++i) {
+    for (int i = 0; i < options_.max_particles; ++i)
       put_pose(now_, i,
                {pose.x + deviation * noise_.at(0, 0, i), pose.y + deviation * noise_.at(0, 1, i),
                 maps::wrap_angle(pose.yaw + yaw_deviation * noise_.at(0, 2, i))});
-    }
     make_uniform(options_.max_particles);
   }
 
@@ -108,17 +112,16 @@ class Particles {
     }
   }
 
-  /// Multiplies the weights by the particles' fits to the power of `exponent`. Returns the effective sample
-  /// size.
+  /// Multiplies the weights by the fits to the power of `exponent`. Returns the effective sample size.
   double weigh(const SensorTables& sensor, const ScanBeams& beams, double exponent) noexcept {
     float* log_fit = log_fit_.data();
-    sensor.weigh({now_.row(0, 0), now_.row(0, 1), now_.row(0, 2), padded(count_)}, beams, log_fit);
+    sensor.weigh(poses_of(now_, padded(count_)), beams, log_fit);
     const float best = *std::max_element(log_fit, log_fit + count_);
     const int used = sensor.model() == SensorModel::beam ? beams.count : beams.hits;
     const float power = static_cast<float>(exponent * used);
     double sum = 0;
     for (int i = 0; i < count_; ++i) {
-      double& weight = weights_[static_cast<std::size_t>(i)];
+      double& weight = weights_[i];
       weight *= static_cast<double>(std::exp(power * (log_fit[i] - best)));
       sum += weight;
     }
@@ -129,7 +132,7 @@ class Particles {
     }
     double squares = 0;
     for (int i = 0; i < count_; ++i) {
-      double& weight = weights_[static_cast<std::size_t>(i)];
+      double& weight = weights_[i];
       weight /= sum;
       squares += weight * weight;
     }
@@ -168,10 +171,9 @@ class Particles {
     for (int i = 0; i < count_; ++i) places_.add(x(i), y(i), yaw(i), weight(i));
     maps::Pose middle;
     for (int i = 0; i < count_; ++i) {
-      if (places_.in_heaviest(x(i), y(i), yaw(i))) {
-        middle = pose(i);
-        break;
-      }
+      if (!places_.in_heaviest(x(i), y(i), yaw(i))) continue;
+      middle = pose(i);
+      break;
     }
     Estimate found;
     // The window about any particle of the bin is moved onto the mean of what lies in it, twice.
@@ -201,19 +203,17 @@ class Particles {
 
   int count() const noexcept { return count_; }
   maps::Pose pose(int i) const noexcept { return {x(i), y(i), yaw(i)}; }
-  double weight(int i) const noexcept { return weights_[static_cast<std::size_t>(i)]; }
+  double weight(int i) const noexcept { return weights_[i]; }
 
  private:
-  static constexpr double kld_error = 0.05;  ///< epsilon, bound on the Kullback-Leibler divergence
-  static constexpr double kld_quantile =
-      2.326;  ///< quantile of the standard normal: the bound holds in 99 % of the updates
+  static constexpr double kld_error = 0.05;      ///< epsilon, bound on the Kullback-Leibler divergence
+  static constexpr double kld_quantile = 2.326;  ///< normal quantile: the bound holds in 99 % of updates
   static constexpr double bin_size = 0.25, bin_angle = 0.1745;  ///< m, rad, bins for the number of particles
   /// Bins among which the heaviest is looked for, and how far about it particles belong to it.
   static constexpr double place_size = 0.5, place_angle = 0.5;     ///< m, rad
   static constexpr double near_distance = 0.75, near_angle = 0.6;  ///< m, rad
 
-  /// Returns the digits of i in base 2 after the point: every beginning of the sequence is spread evenly over
-  /// [0, 1) (van der Corput 1935).
+  /// The binary digits of i after the point, an evenly spread sequence in [0, 1) (van der Corput 1935).
   static double radical_inverse(std::uint32_t i) {
     i = (i << 16) | (i >> 16);
     i = ((i & 0x00ff00ffu) << 8) | ((i >> 8) & 0x00ff00ffu);
@@ -236,16 +236,16 @@ class Particles {
     double sum = 0;
     int part = 0;
     for (int i = 0; i < count_; ++i) {
-      sum += weights_[static_cast<std::size_t>(i)];
-      cumulative_[static_cast<std::size_t>(i)] = sum;
-      for (; part < count_ && part < sum * count_; ++part) guide_[static_cast<std::size_t>(part)] = i;
+      sum += weights_[i];
+      cumulative_[i] = sum;
+      for (; part < count_ && part < sum * count_; ++part) guide_[part] = i;
     }
-    for (; part < count_; ++part) guide_[static_cast<std::size_t>(part)] = count_ - 1;
+    for (; part < count_; ++part) guide_[part] = count_ - 1;
   }
 
   int draw(double uniform) const noexcept {
     int i = guide_[saturate_cast<std::size_t>(uniform * count_)];
-    while (i + 1 < count_ && cumulative_[static_cast<std::size_t>(i)] <= uniform) ++i;
+    while (i + 1 < count_ && cumulative_[i] <= uniform) ++i;
     return i;
   }
 

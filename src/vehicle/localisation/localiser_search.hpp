@@ -21,9 +21,9 @@ class Search {
       : free_cells_(std::move(free_cells)),
         poses_(1, 3, max_hypotheses * (copies + search_factor)),
         noise_(1, 3, max_hypotheses * copies),
-        log_fit_(static_cast<std::size_t>(poses_.stride())),
-        hypotheses_(static_cast<std::size_t>(max_hypotheses)),
-        newcomers_(static_cast<std::size_t>(newcomers)) {}
+        log_fit_(poses_.stride()),
+        hypotheses_(max_hypotheses),
+        newcomers_(newcomers) {}
 
   struct Hypothesis {
     maps::Pose pose;     ///< grid's frame
@@ -37,14 +37,13 @@ class Search {
   void update(const maps::Pose& step, const SensorTables& sensor, const ScanBeams& beams, double memory,
               RandomKey key) noexcept {
     for (int h = 0; h < count_; ++h) {
-      maps::Pose& pose = hypotheses_[static_cast<std::size_t>(h)].pose;
+      maps::Pose& pose = hypotheses_[h].pose;
       const maps::Point moved = maps::transform(pose, {step.x, step.y});
       pose = {moved.x, moved.y, maps::wrap_angle(pose.yaw + step.yaw)};
     }
     place_copies(key);
     place_random(key);
-    sensor.weigh_by_field({poses_.row(0, 0), poses_.row(0, 1), poses_.row(0, 2), poses_.stride()}, beams,
-                          log_fit_.data());
+    sensor.weigh_by_field(poses_of(poses_, poses_.stride()), beams, log_fit_.data());
     const int first_random = count_ * copies;
     take_best_copies(memory);
     drop_twins();
@@ -55,7 +54,7 @@ class Search {
   const Hypothesis* best() const noexcept {
     const Hypothesis* found = nullptr;
     for (int h = 0; h < count_; ++h) {
-      const Hypothesis& other = hypotheses_[static_cast<std::size_t>(h)];
+      const Hypothesis& other = hypotheses_[h];
       if (other.age > young && (!found || other.log_fit > found->log_fit)) found = &other;
     }
     return found;
@@ -64,8 +63,7 @@ class Search {
   /// The mean over beams of the log of the fit at one pose.
   double log_fit_at(const maps::Pose& pose, const SensorTables& sensor, const ScanBeams& beams) noexcept {
     for (int i = 0; i < simd::padding; ++i) put(i, pose);
-    sensor.weigh_by_field({poses_.row(0, 0), poses_.row(0, 1), poses_.row(0, 2), simd::padding}, beams,
-                          log_fit_.data());
+    sensor.weigh_by_field(poses_of(poses_, simd::padding), beams, log_fit_.data());
     return static_cast<double>(log_fit_[0]);
   }
 
@@ -74,8 +72,7 @@ class Search {
   bool confirms(const maps::Pose& other, const maps::Pose& place, const SensorTables& sensor,
                 const ScanBeams& beams) noexcept {
     for (int i = 0; i < simd::padding; ++i) put(i, i == 0 ? other : place);
-    sensor.weigh({poses_.row(0, 0), poses_.row(0, 1), poses_.row(0, 2), simd::padding}, beams,
-                 log_fit_.data());
+    sensor.weigh(poses_of(poses_, simd::padding), beams, log_fit_.data());
     return log_fit_[0] > log_fit_[1];
   }
 
@@ -99,14 +96,13 @@ class Search {
   void place_copies(RandomKey key) noexcept {
     fill_normal(noise_, 0, padded(count_ * copies), key);
     for (int h = 0, i = 0; h < count_; ++h) {
-      const Hypothesis& from = hypotheses_[static_cast<std::size_t>(h)];
+      const Hypothesis& from = hypotheses_[h];
       const double jitter = from.age < young ? young_jitter : grown_jitter;
       const double yaw_jitter = from.age < young ? young_yaw_jitter : grown_yaw_jitter;
       put(i++, from.pose);
-      for (int k = 1; k < copies; ++k, ++i) {
+      for (int k = 1; k < copies; ++k, ++i)
         put(i, {from.pose.x + jitter * noise_.at(0, 0, i), from.pose.y + jitter * noise_.at(0, 1, i),
                 maps::wrap_angle(from.pose.yaw + yaw_jitter * noise_.at(0, 2, i))});
-      }
     }
   }
 
@@ -119,7 +115,7 @@ class Search {
     for (int h = 0; h < count_; ++h) {
       const float* fits = log_fit_.data() + h * copies;
       const int best = static_cast<int>(std::max_element(fits, fits + copies) - fits);
-      Hypothesis& to = hypotheses_[static_cast<std::size_t>(h)];
+      Hypothesis& to = hypotheses_[h];
       to.pose = batch_pose(h * copies + best);
       const double fit = static_cast<double>(fits[best]);
       to.log_fit = to.age <= young ? fit : memory * to.log_fit + (1 - memory) * fit;
@@ -130,14 +126,14 @@ class Search {
   /// Drops the worse of two hypotheses about the same place.
   void drop_twins() noexcept {
     for (int a = 0; a < count_; ++a) {
-      Hypothesis& first = hypotheses_[static_cast<std::size_t>(a)];
+      Hypothesis& first = hypotheses_[a];
       for (int b = count_ - 1; b > a; --b) {
-        Hypothesis& second = hypotheses_[static_cast<std::size_t>(b)];
+        Hypothesis& second = hypotheses_[b];
         if (!same(first.pose, second.pose)) continue;
         const int age = std::max(first.age, second.age);
         if (second.log_fit > first.log_fit) first = second;
         first.age = age;
-        second = hypotheses_[static_cast<std::size_t>(--count_)];
+        second = hypotheses_[--count_];
       }
     }
   }
@@ -146,31 +142,28 @@ class Search {
   void admit(int first) noexcept {
     int chosen = 0;
     for (int i = first; i < poses_.samples(); ++i) {
-      const float fit = log_fit_[static_cast<std::size_t>(i)];
-      const auto worse = [&](int other) { return log_fit_[static_cast<std::size_t>(other)] < fit; };
+      const float fit = log_fit_[i];
+      const auto worse = [&](int other) { return log_fit_[other] < fit; };
       if (chosen == newcomers && !worse(newcomers_[newcomers - 1])) continue;
       if (chosen < newcomers) ++chosen;
       int at = chosen - 1;
-      for (; at > 0 && worse(newcomers_[static_cast<std::size_t>(at - 1)]); --at)
-        newcomers_[static_cast<std::size_t>(at)] = newcomers_[static_cast<std::size_t>(at - 1)];
-      newcomers_[static_cast<std::size_t>(at)] = i;
+      for (; at > 0 && worse(newcomers_[at - 1]); --at) newcomers_[at] = newcomers_[at - 1];
+      newcomers_[at] = i;
     }
     for (int n = 0; n < chosen; ++n) {
-      const int from = newcomers_[static_cast<std::size_t>(n)];
+      const int from = newcomers_[n];
       int to = count_;
       if (count_ < max_hypotheses) {
         ++count_;
       } else {
         to = -1;
         for (int h = 0; h < count_; ++h) {
-          const Hypothesis& old = hypotheses_[static_cast<std::size_t>(h)];
-          if (old.age > young && (to < 0 || old.log_fit < hypotheses_[static_cast<std::size_t>(to)].log_fit))
-            to = h;
+          const Hypothesis& old = hypotheses_[h];
+          if (old.age > young && (to < 0 || old.log_fit < hypotheses_[to].log_fit)) to = h;
         }
         if (to < 0) return;
       }
-      hypotheses_[static_cast<std::size_t>(to)] = {
-          batch_pose(from), static_cast<double>(log_fit_[static_cast<std::size_t>(from)]), 1};
+      hypotheses_[to] = {batch_pose(from), static_cast<double>(log_fit_[from]), 1};
     }
   }
 

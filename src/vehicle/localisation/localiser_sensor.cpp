@@ -7,7 +7,6 @@
 #include <string>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
-#include "slalom/core/option_access.hpp"
 #include "slalom/maps/distance_field.hpp"
 
 namespace slalom::vehicle::detail {
@@ -23,6 +22,9 @@ constexpr double hit_weight = 0.85, short_weight = 0.1, lost_weight = 0.05, rand
 constexpr double short_rate = 0.5;
 constexpr double table_cell = 0.1;  // m, of the table of ranges
 constexpr std::size_t max_entries = std::size_t{1} << 27;
+/// A change of the expected range by more than this many times the distance across the beam is the edge of an
+/// object and not a wall at a small angle to the beam; ranges (m) below the second one count as it.
+constexpr double steepest_wall = 8, shortest_lever = 0.05;
 
 maps::GridGeometry geometry_of(const maps::OccupancyGrid& map, double resolution) {
   const double length = map.width * map.resolution, width = map.height * map.resolution;
@@ -37,9 +39,6 @@ double hit_density(const LocaliserOptions& o) {
 }
 double random_density(const LocaliserOptions& o) {
   return random_weight / o.range_cap;
-}
-double highest_density(const LocaliserOptions& o) {
-  return hit_density(o) + random_density(o);
 }
 
 /// Distance (m, at most `most`) along a direction to the first occupied cell, from a point in cells: steps as
@@ -60,23 +59,64 @@ double cast(const maps::DistanceField& walls, double x, double y, double dx, dou
 
 }  // namespace
 
-const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
-  const auto require = [](bool holds, const std::string& what) {
-    if (!holds) throw std::invalid_argument("localiser: " + what);
+void check_map(const maps::OccupancyGrid& map) {
+  maps::check_grid(map);
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw std::invalid_argument(std::string("localiser: map: must have ") + what);
   };
-  require(map.width >= 1 && map.height >= 1 && map.width <= 32766 && map.height <= 32766,
-          "map size: " + std::to_string(map.width) + " x " + std::to_string(map.height) +
-              ": must be 1 to 32766 each");
-  require(map.cells.size() == static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height),
-          "map cells: " + std::to_string(map.cells.size()) + ": must be width x height");
-  require(std::isfinite(map.resolution) && map.resolution > 0,
-          "map resolution: " + to_text(map.resolution) + ": must be finite and > 0");
-  require(std::isfinite(map.origin.x + map.origin.y + map.origin.yaw), "map origin: must be finite");
-  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::free) > 0,
-          "map: must have a free cell");
-  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied) > 0,
-          "map: must have an occupied cell");
-  return map;
+  require(map.width <= 32766 && map.height <= 32766, "at most 32766 cells to a side");
+  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::free) > 0, "a free cell");
+  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied) > 0, "an occupied cell");
+}
+
+bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& options,
+                  ScanBeams& beams) noexcept {
+  beams.hits = beams.count = 0;
+  const std::size_t readings = scan.ranges.size();
+  if (readings == 0 || !std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) ||
+      !std::isfinite(scan.range_min) || std::isnan(scan.range_max))
+    return false;
+  const std::size_t parts = std::min(readings, static_cast<std::size_t>(options.beams));
+  const double bins_per_turn = table_angles / (2 * std::numbers::pi);
+  const auto add = [&](std::size_t at, double range, std::size_t reading) {
+    const double bearing =
+        options.laser_yaw + scan.angle_min + static_cast<double>(reading) * scan.angle_increment;
+    beams.end_x[at] = static_cast<float>(options.laser_x + range * std::cos(bearing));
+    beams.end_y[at] = static_cast<float>(options.laser_y + range * std::sin(bearing));
+    beams.range[at] = static_cast<float>(range);
+    const double bin = maps::wrap_angle(bearing) * bins_per_turn;
+    const double across = bins_per_turn / std::max(range, shortest_lever);
+    beams.forward_x[at] = static_cast<float>(std::cos(bearing));
+    beams.forward_y[at] = static_cast<float>(std::sin(bearing));
+    beams.sideways_x[at] = static_cast<float>(-across * std::sin(bearing));
+    beams.sideways_y[at] = static_cast<float>(across * std::cos(bearing));
+    beams.steepest[at] = static_cast<float>(steepest_wall / across);
+    beams.bin[at] = std::min(static_cast<float>(bin < 0 ? bin + table_angles : bin),
+                             static_cast<float>(table_angles - 1e-3));
+  };
+  const double least = std::max(scan.range_min, 0.0), most = std::min(options.range_cap, scan.range_max);
+  std::size_t lost = parts;  // those without return gather at the back
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t begin = part * readings / parts, end = (part + 1) * readings / parts;
+    std::size_t missed = end;
+    for (std::size_t i = begin + (end - begin) / 2, looked = 0; looked < end - begin; ++looked) {
+      const double range = static_cast<double>(scan.ranges[i]);
+      if (range > least && range < most) {
+        add(beams.hits++, range, i);
+        missed = end;
+        break;
+      }
+      if (range >= most && missed == end) missed = i;
+      if (++i == end) i = begin;
+    }
+    if (missed != end) add(--lost, options.range_cap, missed);
+  }
+  beams.count = beams.hits;
+  for (; lost < parts; ++lost, ++beams.count) {
+    for (auto* values : {&beams.end_x, &beams.end_y, &beams.range, &beams.bin})
+      (*values)[beams.count] = (*values)[lost];
+  }
+  return beams.hits >= options.min_beams;
 }
 
 SensorTables::SensorTables(const maps::OccupancyGrid& map, const LocaliserOptions& options)
@@ -110,7 +150,6 @@ void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOpt
 }
 
 void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
-  table_.angles = table_angles;
   table_.geometry = geometry_of(map, std::max(table_cell, map.resolution));
   table_.rows = maps::CellGrid<1>(table_.geometry.rows, table_.geometry.columns);
   table_.range_unit = static_cast<float>(options_.range_cap / 65535);
@@ -129,7 +168,7 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
       origins.push_back({x, y});
     }
   }
-  const std::size_t angles = static_cast<std::size_t>(table_.angles);
+  constexpr std::size_t angles = table_angles;
   if (origins.size() * angles > max_entries) {
     options_.sensor_model = SensorModel::likelihood_field;
     return;
@@ -139,7 +178,7 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
   std::vector<std::uint32_t> ranges(angles);
   for (std::size_t i = 1; i < origins.size(); ++i) {
     for (std::size_t a = 0; a < angles; ++a) {
-      const double angle = 2 * std::numbers::pi * static_cast<double>(a) / static_cast<double>(angles);
+      const double angle = 2 * std::numbers::pi * static_cast<double>(a) / angles;
       const double range = cast(walls, origins[i].x * scale, origins[i].y * scale, std::cos(angle),
                                 std::sin(angle), options_.range_cap);
       ranges[a] = saturate_cast<std::uint32_t>(std::min(65535.0, range / options_.range_cap * 65535));
@@ -184,16 +223,15 @@ void SensorTables::weigh(const ParticlePoses& particles, const ScanBeams& beams,
   in.beams = &beams;
   in.place = place_.view(geometry_);
   in.log_fit = log_fit;
-  const double highest = highest_density(options_);
+  const double hit = hit_density(options_), random = random_density(options_), highest = hit + random;
   in.rows = table_.rows.view(table_.geometry);
   in.pairs = table_.pairs.data();
-  in.angles = table_.angles;
   in.range_unit = table_.range_unit;
   in.laser_x = static_cast<float>(options_.laser_x);
   in.laser_y = static_cast<float>(options_.laser_y);
   in.hit_scale = static_cast<float>(-0.5 / (options_.hit_deviation * options_.hit_deviation));
-  in.hit = static_cast<float>(hit_density(options_) / highest);
-  in.random = static_cast<float>(random_density(options_) / highest);
+  in.hit = static_cast<float>(hit / highest);
+  in.random = static_cast<float>(random / highest);
   in.short_scale = static_cast<float>(short_weight * short_rate / highest);
   in.short_rate = static_cast<float>(short_rate);
   in.lost = static_cast<float>(std::log(std::max(1e-3, lost_weight)));

@@ -38,16 +38,15 @@ struct ScanBeams {
   int count = 0;                              ///< number of all beams
 };
 
-/// Returns the map. Throws std::invalid_argument where a localiser cannot use it (see Localiser).
-const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map);
+/// Throws std::invalid_argument where a localiser cannot use the map (see Localiser).
+void check_map(const maps::OccupancyGrid& map);
 
 /// Chooses readings evenly over the scan: of every part of it the first usable one. False where the scan has
 /// an invalid geometry or fewer than `min_beams` usable readings.
 bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& options,
                   ScanBeams& beams) noexcept;
 
-/// Particles in the frame of the grid (metres from the corner of cell (0, 0)), structure of arrays, padded to
-/// whole packs.
+/// Particles in the frame of the grid (m from the corner of cell (0, 0)), arrays padded to whole packs.
 struct ParticlePoses {
   const float* x = nullptr;
   const float* y = nullptr;
@@ -63,24 +62,21 @@ struct ParticlePoses {
 struct RangeTable {
   maps::CellGrid<1> rows{1, 1};
   maps::GridGeometry geometry;
-  std::vector<std::uint32_t> pairs;  ///< rows x angles
-  int angles = 0;
-  float range_unit = 0;  ///< m
+  std::vector<std::uint32_t> pairs;  ///< rows x table_angles
+  float range_unit = 0;              ///< m
 };
 
 /// The likelihood of a scan on the map.
 class SensorTables {
  public:
-  /// `map` has been checked. Where the table of ranges would be too large, there is none, and the model is
-  /// the likelihood field.
+  /// `map` has been checked. The model is the likelihood field where the table of ranges would be too large.
   SensorTables(const maps::OccupancyGrid& map, const LocaliserOptions& options);
 
   /// The model by which `weigh` computes.
   SensorModel model() const noexcept { return options_.sensor_model; }
 
   /// The mean over beams of the logarithm of each beam's probability over the highest possible one, for each
-  /// particle; the values of the padding are undefined. Needs beams.count >= 1, of the likelihood field hits
-  /// >= 1.
+  /// particle; undefined for the padding. Needs beams.count >= 1, with the likelihood field hits >= 1.
   void weigh(const ParticlePoses& particles, const ScanBeams& beams, float* log_fit) const noexcept;
 
   /// The same as `weigh`, always by the likelihood field, which is smoother in the pose.
@@ -111,7 +107,6 @@ struct WeighInput {
   const ScanBeams* beams = nullptr;
   GridView<1> field, place, rows;
   const std::uint32_t* pairs = nullptr;
-  int angles = 0;
   float range_unit = 0;
   float laser_x = 0, laser_y = 0;
   float hit_scale = 0;     ///< -1 / (2 sigma^2), 1/m^2

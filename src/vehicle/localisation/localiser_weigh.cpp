@@ -20,8 +20,7 @@ struct ByField {
       sin_cos(F::load(in.particles.yaw + i), s, c);
       F sum(0.0f);
       for (int k = 0; k < beams.hits; ++k) {
-        const F end_x(beams.end_x[static_cast<std::size_t>(k)]),
-            end_y(beams.end_y[static_cast<std::size_t>(k)]);
+        const F end_x(beams.end_x[k]), end_y(beams.end_y[k]);
         sum = sum + look_up(in.field, x + end_x * c - end_y * s, y + end_x * s + end_y * c);
       }
       (sum * mean + look_up(in.place, x, y)).store(in.log_fit + i);
@@ -68,7 +67,7 @@ struct ByRanges {
     using F = Pack<Target>;
     using I = typename simd::IntPack<Target>::Vector;
     const ScanBeams& beams = *in.beams;
-    const F mean(1.0f / static_cast<float>(beams.count)), angles(static_cast<float>(in.angles));
+    const F mean(1.0f / static_cast<float>(beams.count)), angles(static_cast<float>(table_angles));
     const F laser_x(in.laser_x), laser_y(in.laser_y);
     for (int i = 0; i < in.particles.count; i += F::lanes) {
       const F x = F::load(in.particles.x + i), y = F::load(in.particles.y + i);
@@ -80,11 +79,11 @@ struct ByRanges {
       const F off_x = from_cell_center(in.rows.rows_axis(), in.rows.resolution(), from_x);
       const F off_y = from_cell_center(in.rows.columns_axis(), in.rows.resolution(), from_y);
       const F off_forward = off_x * c + off_y * s, off_left = off_y * c - off_x * s;
-      const I row = __builtin_convertvector(cell.v, I) * in.angles;
+      const I row = __builtin_convertvector(cell.v, I) * table_angles;
       const F turns = wrap_angle(yaw) * F(0.15915494309f);  // -1/2 .. 1/2
       const F start = select(turns < F(0.0f), turns + F(1.0f), turns) * angles;
       const auto expected_at = [&](int k) {
-        const F sum = start + F(beams.bin[static_cast<std::size_t>(k)]);
+        const F sum = start + F(beams.bin[k]);
         const F bin = select(sum >= angles, sum - angles, sum);
         const I whole = __builtin_convertvector(min(bin, angles - F(1.0f)).v, I);
         return expected_range<Target>(in, row + whole,

@@ -52,49 +52,38 @@ std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double min_spe
   return turns;
 }
 
-/// The model of a drive with given parameters.
-class Model {
- public:
-  Model(std::span<const DrivenSample> samples, const std::vector<Turn>& turns)
-      : samples_(samples), turns_(turns) {}
+/// Moves the wheels towards `target` for `dt` (s). Returns the integral of their tangent (Simpson's rule).
+double run(double& steer, double target, double lag, double dt) {
+  const double half = std::exp(-0.5 * dt / lag);
+  const double middle = target + (steer - target) * half, end = target + (steer - target) * half * half;
+  const double integral = dt / 6 * (std::tan(steer) + 4 * std::tan(middle) + std::tan(end));
+  steer = end;
+  return integral;
+}
 
-  /// The predicted changes of yaw minus the measured ones, one for each change that is used.
-  void residuals(std::span<const double> p, std::vector<double>& out) const {
-    out.clear();
-    double steer = 0;
-    std::size_t acting = 0, first = 0;
-    for (const Turn& t : turns_) {
-      if (t.first) {
-        first = acting = t.sample;
-        steer = p[0] * samples_[first].steer_command + p[1];
-      }
-      double at = t.begin, integral = 0;
-      while (at < t.end - 1e-12) {
-        // The command that acts now, and until when.
-        while (acting < t.sample && samples_[acting + 1].time + p[2] <= at + 1e-12) ++acting;
-        const double next = acting < t.sample ? samples_[acting + 1].time + p[2] : t.end;
-        const double until = std::clamp(next, at + 1e-6, t.end);
-        integral += run(steer, p[0] * samples_[acting].steer_command + p[1], p[3], until - at);
-        at = until;
-      }
-      if (t.counts) out.push_back(t.speed * integral / (p[4] + p[5] * t.speed * t.speed) - t.turned);
+/// The predicted changes of yaw minus the measured ones, one for each change that is used.
+void predict(std::span<const DrivenSample> samples, const std::vector<Turn>& turns, std::span<const double> p,
+             std::vector<double>& out) {
+  out.clear();
+  double steer = 0;
+  std::size_t acting = 0;
+  for (const Turn& t : turns) {
+    if (t.first) {
+      acting = t.sample;
+      steer = p[0] * samples[acting].steer_command + p[1];
     }
+    double at = t.begin, integral = 0;
+    while (at < t.end - 1e-12) {
+      // The command that acts now, and until when.
+      while (acting < t.sample && samples[acting + 1].time + p[2] <= at + 1e-12) ++acting;
+      const double next = acting < t.sample ? samples[acting + 1].time + p[2] : t.end;
+      const double until = std::clamp(next, at + 1e-6, t.end);
+      integral += run(steer, p[0] * samples[acting].steer_command + p[1], p[3], until - at);
+      at = until;
+    }
+    if (t.counts) out.push_back(t.speed * integral / (p[4] + p[5] * t.speed * t.speed) - t.turned);
   }
-
- private:
-  /// Moves the wheels towards `target` for `dt` (s). Returns the integral of the tangent of their angle, by
-  /// Simpson's rule.
-  static double run(double& steer, double target, double lag, double dt) {
-    const double half = std::exp(-0.5 * dt / lag);
-    const double middle = target + (steer - target) * half, end = target + (steer - target) * half * half;
-    const double integral = dt / 6 * (std::tan(steer) + 4 * std::tan(middle) + std::tan(end));
-    steer = end;
-    return integral;
-  }
-
-  std::span<const DrivenSample> samples_;
-  const std::vector<Turn>& turns_;
-};
+}
 
 /// The parameters; the wheelbase is not sought where it is given.
 std::array<detail::FitParameter, parameters> fit_parameters(bool wheelbase_given) {
@@ -151,11 +140,10 @@ Identification identify(std::span<const DrivenSample> samples, const Identificat
     throw std::invalid_argument("identify: wheelbase must be at least 0 m, min_speed above 0 m/s");
   const std::vector<Turn> turns = turns_of(samples, options.min_speed);
   require_enough(samples, turns);
-  const Model model(samples, turns);
   const bool given = options.wheelbase > 0;
   const auto sought = fit_parameters(given);
   const auto residuals = [&](std::span<const double> p, std::vector<double>& out) {
-    model.residuals(p, out);
+    predict(samples, turns, p, out);
   };
   detail::Fit best;
   best.sum = INFINITY;

@@ -70,8 +70,7 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
     throw std::invalid_argument(
         "vehicle.hold_first_input: must be false with vehicle.model 'single_track', whose start the planner "
         "predicts by the dead time");
-  // Mass far from the axles, or all of it in one place: the yaw rate would change by more than a step
-  // resolves.
+  // With mass far from the axles, or all in one place, the yaw rate changes faster than a step resolves.
   const double gyration = std::sqrt(own.inertia / own.mass) / options.wheelbase();
   if (gyration < 0.1 || gyration > 1)
     throw std::invalid_argument(
@@ -90,13 +89,9 @@ void SingleTrack::complete(VehicleTraits& traits) const noexcept {
 }
 
 SingleTrack::State<double> SingleTrack::start(const VehicleStart& start, double) const noexcept {
-  return {start.pose.x,
-          start.pose.y,
-          start.pose.yaw,
-          start.speed,
-          start.steer,
-          start.yaw_rate,
-          start.speed * std::sin(start.slip)};
+  const maps::Pose& at = start.pose;
+  const double lateral = start.speed * std::sin(start.slip);
+  return {at.x, at.y, at.yaw, start.speed, start.steer, start.yaw_rate, lateral};
 }
 
 VehicleStart SingleTrack::advance(const VehicleStart& start, const Command& command, double duration,

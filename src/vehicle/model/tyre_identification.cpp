@@ -60,10 +60,6 @@ bool is_usable(const DrivenSample& s) {
   return std::isfinite(s.time + s.x + s.y + s.yaw + s.speed + s.steer_command);
 }
 
-maps::Pose rear_axle_of(const DrivenSample& s) {
-  return {s.x, s.y, s.yaw};
-}
-
 /// The slope of the speed over up to two samples to either side.
 double acceleration_at(std::span<const DrivenSample> samples, std::size_t i) {
   std::size_t low = i, high = i + 1;
@@ -107,7 +103,7 @@ std::vector<Window> windows_of(std::span<const DrivenSample> samples, const std:
     if (duration >= window_length - 1e-9 && steps[i].begin - segment_begin >= settling_time) {
       const DrivenSample &a = samples[steps[i].sample], &b = samples[steps[end - 1].sample + 1];
       const double turned = maps::wrap_angle(b.yaw - a.yaw);
-      windows.push_back({i, end, turned, maps::inverse_transform(rear_axle_of(a), {b.x, b.y}).y,
+      windows.push_back({i, end, turned, maps::inverse_transform({a.x, a.y, a.yaw}, {b.x, b.y}).y,
                          0.5 * (a.speed + b.speed) * turned / duration});
     }
     i = end;
@@ -128,8 +124,7 @@ class Drive {
 
   std::vector<Window>& windows() { return windows_; }
 
-  /// The predicted change of yaw and sideways displacement of every window minus the measured ones, over
-  /// these deviations.
+  /// Predicted minus measured change of yaw and sideways displacement of every window, over these deviations.
   void residuals(std::span<const double> p, double yaw_deviation, double sideways_deviation,
                  std::vector<double>& out) const {
     SingleTrackOptions own = own_;

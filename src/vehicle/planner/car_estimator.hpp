@@ -27,8 +27,7 @@ class CarEstimator {
     parameters_.reset();
   }
 
-  /// Takes the measurements one control period after the last ones. The observer predicts with the mean
-  /// friction.
+  /// Takes the measurements one control period after the last ones. Predictions use the mean friction.
   void update(const DynamicVehicleModel& model, const ObserverInput& input) noexcept {
     ObserverInput checked = input;
     if (input.imu && !plausible(*input.imu)) checked.imu.reset();

@@ -13,8 +13,7 @@ namespace slalom::vehicle::detail {
 /// Predicts the car until a new command can take effect, and the wheels' angle, which is not measured.
 class CommandHistory {
  public:
-  /// `delay` (s) is at most 32 `period`s (s). `time_constant` (s) is that of the steering's lag. `wheelbase`
-  /// is in m.
+  /// All times in s, wheelbase in m; `delay` is at most 32 periods, `time_constant` that of the steering.
   CommandHistory(double period, double delay, double time_constant, double wheelbase)
       : period_(period), delay_(delay), time_constant_(time_constant), wheelbase_(wheelbase) {}
 
@@ -60,7 +59,7 @@ class CommandHistory {
     for (int i = oldest; i >= 0; --i) {
       const double sent = -(i + 1 - newest) * period_;
       const double from = std::max(begin, sent), to = std::min(end, sent + period_);
-      if (to > from + 1e-12) act(sent_[static_cast<std::size_t>(i)], to - from);
+      if (to > from + 1e-12) act(sent_[i], to - from);
     }
   }
   void turn_wheels(double& steer, double command, double duration) const noexcept {

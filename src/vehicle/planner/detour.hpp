@@ -59,7 +59,7 @@ class Detour {
       return search(obstacles, pose, nearest);
     }
     if (end < 0) return false;
-    const maps::ReferencePoint& goal = course_[static_cast<std::size_t>(end)];
+    const maps::ReferencePoint& goal = course_[end];
     path_.clear();
     for (const maps::Point& point :
          grid_.path_to(grid_.cell_at(maps::inverse_transform(pose, {goal.x, goal.y})), spacing)) {

@@ -53,7 +53,7 @@ class DynamicPlanner final : public PlannerBase {
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     conditions_.top_speed = options_.max_speed;
     conditions_.margin_share = conditions_.soft_share = 1;
-    if (traits_.seeks_lap_time && options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);
+    if (options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);
     if (options_.back_up && traits_.obstacle_map == ObstacleMap::clearance)
       fit_margins(scan_pose, 1 + fastest * horizon_time());
     if (options_.back_up) recover(odometry, start.pose);
@@ -100,11 +100,16 @@ class DynamicPlanner final : public PlannerBase {
     return horizon_time() + stopping_time_ * traits_.friction / path_friction_;
   }
 
-  /// Limits the speed, so that the car can stop within the part of the path that is in sight.
+  /// Limits the speed, so that the car can stop within the part of the path that is in sight. Plans that seek
+  /// the shortest time also stay on the path where nothing is in sight, and are urgent before an obstacle.
   void look_ahead(const maps::LaserScanView& scan, const maps::Pose& scan_pose) noexcept {
-    seen_ = sight_.look(scan, scan_pose, field_.nearest());
+    const PathInSight seen = sight_.look(scan, scan_pose, field_.nearest());
+    const double grip = driving_limits(traits_, path_friction_).grip;
+    const double deceleration = std::min(options_.sight_deceleration, grip);
+    conditions_.top_speed = std::min(conditions_.top_speed, sight_.stopping_speed(seen.way, deceleration));
+    if (!traits_.seeks_lap_time) return;
+    obstacle_in_sight_ = seen.obstacle < PathInSight::all;
     obstacles_.add(sight_.unknown());
-    conditions_.top_speed = std::min(conditions_.top_speed, sight_.stopping_speed(seen_.way));
   }
 
   /// Lets plans keep no wider margins than the narrowest place of the next `reach` m has, and pass it slowly.
@@ -135,8 +140,7 @@ class DynamicPlanner final : public PlannerBase {
       detour_.update_field({start.x, start.y});
       conditions_.urgency = Urgency::detour;
     } else {
-      const bool passes =
-          (recovery_.leaving() || seen_.obstacle < PathInSight::all) && !recovery_.reversing();
+      const bool passes = (recovery_.leaving() || obstacle_in_sight_) && !recovery_.reversing();
       conditions_.urgency = passes ? Urgency::passing : Urgency::usual;
     }
   }
@@ -225,14 +229,14 @@ class DynamicPlanner final : public PlannerBase {
   FeasibleSpeeds speeds_;
   Sight sight_;
   Passage passage_;
-  PathInSight seen_;  ///< set only with `sight_deceleration`
   Recovery recovery_;
   Detour detour_;
   Manoeuvre manoeuvre_;
   WaysAround ways_;
   DrivingConditions conditions_;
-  double path_friction_ = 0;  ///< friction for which the path's speeds were computed
-  bool on_detour_ = false;    ///< plans follow the detour, not the path
+  double path_friction_ = 0;        ///< friction for which the path's speeds were computed
+  bool on_detour_ = false;          ///< plans follow the detour, not the path
+  bool obstacle_in_sight_ = false;  ///< on the path; set only where plans seek the shortest time
 };
 
 }  // namespace

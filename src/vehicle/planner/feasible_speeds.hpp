@@ -41,9 +41,9 @@ inline DrivingLimits driving_limits(const VehicleTraits& traits, double friction
 ///     v^2 |k| <= grip,   -braking <= dv/dt <= acceleration,   (v^2 k)^2 + (b dv/dt)^2 <= grip^2
 ///
 /// with b = 1 / braking_share for dv/dt < 0, else 1, by a pass forward and one backward (Heilmeier et al.
-/// 2020, Sec. 4; see speed_profile). Each speed is low enough for the rest of the path. With `lead`, a point
-/// has the speed of the place that the car reaches after this time; where speeds rise, that is more than the
-/// car can drive at the point itself. The speeds can be updated while the car drives, when the friction
+/// 2020, Sec. 4; see feasible_speeds). Each speed is low enough for the rest of the path. With `lead`, a
+/// point has the speed of the place that the car reaches after this time; where speeds rise, that is more
+/// than the car can drive at the point itself. The speeds can be updated while driving, when the friction
 /// changes.
 class FeasibleSpeeds {
  public:
@@ -92,7 +92,7 @@ class FeasibleSpeeds {
   }
 
   /// The distance of a point along the path, m.
-  double arc(int point) const noexcept { return arc_[static_cast<std::size_t>(point)]; }
+  double arc(int point) const noexcept { return arc_[point]; }
   /// The length of a closed path, m; 0 if it is open.
   double length() const noexcept { return gap_.back() > 0 ? arc_.back() + gap_.back() : 0; }
 
@@ -104,8 +104,7 @@ class FeasibleSpeeds {
  private:
   static constexpr double whole = 1;
 
-  /// The acceleration (m/s^2) that is left to the tyres at a point: they share their force between turning
-  /// and accelerating.
+  /// The acceleration (m/s^2) left to the tyres at a point, which share their force between it and turning.
   double grip_left(std::size_t i, double full_grip) const noexcept {
     const double turning = speed_[i] * speed_[i] * curvature_[i], grip = full_grip * share_[i];
     return std::sqrt(std::max(grip * grip - turning * turning, 0.0));
@@ -128,8 +127,7 @@ class FeasibleSpeeds {
   }
 
   /// Replaces each speed by that of the place which a car reaches within `lead` (s). A step of a plan looks
-  /// up its limit where it begins, but the limit applies where it ends: otherwise a car that leaves a curve
-  /// would accelerate one step late.
+  /// up its limit where it begins, but it applies where it ends, or a car would leave a curve one step late.
   void look_ahead(double lead) noexcept {
     if (!(lead > 0)) return;
     const std::size_t n = speed_.size();

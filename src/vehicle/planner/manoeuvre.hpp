@@ -43,16 +43,12 @@ class Manoeuvre {
         costs_(nodes_.size()),
         nearest_(static_cast<std::size_t>(side) * side) {
     const double length = body.front + body.rear;
-    for (int i = 0; i < 3; ++i) discs_[static_cast<std::size_t>(i)] = -body.rear + length * (2 * i + 1) / 6;
+    for (int i = 0; i < 3; ++i) discs_[i] = -body.rear + length * (2 * i + 1) / 6;
     for (int i = 0; i < 6; ++i) {
       const int gear = i < 3 ? 1 : -1, turn = (i + 1) % 3 - 1;
       const double driven = gear * step, turned = turn * curvature_ * driven;
-      arcs_[static_cast<std::size_t>(i)] = {gear,
-                                            turn,
-                                            turned,
-                                            driven * std::cos(0.5 * turned),
-                                            driven * std::sin(0.5 * turned),
-                                            direction(turned)};
+      const Direction middle = direction(0.5 * turned);
+      arcs_[i] = {gear, turn, turned, driven * middle.cosine, driven * middle.sine, direction(turned)};
     }
     queue_.reserve(4 * nodes_.size());
     way_.reserve(max_steps);
@@ -80,8 +76,8 @@ class Manoeuvre {
       std::pop_heap(queue_.begin(), queue_.end());
       const Reached here = queue_.back();
       queue_.pop_back();
-      if (here.cost > costs_[static_cast<std::size_t>(here.node)]) continue;
-      const Node& node = nodes_[static_cast<std::size_t>(here.node)];
+      if (here.cost > costs_[here.node]) continue;
+      const Node& node = nodes_[here.node];
       if (is_goal(obstacles, node, ahead)) return take(here.node, pose);
       const Direction heading = direction(node.yaw);
       for (const Arc& arc : arcs_) expand(obstacles, here, heading, arc, start_room, sight);
@@ -248,7 +244,7 @@ class Manoeuvre {
   bool is_goal(const maps::ClearanceMap& obstacles, const Node& node, double ahead) const noexcept {
     if (node.gear <= 0) return false;
     const auto at = static_cast<std::size_t>(index(node.x, node.y, 0) / headings);
-    const Place& place = window_[static_cast<std::size_t>(nearest_[at])];
+    const Place& place = window_[nearest_[at]];
     if (place.way < ahead || std::abs(maps::wrap_angle(node.yaw - place.pose.yaw)) > goal_yaw) return false;
     if (std::hypot(place.pose.x - node.x, place.pose.y - node.y) > goal_distance) return false;
     const Direction heading = direction(node.yaw);
@@ -261,7 +257,7 @@ class Manoeuvre {
 
   void expand(const maps::ClearanceMap& obstacles, const Reached& from, const Direction& heading,
               const Arc& arc, double start_room, double sight) noexcept {
-    const Node& node = nodes_[static_cast<std::size_t>(from.node)];
+    const Node& node = nodes_[from.node];
     const double x = node.x + arc.x * heading.cosine - arc.y * heading.sine,
                  y = node.y + arc.x * heading.sine + arc.y * heading.cosine, yaw = node.yaw + arc.turned;
     const int to = index(x, y, yaw);
@@ -270,7 +266,7 @@ class Manoeuvre {
     const auto cost_with = [&](double price) {
       return static_cast<float>(from.cost + step * price + shift + 0.01 * std::abs(arc.turn - node.turn));
     };
-    const float least_cost = costs_[static_cast<std::size_t>(to)];
+    const float least_cost = costs_[to];
     if (cost_with(arc.gear < 0 ? reverse_price : 1) >= least_cost) return;
     const Direction there = {
         heading.cosine * arc.turn_direction.cosine - heading.sine * arc.turn_direction.sine,
@@ -290,8 +286,8 @@ class Manoeuvre {
   }
 
   void push(int to, float cost, const Node& node) noexcept {
-    nodes_[static_cast<std::size_t>(to)] = node;
-    costs_[static_cast<std::size_t>(to)] = cost;
+    nodes_[to] = node;
+    costs_[to] = cost;
     queue_.push_back({cost, to});
     std::push_heap(queue_.begin(), queue_.end());
   }
@@ -299,9 +295,9 @@ class Manoeuvre {
   /// Takes the way to a node.
   bool take(std::int32_t goal, const maps::Pose& pose) noexcept {
     way_.clear();
-    for (std::int32_t at = goal; nodes_[static_cast<std::size_t>(at)].before >= 0;) {
+    for (std::int32_t at = goal; nodes_[at].before >= 0;) {
       if (way_.size() == max_steps) return false;
-      const Node& node = nodes_[static_cast<std::size_t>(at)];
+      const Node& node = nodes_[at];
       const maps::Point place = maps::transform(pose, {node.x, node.y});
       way_.push_back({{place.x, place.y, maps::wrap_angle(pose.yaw + node.yaw)},
                       node.gear,

@@ -33,8 +33,7 @@ inline double map_scale(const PlannerOptions& options) {
   return options.map_resolution / PlannerOptions{}.map_resolution;
 }
 
-/// Returns the time (s) in which a car at the path's highest speed drives its stopping distance, or 0 if
-/// plans need not be able to stop.
+/// Returns the time (s) of the stopping distance at the path's highest speed; 0 if plans need not stop.
 inline double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                             const VehicleTraits& traits) {
   if (!(traits.stopping_deceleration > 0)) return 0;
@@ -69,8 +68,7 @@ inline maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options,
   return made;
 }
 
-/// Options of the map of clearances. For a car with slipping tyres the map reaches as far as a plan (`reach`,
-/// m).
+/// Options of the map of clearances. With slipping tyres it reaches as far as a plan (`reach`, m).
 inline maps::ClearanceMapOptions clearance_options(const PlannerOptions& options, const VehicleTraits& traits,
                                                    double reach) {
   const double scale = map_scale(options), behind = 3 * scale, widest = 8 * scale;  // m
@@ -85,7 +83,7 @@ inline maps::ClearanceMapOptions clearance_options(const PlannerOptions& options
   return made;
 }
 
-/// Options of the reference field. For a car with slipping tyres it reaches as far as a plan (`reach`, m).
+/// Options of the reference field. With slipping tyres it reaches as far as a plan (`reach`, m).
 inline maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const VehicleTraits& traits,
                                                  double reach) {
   if (options.published.maps) return maps::published_reference_field();

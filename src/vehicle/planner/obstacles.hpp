@@ -121,8 +121,7 @@ class Obstacles {
   /// Returns the scan without the readings that end on other cars as they are now.
   maps::LaserScanView without_others(const PlannerInput& input) noexcept {
     maps::LaserScanView scan = input.scan;
-    // A scan with clockwise or too many beams keeps all its readings, so the other cars are also obstacles
-    // where they are now.
+    // A scan with clockwise or too many beams keeps its readings: the cars are obstacles where they are, too.
     if (scan.ranges.size() > ranges_.size() || !(scan.angle_increment > 0)) return scan;
     std::copy(scan.ranges.begin(), scan.ranges.end(), ranges_.begin());
     const maps::Point at = maps::transform(input.odometry.pose, {laser_.x, laser_.y});

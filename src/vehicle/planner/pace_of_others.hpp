@@ -11,8 +11,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// Computes the time that the car would lose behind each other car, from the speed of that car so far as a
-/// share of the path's speed.
+/// Computes the time lost behind each other car, from its speed so far as a share of the path's speed.
 class PaceOfOthers {
  public:
   /// Assumes that a car stays behind another for `steps_behind` time steps. `control_period` (s) is the time

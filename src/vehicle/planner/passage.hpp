@@ -92,8 +92,7 @@ class Passage {
   /// Begins with ways near this offset (m) to the left of the path.
   void begin(double offset) noexcept {
     for (int k = 0; k < count; ++k)
-      rooms_[static_cast<std::size_t>(k)] =
-          std::abs((k - sides) * lane - offset) < 2 * lane ? soft_end() : -1;
+      rooms_[k] = std::abs((k - sides) * lane - offset) < 2 * lane ? soft_end() : -1;
   }
 
   /// Advances all ways to a point of the path. Returns the room (m) of the widest one.
@@ -106,14 +105,14 @@ class Passage {
     for (int k = 0; k < count; ++k) {
       double room = -1;
       for (int from = std::max(k - steepest, 0); from <= std::min(k + steepest, count - 1); ++from)
-        room = std::max(room, before[static_cast<std::size_t>(from)]);
+        room = std::max(room, before[from]);
       const double offset = (k - sides) * lane;
       const double clearance =
           room < 0
               ? -1
               : static_cast<double>(obstacles.at(middle.x + offset * left_x, middle.y + offset * left_y));
-      rooms_[static_cast<std::size_t>(k)] = std::min(room, clearance);
-      best = std::max(best, rooms_[static_cast<std::size_t>(k)]);
+      rooms_[k] = std::min(room, clearance);
+      best = std::max(best, rooms_[k]);
     }
     return best;
   }

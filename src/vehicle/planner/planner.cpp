@@ -55,8 +55,7 @@ bool plausible(const Odometry& o) {
          std::abs(o.pose.yaw) <= Odometry::max_yaw && std::abs(o.speed) <= Odometry::fastest;
 }
 
-/// Moves a value into a range; one that is not finite becomes `otherwise`. Returns 1 if it was changed, else
-/// 0.
+/// Moves a value into a range; one that is not finite becomes `otherwise`. Returns 1 if it changed, else 0.
 int check_value(double& value, double least, double most, double otherwise) noexcept {
   const double valid = std::clamp(std::isfinite(value) ? value : otherwise, least, most);
   const bool changed = valid != value;
@@ -164,8 +163,7 @@ int PlannerBase::check_command(const Odometry& odometry, double wheels) noexcept
 
 /// The last step before an output leaves the planner. Checks the command again and sets estimates that are
 /// not finite to 0. If a cost or an input is not finite, the output has no prediction, and a status that
-/// claims a plan becomes `solver_degenerate`. Such a cost becomes the largest double; such inputs are left
-/// out.
+/// claims a plan becomes `solver_degenerate`. Such a cost becomes the largest double; such inputs go.
 void PlannerBase::check_output(const Odometry& odometry) noexcept {
   constexpr double most = std::numeric_limits<double>::max();
   PlannerOutput& out = output_;

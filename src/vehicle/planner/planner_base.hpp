@@ -37,8 +37,7 @@ class PlannerBase {
   const Solver& solver() const noexcept { return *solver_; }
   const maps::LocalCostMap& cost_map() const noexcept { return obstacles_.cost_map(); }
 
-  /// Makes rollouts use the maps of this object. Call it on a copy: its model still has the maps of the
-  /// original.
+  /// Makes rollouts use the maps of this object. Call it on a copy, whose model has those of the original.
   void take_own_maps() noexcept;
 
  protected:

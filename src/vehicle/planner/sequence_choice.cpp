@@ -25,8 +25,7 @@ BodyOptions bare(const VehicleTraits& traits, double less) {
   return body;
 }
 
-/// Whether one sequence is better than another: without a collision if the other has one, else at a lower
-/// cost.
+/// Whether one sequence is better than another: it alone is without a collision, else its cost is lower.
 bool cheaper(const PredictedCost& one, const PredictedCost& other) {
   if (one.collided != other.collided) return other.collided;
   return one.state + one.collision < other.state + other.collision;
@@ -36,9 +35,8 @@ bool cheaper(const PredictedCost& one, const PredictedCost& other) {
 int cheapest_sample(const SolveResult& result) {
   int cheapest = -1;
   for (int k = 0; result.samples && k < result.samples->samples(); ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    if (result.collided[i] || !std::isfinite(result.costs[i])) continue;
-    if (cheapest < 0 || result.costs[i] < result.costs[static_cast<std::size_t>(cheapest)]) cheapest = k;
+    if (result.collided[k] || !std::isfinite(result.costs[k])) continue;
+    if (cheapest < 0 || result.costs[k] < result.costs[cheapest]) cheapest = k;
   }
   return cheapest;
 }
@@ -81,8 +79,7 @@ bool SequenceChoice::collides(const PredictedCost& cost,
   return body_collides(states) || (cost.collided && others_collide(states));
 }
 
-/// Whether the body collides after the first free state, as in VehicleModel::predict, or on the way between
-/// two states.
+/// Whether the body collides after the first free state (see VehicleModel::predict) or between two states.
 bool SequenceChoice::body_collides(std::span<const PredictedState> states) const noexcept {
   const auto touches = [&](std::size_t k, std::size_t next) {
     return body_.collides_before(states[k].pose, states[next].pose);
@@ -171,8 +168,7 @@ void SequenceChoice::stop(bool reversing) noexcept {
   brake(reversing ? max_deceleration_ : -max_deceleration_);
 }
 
-/// Calls `use` with `last` (a form of the sequence sent last), the nominal sequence and each guide. Leaves
-/// out those that do not exist.
+/// Calls `use` with each that exists: `last` (of the sequence sent last), the nominal sequence, the guides.
 template <class Use>
 void SequenceChoice::for_each_known(std::span<const float> last, Use&& use) const {
   const std::size_t size = candidate_.size();
@@ -265,8 +261,7 @@ void SequenceChoice::least_harm() noexcept {
     take_candidate_below(least);
   });
 
-  // Each steering with full braking. The first one must do clearly less harm, since braking takes grip from
-  // the turn that the car is in.
+  // Each steering with full braking, which takes grip from turning: the first must do clearly less harm.
   double share = 0.8;
   const auto try_braking = [&](std::span<const float> steering) {
     set_acceleration(steering, -max_deceleration_);

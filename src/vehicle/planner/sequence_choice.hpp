@@ -10,8 +10,7 @@
 namespace slalom::vehicle::detail {
 
 /// Chooses the sequence to send. It begins with the solver's solution and considers others, one kind after
-/// another. A sequence is better if it does not collide and the best so far does; if both or neither collide,
-/// the cheaper one is better.
+/// another. A sequence is better if it alone does not collide; if both or neither collide, the cheaper one.
 class SequenceChoice {
  public:
   /// A sequence, valid until the next `begin`, and its cost.

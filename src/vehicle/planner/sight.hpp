@@ -36,7 +36,6 @@ class Sight {
         reach_(reach),
         half_width_(0.5 * body.width + hit_error),
         front_(body.front),
-        deceleration_(options.sight_deceleration),
         delay_(2 * options.control_period),
         laser_{options.laser_x, options.laser_y, options.laser_yaw},
         unknown_(2 * path.size()) {}
@@ -74,10 +73,10 @@ class Sight {
   /// itself is known to be free there: a car that leaves it for a shorter way may meet a wall.
   std::span<const maps::Point> unknown() const noexcept { return {unknown_.data(), unknown_count_}; }
 
-  /// The highest speed (m/s, > 0) at which the car stops within `way` (m) with `sight_deceleration`.
-  double stopping_speed(double way) const noexcept {
-    const double left = std::max(way - front_ - gap, 0.0), reaction = deceleration_ * delay_;
-    return std::max(std::sqrt(reaction * reaction + 2 * deceleration_ * left) - reaction, least_speed);
+  /// The highest speed (m/s, > 0) at which the car stops within `way` (m) with this deceleration (m/s^2).
+  double stopping_speed(double way, double deceleration) const noexcept {
+    const double left = std::max(way - front_ - gap, 0.0), reaction = deceleration * delay_;
+    return std::max(std::sqrt(reaction * reaction + 2 * deceleration * left) - reaction, least_speed);
   }
 
  private:
@@ -89,8 +88,7 @@ class Sight {
   static constexpr double least_speed = 1;     ///< m/s: at this speed a car sees around any corner in time
 
   /// Returns the longest of the reading in a direction (rad, frame of the laser) and its neighbours, since a
-  /// point is in sight if one of these beams passes it. Returns infinity if a beam hits nothing, and 0
-  /// outside of the scan.
+  /// point is in sight if one of them passes it: infinity if a beam hits nothing, 0 outside of the scan.
   static double reading(const maps::LaserScanView& scan, double bearing) noexcept {
     constexpr double round = 2 * std::numbers::pi;
     double turn = std::fmod(bearing - scan.angle_min, round);
@@ -148,8 +146,8 @@ class Sight {
 
   std::vector<maps::ReferencePoint> path_;
   bool closed_;
-  double reach_, half_width_;            ///< m
-  double front_, deceleration_, delay_;  ///< m, m/s^2, s
+  double reach_, half_width_;  ///< m
+  double front_, delay_;       ///< m, s
   maps::Pose laser_;
   std::vector<maps::Point> unknown_;
   std::size_t unknown_count_ = 0;

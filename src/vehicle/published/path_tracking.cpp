@@ -37,18 +37,9 @@ PredictedState OneTrajectory::predicted(const State<double>& s) const noexcept {
 TwoTrajectories::State<double> TwoTrajectories::start(const VehicleStart& start,
                                                       double reference_speed) noexcept {
   speed_.set_target(reference_speed);
-  const maps::Pose& robot = obstacles_.robot();
-  const maps::Point local = maps::inverse_transform(robot, {start.pose.x, start.pose.y});
-  return {start.pose.x,
-          start.pose.y,
-          start.pose.yaw,
-          start.speed,
-          start.steer,
-          0,
-          local.x,
-          local.y,
-          start.pose.yaw - robot.yaw,
-          0};
+  const maps::Pose &robot = obstacles_.robot(), &at = start.pose;
+  const maps::Point local = maps::inverse_transform(robot, {at.x, at.y});
+  return {at.x, at.y, at.yaw, start.speed, start.steer, 0, local.x, local.y, at.yaw - robot.yaw, 0};
 }
 
 PredictedState TwoTrajectories::predicted(const State<double>& s) const noexcept {

@@ -8,10 +8,8 @@ namespace slalom::vehicle::detail {
 
 /// A connected region of cells.
 struct CellRegion {
-  int cells = 0;
   int left = 0, right = 0, bottom = 0, top = 0;  ///< its least and greatest columns and rows
   bool at_border = false;                        ///< whether it has a cell on the border of the grid
-  int first_column = 0, first_row = 0;           ///< a cell of it
 };
 
 /// The connected regions of the cells that have a property.
@@ -26,7 +24,7 @@ class CellRegions {
       for (int x = 0; x < width; ++x) {
         if (label_[index(x, y)] >= 0 || !has(x, y)) continue;
         const int number = static_cast<int>(regions_.size());
-        CellRegion region{0, x, x, y, y, false, x, y};
+        CellRegion region{x, x, y, y, false};
         label_[index(x, y)] = number;
         front.assign(1, {x, y});
         while (!front.empty()) {
@@ -58,7 +56,6 @@ class CellRegions {
   }
 
   void add(CellRegion& region, int column, int row) const {
-    ++region.cells;
     region.left = std::min(region.left, column);
     region.right = std::max(region.right, column);
     region.bottom = std::min(region.bottom, row);

@@ -12,11 +12,6 @@
 #include "vehicle/course/curve.hpp"
 
 namespace slalom::vehicle {
-namespace {
-
-constexpr double max_corridor_points = 1e5;
-
-}  // namespace
 
 Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std::vector<double>& left,
                               const std::vector<double>& right, bool closed, double step) {
@@ -33,7 +28,7 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
                                   " must be finite");
   const double length = detail::length(points, closed);
   if (!(length > 0)) throw std::invalid_argument("centre_line: all points are the same");
-  count(length, step, max_corridor_points, "centre_line");
+  count(length, step, 1e5, "centre_line");
   const detail::Resampling places = detail::divided_by_step(points, closed, step);
   Corridor corridor;
   corridor.closed = closed;

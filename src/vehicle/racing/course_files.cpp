@@ -7,7 +7,7 @@
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
-#include "vehicle/course/course_csv.hpp"
+#include "vehicle/course/course_readers.hpp"
 
 namespace slalom::vehicle {
 namespace {

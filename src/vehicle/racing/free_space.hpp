@@ -70,15 +70,15 @@ class FreeSpace {
     for (int y = 0; y < map.height; ++y)
       for (int x = 0; x < map.width; ++x) {
         const int region = unknown.at(x, y);
-        if (region < 0 || !fill[static_cast<std::size_t>(region)]) continue;
+        if (region < 0 || !fill[region]) continue;
         for (int dy = -1; dy <= 1; ++dy)
           for (int dx = -1; dx <= 1; ++dx)
             if (!map.contains(x + dx, y + dy) || map.at(x + dx, y + dy) == maps::Occupancy::occupied)
-              fill[static_cast<std::size_t>(region)] = 0;
+              fill[region] = 0;
       }
     for (int y = 0; y < map.height; ++y)
       for (int x = 0; x < map.width; ++x)
-        if (const int region = unknown.at(x, y); region >= 0 && fill[static_cast<std::size_t>(region)])
+        if (const int region = unknown.at(x, y); region >= 0 && fill[region])
           map.at(x, y) = maps::Occupancy::free;
     return static_cast<int>(std::count(fill.begin(), fill.end(), 1));
   }

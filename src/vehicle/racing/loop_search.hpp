@@ -26,8 +26,7 @@ inline std::vector<int> largest(const CellRegions& regions, std::size_t most) {
   std::vector<int> order;
   for (std::size_t k = 0; k < regions.regions().size(); ++k) order.push_back(static_cast<int>(k));
   const auto bigger = [&](int a, int b) {
-    return extent(regions.regions()[static_cast<std::size_t>(a)]) >
-           extent(regions.regions()[static_cast<std::size_t>(b)]);
+    return extent(regions.regions()[a]) > extent(regions.regions()[b]);
   };
   std::stable_sort(order.begin(), order.end(), bigger);
   order.resize(std::min(order.size(), most));
@@ -56,16 +55,15 @@ class Area {
     std::vector<char> open = inside_;
     int middle = -1;
     for (std::size_t k = 0; k < cut.size(); ++k) {
-      if (!inside_[static_cast<std::size_t>(cut[k])]) continue;
-      open[static_cast<std::size_t>(cut[k])] = 0;
-      if (middle < 0 || clearance(cut[k]) > clearance(cut[static_cast<std::size_t>(middle)]))
-        middle = static_cast<int>(k);
+      if (!inside_[cut[k]]) continue;
+      open[cut[k]] = 0;
+      if (middle < 0 || clearance(cut[k]) > clearance(cut[middle])) middle = static_cast<int>(k);
     }
     if (middle < 0) return {};
     const auto [left, right] = sides(cut, middle, open);
     if (left < 0 || right < 0) return {};
     std::vector<maps::Point> way = shortest(left, right, open);
-    if (!way.empty()) way.push_back(point(cut[static_cast<std::size_t>(middle)]));
+    if (!way.empty()) way.push_back(point(cut[middle]));
     return way;
   }
 
@@ -88,8 +86,7 @@ class Area {
     }
   }
 
-  /// The shortest chain of cells from an island to what surrounds the area: every way round the island
-  /// crosses it.
+  /// The shortest chain of cells from an island to the surroundings: every way round the island crosses it.
   std::vector<int> cut_from(const CellRegions& islands, int island) const {
     const int surroundings = islands.at(0, 0);
     const auto region = [&](int cell) { return islands.at(column(cell), row(cell)); };
@@ -97,21 +94,19 @@ class Area {
     std::deque<int> front;
     for (int cell = 0; cell < static_cast<int>(inside_.size()); ++cell)
       if (region(cell) == island) {
-        parent[static_cast<std::size_t>(cell)] = cell;
+        parent[cell] = cell;
         front.push_back(cell);
       }
     for (; !front.empty(); front.pop_front()) {
       const int cell = front.front();
       if (region(cell) == surroundings) {
         std::vector<int> cut;
-        for (int at = cell; parent[static_cast<std::size_t>(at)] != at;
-             at = parent[static_cast<std::size_t>(at)])
-          cut.push_back(at);
+        for (int at = cell; parent[at] != at; at = parent[at]) cut.push_back(at);
         return cut;
       }
       neighbours(cell, 4, [&](int next, int) {
-        if (parent[static_cast<std::size_t>(next)] >= 0) return;
-        parent[static_cast<std::size_t>(next)] = cell;
+        if (parent[next] >= 0) return;
+        parent[next] = cell;
         front.push_back(next);
       });
     }
@@ -148,25 +143,25 @@ class Area {
     std::vector<int> parent(inside_.size(), -1);
     using Entry = std::pair<double, int>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-    cost[static_cast<std::size_t>(from)] = 0;
+    cost[from] = 0;
     front.emplace(0, from);
     while (!front.empty() && front.top().second != to) {
       const auto [reached, cell] = front.top();
       front.pop();
-      if (reached > cost[static_cast<std::size_t>(cell)]) continue;
+      if (reached > cost[cell]) continue;
       neighbours(cell, 8, [&, cell = cell, reached = reached](int next, int k) {
-        if (!open[static_cast<std::size_t>(next)]) return;
+        if (!open[next]) return;
         const double total =
             reached + (k < 4 ? 1 : std::sqrt(2.0)) * (1 / clearance(cell) + 1 / clearance(next));
-        if (total >= cost[static_cast<std::size_t>(next)]) return;
-        cost[static_cast<std::size_t>(next)] = total;
-        parent[static_cast<std::size_t>(next)] = cell;
+        if (total >= cost[next]) return;
+        cost[next] = total;
+        parent[next] = cell;
         front.emplace(total, next);
       });
     }
     std::vector<maps::Point> way;
     if (front.empty()) return way;
-    for (int cell = to; cell >= 0; cell = parent[static_cast<std::size_t>(cell)]) way.push_back(point(cell));
+    for (int cell = to; cell >= 0; cell = parent[cell]) way.push_back(point(cell));
     return way;
   }
 
@@ -183,8 +178,7 @@ inline double enclosed_area(const std::vector<maps::Point>& loop) {
   return sum;
 }
 
-/// The length of a loop over its mean clearance: great for a road, small for a way round furniture or round
-/// all that stands in a hall.
+/// The length of a loop over its mean clearance: great for a road, small for a way round furniture in a hall.
 inline double slenderness(const FreeSpace& space, const std::vector<maps::Point>& loop) {
   double sum = 0;
   for (const maps::Point& point : loop) sum += space.clearance(point);
@@ -200,8 +194,7 @@ inline double distance_to(const std::vector<maps::Point>& loop, const maps::Poin
 /// A closed way through the free space of a map, at least `keep` (m) from all walls: of those that lead round
 /// an island of the map, each far from walls where it can be, the one that is longest for its width; with
 /// `near`, of those that pass there. Free space that reaches the border of the map is the surroundings, and
-/// only used if there is no other. Empty if there is no such way. Points are the centres of cells, m, map
-/// frame, counter-clockwise.
+/// only used if there is no other. Empty if there is none. Centres of cells, m, map frame, counter-clockwise.
 inline std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
                                           const std::optional<maps::Point>& near) {
   const CellRegions areas(space.map().width, space.map().height, false,
@@ -211,7 +204,7 @@ inline std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
   for (const bool surroundings : {false, true}) {
     std::size_t searched = 0;
     for (const int area : largest(areas, areas.regions().size())) {
-      if (areas.regions()[static_cast<std::size_t>(area)].at_border != surroundings) continue;
+      if (areas.regions()[area].at_border != surroundings) continue;
       if (++searched > max_areas) break;
       const Area ground(space, areas, area);
       const CellRegions islands = ground.islands();

@@ -19,12 +19,9 @@ struct CorridorMeasure {
 };
 
 inline constexpr int centring_rounds = 4;
-inline constexpr double centring_reach =
-    1.5;  // share of the median half width: side rooms do not draw the line
-inline constexpr double centring_smooth =
-    0.5;  // deviation of the shifts along the line, over the median half width
-inline constexpr double line_smooth =
-    0.3;  // deviation of the line's own smoothing, over the median half width
+// Lengths over the median half width: the widest that draws the line, so that side rooms do not; deviations
+// of smoothing the shifts, and the line itself.
+inline constexpr double centring_reach = 1.5, centring_smooth = 0.5, line_smooth = 0.3;
 
 /// Looks along the normals of a line.
 class Rays {
@@ -77,7 +74,7 @@ class Rays {
       std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) + k;
       if (!closed_ && (j < 0 || j >= n)) continue;
       j = (j + n) % n;
-      const maps::Point& other = line_[static_cast<std::size_t>(j)];
+      const maps::Point& other = line_[j];
       const double dx = at.x - other.x, dy = at.y - other.y;
       if (dx * dx + dy * dy < limit * limit) return false;
     }

@@ -20,19 +20,14 @@ constexpr double last_gap = 1e-4;        // share of the time: constraints times
 constexpr double stage_accuracy = 5e-6;  // share of the value that a step of the last stages must promise
 constexpr double centring = 0.01;     // the same in the first stages, as a share of constraints times weight
 constexpr int max_newton_steps = 60;  // steps of Newton's method in a stage
-constexpr double curvature_room =
-    1.05;                            // factor for a line that is tighter than the car turns, to be tightened
-constexpr double start_share = 0.4;  // share of the fastest squared speeds along the first line
-constexpr double start_room = 0.1;   // share of the width, from the bounds of the first line
+constexpr double curvature_room = 1.05;  // factor for a line that is tighter than the car turns
+constexpr double start_share = 0.4;      // share of the fastest squared speeds along the first line
+constexpr double start_room = 0.1;       // share of the width, from the bounds of the first line
 
-/// Distances and curvatures of a line.
-struct Geometry {
-  std::vector<double> step, curvature;
-};
-
-Geometry geometry_of(const std::vector<maps::Point>& p, bool closed) {
+/// The curvature at a point is that of the circle through it and its neighbours.
+PathGeometry geometry_of(const std::vector<maps::Point>& p, bool closed) {
   const std::size_t n = p.size();
-  Geometry g{std::vector<double>(n), std::vector<double>(n)};
+  PathGeometry g{closed, std::vector<double>(n), std::vector<double>(n)};
   for (std::size_t i = 0; i < n; ++i) {
     const maps::Point &a = p[(i + n - 1) % n], &b = p[i], &c = p[(i + 1) % n];
     g.step[i] = std::hypot(c.x - b.x, c.y - b.y);
@@ -43,7 +38,7 @@ Geometry geometry_of(const std::vector<maps::Point>& p, bool closed) {
   return g;
 }
 
-double tightest(const Geometry& geometry) {
+double tightest(const PathGeometry& geometry) {
   double most = 0;
   for (const double k : geometry.curvature) most = std::max(most, std::abs(k));
   return most;
@@ -98,7 +93,7 @@ class BarrierMethod {
       const double low = program_.lower(i), high = program_.upper(i), room = start_room * (high - low);
       state.offset.push_back(std::clamp(0.0, low + room, high - room));
     }
-    const Geometry geometry = geometry_of(program_.line(state), corridor_.closed);
+    const PathGeometry geometry = geometry_of(program_.line(state), corridor_.closed);
     program_.set_curvature_limit(std::max(max_curvature(car_), curvature_room * tightest(geometry)));
     const double top = car_.limits.top_speed;
     for (const double speed : racing_speeds(geometry.curvature, geometry.step, corridor_.closed, car_))
@@ -172,7 +167,7 @@ class BarrierMethod {
 
 Raceline with_speeds(const std::vector<maps::Point>& line, bool closed, const RacingCar& car) {
   const std::size_t n = line.size();
-  const Geometry geometry = geometry_of(line, closed);
+  const PathGeometry geometry = geometry_of(line, closed);
   const auto speed = racing_speeds(geometry.curvature, geometry.step, closed, car);
   Raceline result;
   result.closed = closed;

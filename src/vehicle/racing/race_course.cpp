@@ -175,8 +175,7 @@ void check(const GuideLine& guide) {
   maps::check_points("line", guide.points);
 }
 
-/// The size of the cells (m) of a map that is drawn: as given, or larger where the map would have more than
-/// `most_cells`.
+/// The size of the cells (m) of a drawn map: as given, or larger if it would have more than `most_cells`.
 double drawn_resolution(double length_x, double length_y, double resolution) {
   const double side = std::max(length_x, length_y) / (maps::max_image_side - 8);
   return std::max({resolution, std::sqrt(length_x * length_y / most_cells), side});

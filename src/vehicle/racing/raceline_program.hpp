@@ -105,8 +105,8 @@ class RacelineProgram {
   int points() const { return count_; }
   /// The number of constraints.
   int constraints() const { return 9 * count_; }
-  double lower(int i) const { return lower_[static_cast<std::size_t>(i)]; }  ///< m, bound of an offset
-  double upper(int i) const { return upper_[static_cast<std::size_t>(i)]; }  ///< m, bound of an offset
+  double lower(int i) const { return lower_[i]; }  ///< m, bound of an offset
+  double upper(int i) const { return upper_[i]; }  ///< m, bound of an offset
 
   /// 1/m; at first the car's.
   double curvature_limit() const { return curvature_limit_; }

@@ -13,8 +13,11 @@ namespace {
 using detail::require;
 using detail::require_within;
 
-/// Linear between rows, constant beyond them.
-GripAtSpeed interpolated(const std::vector<GripAtSpeed>& rows, double speed) {
+/// The limits of the tyres at a speed: linear between the rows of the car, constant beyond them.
+GripAtSpeed tyres_at(const RacingCar& car, double speed) {
+  const auto& rows = car.grip;
+  if (rows.empty())
+    return {speed, car.limits.acceleration, car.limits.braking, car.limits.lateral_acceleration};
   if (speed <= rows.front().speed) return rows.front();
   if (speed >= rows.back().speed) return rows.back();
   std::size_t k = 1;
@@ -40,7 +43,7 @@ double cornering_speed(const RacingCar& car, double curvature, double top) {
   const double bend = std::max(std::abs(curvature), 1e-9);
   if (car.grip.empty()) return std::min(top, std::sqrt(car.limits.lateral_acceleration / bend));
   // The tyres may allow less the faster the car is, so the highest speed that holds is bracketed.
-  const auto holds = [&](double v) { return v * v * bend <= grip_at(car, v).lateral; };
+  const auto holds = [&](double v) { return v * v * bend <= tyres_at(car, v).lateral; };
   return holds(top) ? top : highest(0, top, holds);
 }
 
@@ -121,8 +124,7 @@ double max_curvature(const RacingCar& car) {
 }
 
 GripAtSpeed grip_at(const RacingCar& car, double speed) {
-  GripAtSpeed grip{speed, car.limits.acceleration, car.limits.braking, car.limits.lateral_acceleration};
-  if (!car.grip.empty()) grip = interpolated(car.grip, speed);
+  GripAtSpeed grip = tyres_at(car, speed);
   if (speed > 0) grip.acceleration = std::min(grip.acceleration, car.power / speed);
   grip.speed = speed;
   return grip;
@@ -140,17 +142,14 @@ std::vector<double> racing_speeds(std::span<const double> curvature, std::span<c
     const double turn = car.wheelbase * std::abs(curvature[(i + 1) % n] - curvature[i]) / step[i];
     if (speed[i] * turn > car.max_steering_rate) speed[i] = car.max_steering_rate / turn;
   }
-  const auto lateral = [&](double v) {
-    return car.grip.empty() ? car.limits.lateral_acceleration : grip_at(car, v).lateral;
-  };
   const auto forwards = [&](double v, double k) {
-    const double strongest =
-        car.grip.empty() ? car.limits.acceleration : interpolated(car.grip, v).acceleration;
-    return std::min(strongest * detail::share_left(v, k, lateral(v)), car.power / std::max(v, 1e-9));
+    const GripAtSpeed tyres = tyres_at(car, v);
+    return std::min(tyres.acceleration * detail::share_left(v, k, tyres.lateral),
+                    car.power / std::max(v, 1e-9));
   };
   const auto braking = [&](double v, double k) {
-    const double strongest = car.grip.empty() ? car.limits.braking : interpolated(car.grip, v).braking;
-    return strongest * detail::share_left(v, k, lateral(v));
+    const GripAtSpeed tyres = tyres_at(car, v);
+    return tyres.braking * detail::share_left(v, k, tyres.lateral);
   };
   // The strongest acceleration of both ends of a piece and of its middle: on a line on which turning takes
   // all grip almost everywhere, that of the start alone is too much for a fifth of the pieces.

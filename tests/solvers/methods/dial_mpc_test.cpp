@@ -53,7 +53,7 @@ TEST(DialMpc, NoiseShrinksOverUpdatesAndTowardsTheStart) {
       }
       const double mean = sum / samples;
       EXPECT_NEAR(std::sqrt(squares / samples - mean * mean) / deviation, 1, 0.02) << t;
-      EXPECT_NEAR(result.variances[static_cast<std::size_t>(t)], deviation * deviation, 1e-5) << t;
+      EXPECT_NEAR(result.variances[t], deviation * deviation, 1e-5) << t;
     }
   }
 }

@@ -19,12 +19,6 @@ auto rough() {
       [](double u, int t) { return (u - 1) * (u - 1) + 2 * std::sin(9 * u + t) * std::sin(9 * u + t); });
 }
 
-std::vector<float> sample(const SequenceBatch& batch, int k) {
-  std::vector<float> values(static_cast<std::size_t>(batch.rows()));
-  batch.get_sample(k, values);
-  return values;
-}
-
 TEST(Icem, SamplesFallByTheDecayToTwiceTheElites) {
   const auto evaluator = rough();
   const auto last_batch = [&](int iterations, double decay) {
@@ -70,22 +64,21 @@ TEST(Icem, ElitesAreTheBestSamplesAndMoveWithTheTime) {
   const SolveResult& result = solver->solve(evaluator, {});
   std::vector<int> order(50);
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return result.costs[static_cast<std::size_t>(a)] < result.costs[static_cast<std::size_t>(b)];
-  });
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return result.costs[a] < result.costs[b]; });
   std::vector<std::vector<float>> best;
   for (int i = 0; i < 2; ++i) {
-    best.push_back(sample(*result.samples, order[static_cast<std::size_t>(i)]));
+    best.push_back(testing::sequence(*result.samples, order[i]));
     best.back().erase(best.back().begin());  // one step of time passes
     best.back().push_back(best.back().back());
   }
   solver->solve(evaluator, {.elapsed = evaluator.time_step()});
-  EXPECT_EQ(sample(*result.samples, 49), best[0]);
-  EXPECT_EQ(sample(*result.samples, 48), best[1]);
+  EXPECT_EQ(testing::sequence(*result.samples, 49), best[0]);
+  EXPECT_EQ(testing::sequence(*result.samples, 48), best[1]);
   solver->reset(0);
   const auto again = make_solver(options, 1);
-  const std::vector<float> fresh = sample(*again->solve(evaluator, {}).samples, 49);
-  EXPECT_EQ(sample(*solver->solve(evaluator, {}).samples, 49), fresh) << "a reset forgets the elites";
+  const std::vector<float> fresh = testing::sequence(*again->solve(evaluator, {}).samples, 49);
+  EXPECT_EQ(testing::sequence(*solver->solve(evaluator, {}).samples, 49), fresh)
+      << "a reset forgets the elites";
 }
 
 TEST(Icem, TheMeanIsASampleOfTheLastIteration) {
@@ -96,7 +89,7 @@ TEST(Icem, TheMeanIsASampleOfTheLastIteration) {
   const SolveResult& result = solver->solve(evaluator, {});
   const std::vector<float> mean(result.mean.begin(), result.mean.end());
   solver->solve(evaluator, {});
-  EXPECT_EQ(sample(*result.samples, 49), mean);
+  EXPECT_EQ(testing::sequence(*result.samples, 49), mean);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(NoiseShape, SpectrumOfThePeriodicSequenceIsThePowerLaw) {
     for (const int k : {1, 2, 5, 11, 16}) {
       double spectrum = 0;
       for (int d = 0; d < period; ++d)
-        spectrum += c[static_cast<std::size_t>(std::min(d, period - d))] * std::cos(2 * pi * k * d / period);
+        spectrum += c[std::min(d, period - d)] * std::cos(2 * pi * k * d / period);
       EXPECT_NEAR(spectrum * power_sum / period, std::pow(k, -beta), 1e-12) << beta << " " << k;
     }
   }
@@ -60,7 +60,7 @@ TEST(NoiseShape, SamplesHaveTheCorrelationOfTheirInput) {
   for (int s = 0; s < steps; ++s) {
     for (int t = 0; t <= s; ++t) {
       EXPECT_NEAR(moment(z, s, t, 0), s == t ? 1 : 0, 1.5 * error) << s << " " << t;
-      EXPECT_NEAR(moment(z, s, t, 1), brown[static_cast<std::size_t>(s - t)], 1.5 * error) << s << " " << t;
+      EXPECT_NEAR(moment(z, s, t, 1), brown[s - t], 1.5 * error) << s << " " << t;
     }
   }
 }
@@ -99,7 +99,7 @@ TEST(NoiseShape, InterpolationPassesThroughTheKnots) {
   for (int t = 0; t < steps; ++t) {
     double length = 0;
     for (int k = 0; k < knots; ++k) {
-      const double w = weights[static_cast<std::size_t>(t * knots + k)];
+      const double w = weights[t * knots + k];
       length += w * w;
       if (t % 4 == 0) {
         EXPECT_NEAR(w, t == 4 * k ? 1 : 0, 1e-12) << t << " " << k;
@@ -119,9 +119,7 @@ TEST(NoiseShape, InterpolatedSamplesHaveTheCorrelationOfTheWeights) {
   for (int s = 0; s < steps; ++s) {
     for (int t = 0; t <= s; ++t) {
       double expected = 0;
-      for (int k = 0; k < knots; ++k)
-        expected += weights[static_cast<std::size_t>(s * knots + k)] *
-                    weights[static_cast<std::size_t>(t * knots + k)];
+      for (int k = 0; k < knots; ++k) expected += weights[s * knots + k] * weights[t * knots + k];
       EXPECT_NEAR(moment(z, s, t, 0), expected, error) << s << " " << t;
       EXPECT_NEAR(moment(z, s, t, 1), expected, error) << s << " " << t;
     }

@@ -68,7 +68,7 @@ TEST(PaperEquations, WeightsOfEquation8GiveTheMeanOfTheOptimalDistribution) {
   double last = 0, distance = 0;
   for (int solve = 0; solve < 4; ++solve) {
     const SolveResult& result = solver->solve(evaluator, {});
-    const double nominal = static_cast<double>(result.nominal[0]), lambda = options.temperature;
+    const double nominal = result.nominal[0], lambda = options.temperature;
     const Function q = [&](double v) { return std::exp(-two_ways(v) / lambda) * normal(v, nominal, 0.4); };
     EXPECT_NEAR(result.inputs[0], integral([&](double v) { return v * q(v); }) / integral(q), 0.01) << solve;
     distance = std::max(distance, std::abs(nominal - last));
@@ -138,7 +138,7 @@ TEST(PaperEquations, NominalSequenceIsTheBestGuide) {
   ASSERT_EQ(result.guides.sequences, 8);
   double least = 1e9, first = 0;
   for (int k = 0; k < 8; ++k) {
-    const double guide = static_cast<double>(result.guides.values[static_cast<std::size_t>(k)]);
+    const double guide = result.guides.values[k];
     if (two_ways(guide) < two_ways(least)) least = guide;
     first = k == 0 ? guide : first;
   }

@@ -2,11 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "slalom/solvers/controllers.hpp"
 #include "slalom/solvers/registry.hpp"
@@ -133,7 +130,7 @@ TEST(Proposals, FollowALawWithinTheBounds) {
   auto x = start;
   for (int k = 0; k < steps; ++k) {
     const double u = std::clamp(law(x, k)[0], -1.0, 1.0);
-    EXPECT_EQ(list.values[static_cast<std::size_t>(k)], static_cast<float>(u)) << k;
+    EXPECT_EQ(list.values[k], static_cast<float>(u)) << k;
     x = controller.problem().step<double>(x, {{u}});
   }
 }

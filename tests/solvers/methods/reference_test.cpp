@@ -108,8 +108,7 @@ Json solve_with_both(reference::SvgMppi paper, int horizon, int guides, int solv
     for (int l = 0; l < paper.L; ++l) around_guides.push_back(noise(solve, 2 + l, guides * block));
     Json used = Json::array();  // in the order in which the method draws them
     paper.solve(cost, [&](int l, int k, int i, int r) {
-      const double z = static_cast<double>(
-          k < 0 ? samples.data(r)[i] : around_guides[static_cast<std::size_t>(l)].data(r)[k * block + i]);
+      const double z = k < 0 ? samples.data(r)[i] : around_guides[l].data(r)[k * block + i];
       used.push_back(rounded(z));
       return z;
     });
@@ -126,17 +125,17 @@ Json solve_with_both(reference::SvgMppi paper, int horizon, int guides, int solv
   return record;
 }
 
+reference::SvgMppi settings(int K, int L, int N, double epsilon) {
+  reference::SvgMppi paper{.K = K, .L = L, .N = N, .lambda = 2, .epsilon = epsilon};
+  paper.Sigma_g = 0.3;
+  paper.Sigma_0 = 0.8;
+  paper.Sigma_min = 0.005;
+  paper.Sigma_max = 0.9;
+  return paper;
+}
+
 TEST(SvgMppi, IsThatOfThePaper) {
-  solve_with_both({.K = 300,
-                   .L = 6,
-                   .N = 40,
-                   .lambda = 2,
-                   .epsilon = 0.1,
-                   .Sigma_g = 0.3,
-                   .Sigma_0 = 0.8,
-                   .Sigma_min = 0.005,
-                   .Sigma_max = 0.9},
-                  8, 3, 4);
+  solve_with_both(settings(300, 6, 40, 0.1), 8, 3, 4);
 }
 
 /// A number or a list of numbers is near the recorded one.
@@ -152,16 +151,7 @@ void expect_recorded(const Json& now, const Json& before, const std::string& wha
 
 /// SLALOM_RECORD writes the file anew.
 TEST(SvgMppi, HasTheRecordedFigures) {
-  const Json now = solve_with_both({.K = 24,
-                                    .L = 4,
-                                    .N = 12,
-                                    .lambda = 2,
-                                    .epsilon = 0.15,
-                                    .Sigma_g = 0.3,
-                                    .Sigma_0 = 0.8,
-                                    .Sigma_min = 0.005,
-                                    .Sigma_max = 0.9},
-                                   4, 2, 2);
+  const Json now = solve_with_both(settings(24, 4, 12, 0.15), 4, 2, 2);
   if (std::getenv("SLALOM_RECORD")) std::ofstream(SLALOM_REFERENCE "/svg_mppi.json") << now.dump() << "\n";
   std::ifstream file(SLALOM_REFERENCE "/svg_mppi.json");
   ASSERT_TRUE(file);

@@ -23,23 +23,24 @@ Symptom after_solves(SolverOptions options, Cost cost, int solves = 2 * SolveRes
   return solver->result().symptom();
 }
 
-double spring(double u) {
+double spring_cost(double u) {
   return (u - 0.3) * (u - 0.3);
 }
 
 TEST(Symptoms, AreNamedWhenTheyStay) {
   const MppiOptions cold{.temperature = 1e-6}, hot{.temperature = 1e6}, narrow{.variance = 1e-6};
-  EXPECT_EQ(after_solves(cold, spring), Symptom::few_samples);
-  EXPECT_EQ(after_solves(cold, spring, SolveResult::symptom_patience - 1), Symptom::none);
-  EXPECT_EQ(after_solves(hot, spring), Symptom::equal_costs);
-  EXPECT_EQ(after_solves(narrow, spring), Symptom::small_variance);
+  EXPECT_EQ(after_solves(cold, spring_cost), Symptom::few_samples);
+  EXPECT_EQ(after_solves(cold, spring_cost, SolveResult::symptom_patience - 1), Symptom::none);
+  EXPECT_EQ(after_solves(hot, spring_cost), Symptom::equal_costs);
+  EXPECT_EQ(after_solves(narrow, spring_cost), Symptom::small_variance);
   for (const char* method : {"mppi", "svg_mppi", "icem", "cem", "dial_mpc"}) {
     const SolverOptions options = solver_options(method);
     EXPECT_EQ(after_solves(options, [](double) { return 3.0; }), Symptom::equal_costs) << method;
-    EXPECT_EQ(after_solves(options, [](double u) { return 1e7 + spring(u); }), Symptom::equal_costs)
+    EXPECT_EQ(after_solves(options, [](double u) { return 1e7 + spring_cost(u); }), Symptom::equal_costs)
         << method;
     EXPECT_EQ(after_solves(options, [](double u) { return 3 - u; }), Symptom::saturated_inputs) << method;
-    EXPECT_EQ(after_solves(options, [](double u) { return 3 + spring(u); }), Symptom::no_progress) << method;
+    EXPECT_EQ(after_solves(options, [](double u) { return 3 + spring_cost(u); }), Symptom::no_progress)
+        << method;
   }
 }
 
@@ -60,7 +61,7 @@ TEST(Symptoms, AreNoneOnTheWayAndAtTheGoal) {
 
 TEST(Symptoms, EndWithAReset) {
   const auto solver = make_solver(MppiOptions{.horizon = 8, .samples = 64, .temperature = 1e-6}, 1);
-  const auto evaluator = testing::sum_over_steps([](double u, int) { return spring(u); });
+  const auto evaluator = testing::sum_over_steps([](double u, int) { return spring_cost(u); });
   for (int i = 1; i < 4; ++i) EXPECT_EQ(solver->solve(evaluator, {}).suspicious_solves, i);
   solver->reset(1);
   EXPECT_EQ(solver->solve(evaluator, {}).suspicious_solves, 1);

@@ -49,7 +49,7 @@ TEST(Weighting, WeightsAreExponentials) {
   double total = 0;
   for (std::size_t k = 0; k < 1000; ++k) {
     const auto least = static_cast<double>(drawn.statistics.minimum_total);
-    const double w = static_cast<double>(drawn.samples.weights()[k]);
+    const double w = drawn.samples.weights()[k];
     EXPECT_NEAR(w, std::exp((least - static_cast<double>(drawn.samples.costs()[k])) / 1.7), 1e-5) << k;
     total += w;
   }
@@ -102,9 +102,7 @@ TEST(Weighting, ControlTermIsInUnitsOfTheTemperature) {
            0.8 * static_cast<double>(drawn.samples.values().at(0, 0, static_cast<int>(k)));
   };
   for (std::size_t k = 1; k < 1000; ++k) {
-    EXPECT_NEAR(static_cast<double>(w[k]), static_cast<double>(w[0]) * std::exp(exponent(0) - exponent(k)),
-                2e-5)
-        << k;
+    EXPECT_NEAR(w[k], static_cast<double>(w[0]) * std::exp(exponent(0) - exponent(k)), 2e-5) << k;
   }
 }
 

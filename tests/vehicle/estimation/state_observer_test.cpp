@@ -21,6 +21,7 @@ constexpr double period = 0.025, time_step = 0.005;  // s
 struct Drive {
   double friction = 1.0489, assumed_friction = 1.0489;
   double position_noise = 0, yaw_noise = 0, speed_noise = 0;  ///< m, rad, m/s, standard deviations
+  double wheel_error = 0, wheel_slip = 0;  ///< shares of the speed: always, and per m/s^2 of acceleration
   bool imu = false;
   /// Standard deviation of the position along the car, m; `position_noise` is then that across it.
   double along_noise = 0;
@@ -67,6 +68,7 @@ Errors errors_of(const Drive& drive) {
   RandomStream noise({5, 0});
   Errors sum;
   int count = 0;
+  double speed_before = plant.state().speed;
   for (int tick = 0; tick < 320; ++tick) {
     const double time = tick * period;
     const sim::CarState& state = plant.state();
@@ -83,6 +85,8 @@ Errors errors_of(const Drive& drive) {
     input.pose.x = moved.x;
     input.pose.y = moved.y;
     input.pose.yaw += drive.yaw_noise * noise.normal();
+    input.speed *= 1 + drive.wheel_error + drive.wheel_slip * (state.speed - speed_before) / period;
+    speed_before = state.speed;
     input.speed += drive.speed_noise * noise.normal();
     if (drive.imu) input.imu = imu.read();
     observer.update(*model, input, drive.assumed_friction);
@@ -120,6 +124,14 @@ TEST(StateObserver, HasSmallErrorsWithALocalisedPose) {
   EXPECT_LT(e.yaw_rate, 0.17);
   EXPECT_LT(e.slip, 0.03);
   EXPECT_LT(e.speed, 0.08);
+}
+
+// Tyres are smaller than configured, and wheels slip while the car brakes or accelerates.
+TEST(StateObserver, LearnsTheSizeOfTheWheels) {
+  Drive drive = localised;
+  drive.wheel_error = 0.04;
+  drive.wheel_slip = 0.01;
+  EXPECT_LT(errors_of(drive).speed, 0.08) << "the wheels are wrong by 0.16 m/s";
 }
 
 TEST(StateObserver, AnImuGivesTheYawRate) {

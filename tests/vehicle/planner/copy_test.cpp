@@ -92,7 +92,7 @@ TEST_P(CopiedPlanner, GoesOnWithTheSameBits) {
     }
     copy.reset();
     for (int i = begin + 20; i < begin + 35; ++i)
-      EXPECT_EQ(Sent(original->update(inputs.at(i))), sent[static_cast<std::size_t>(i - begin - 20)]) << i;
+      EXPECT_EQ(Sent(original->update(inputs.at(i))), sent[i - begin - 20]) << i;
     original = Planner(*original);
   }
 }

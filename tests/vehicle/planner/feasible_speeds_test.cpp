@@ -12,19 +12,21 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr double grip = 8, radius = 1, straight = 10, spacing = 0.1;
+constexpr double grip = 8, radius = 1, straight = 10;
 
-/// Two straights joined by half circles, with a top speed.
-std::vector<maps::ReferencePoint> oval(double top_speed) {
+/// Two straights of this length (m) joined by half circles, with a point each `spacing` m and a top speed.
+std::vector<maps::ReferencePoint> oval(double top_speed, double length = straight, double bend = radius,
+                                       double spacing = 0.1) {
   std::vector<maps::ReferencePoint> path;
   for (const double side : {1.0, -1.0}) {
-    for (double x = 0; x < straight; x += spacing)
-      path.push_back({side * (x - 0.5 * straight), -side * radius, side > 0 ? 0 : M_PI, top_speed});
-    const int pieces = static_cast<int>(M_PI * radius / spacing);
+    const double yaw = side > 0 ? 0 : M_PI;
+    for (int i = 0; i < std::lround(length / spacing); ++i)
+      path.push_back({side * (spacing * i - 0.5 * length), -side * bend, yaw, top_speed});
+    const int pieces = static_cast<int>(M_PI * bend / spacing);
     for (int i = 0; i < pieces; ++i) {
       const double turned = M_PI * i / pieces;
-      path.push_back({side * (0.5 * straight + radius * std::sin(turned)), -side * radius * std::cos(turned),
-                      turned + (side > 0 ? 0 : M_PI), top_speed});
+      path.push_back({side * (0.5 * length + bend * std::sin(turned)), -side * bend * std::cos(turned),
+                      turned + yaw, top_speed});
     }
   }
   return path;
@@ -38,29 +40,12 @@ double at(const FeasibleSpeeds& speeds, double arc) {
   while (i + 1 < count && speeds.arc(i + 1) <= arc) ++i;
   const double end = i + 1 < count ? speeds.arc(i + 1) : speeds.length();
   const double share = (arc - speeds.arc(i)) / (end - speeds.arc(i));
-  const auto value = [&](int k) { return speeds.speeds()[static_cast<std::size_t>(k % count)]; };
+  const auto value = [&](int k) { return speeds.speeds()[k % count]; };
   return value(i) + share * (value(i + 1) - value(i));
 }
 
-/// A closed course of two straights of 30 m and two half circles of 3 m radius, driven at 12 m/s.
-std::vector<maps::ReferencePoint> long_oval() {
-  std::vector<maps::ReferencePoint> path;
-  constexpr double pi = M_PI, bend = 3;
-  for (int i = 0; i < 150; ++i) path.push_back({0.2 * i, 0, 0, 12});
-  for (int i = 0; i < 47; ++i) {
-    const double a = -pi / 2 + pi * i / 47;
-    path.push_back({30 + bend * std::cos(a), bend + bend * std::sin(a), 0, 12});
-  }
-  for (int i = 0; i < 150; ++i) path.push_back({30 - 0.2 * i, 2 * bend, pi, 12});
-  for (int i = 0; i < 47; ++i) {
-    const double a = pi / 2 + pi * i / 47;
-    path.push_back({bend * std::cos(a), bend + bend * std::sin(a), 0, 12});
-  }
-  return path;
-}
-
 TEST(FeasibleSpeeds, KeepToGripBrakesAndMotor) {
-  const auto path = long_oval();
+  const auto path = oval(12, 30, 3, 0.2);
   FeasibleSpeeds speeds(path);
   EXPECT_EQ(speeds.speeds()[0], 12);
   speeds.update({.grip = 8, .acceleration = 9, .braking = 6, .delay = 0, .switch_speed = 7});

@@ -19,8 +19,9 @@ struct Wall {
 /// The readings of a laser 0.275 m ahead of the rear axle among walls; 29 m where none stands.
 class LaneScan {
  public:
-  explicit LaneScan(const std::vector<Wall>& walls, std::size_t beams = 271)
-      : step_(-2 * first / (static_cast<double>(beams) - 1)), ranges_(beams) {
+  /// The beams cover 4.7 rad from `first` (rad) on.
+  explicit LaneScan(const std::vector<Wall>& walls, std::size_t beams = 271, double first = -2.35)
+      : first_(first), step_(4.7 / (static_cast<double>(beams) - 1)), ranges_(beams) {
     for (std::size_t i = 0; i < beams; ++i) {
       const double angle = first + static_cast<double>(i) * step_, c = std::cos(angle), s = std::sin(angle);
       double range = 29;
@@ -39,13 +40,12 @@ class LaneScan {
   maps::LaserScanView view() const { return view_of(ranges_); }
   /// The same scan with other readings.
   maps::LaserScanView view_of(const std::vector<float>& ranges) const {
-    return {ranges, first, step_, 0.05, 30};
+    return {ranges, first_, step_, 0.05, 30};
   }
   std::vector<float>& ranges() { return ranges_; }
 
  private:
-  static constexpr double first = -2.35;  // rad
-  double step_;                           // rad
+  double first_, step_;  // rad
   std::vector<float> ranges_;
 };
 

@@ -9,7 +9,6 @@
 
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/solvers/mppi_options.hpp"
-#include "slalom/vehicle/model/registry.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "support/lane.hpp"
 #include "support/predicted.hpp"
@@ -29,8 +28,7 @@ Planner make_planner(const PlannerOptions& options = {}) {
           make_solver(testing::few_steering_samples(), 1)};
 }
 
-/// The scan in a lane of this half width (m) with a car in its middle, whose rear end is `car` (m) ahead of
-/// the axle.
+/// The scan in a lane of this half width (m) with the rear end of a car in its middle, `car` (m) ahead.
 testing::LaneScan scan_of_lane(double half_width, double car = 100) {
   std::vector<testing::Wall> walls = testing::beside_lane(half_width);
   walls.push_back({{car, -0.5 * car_width}, {car, 0.5 * car_width}});

@@ -2,9 +2,7 @@
 
 #include <cmath>
 #include <optional>
-#include <span>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "slalom/solvers/registry.hpp"
@@ -13,7 +11,6 @@
 #include "support/adversary.hpp"
 #include "support/any_options.hpp"
 #include "support/any_others.hpp"
-#include "support/call_limits.hpp"
 #include "support/lane.hpp"
 #include "support/promise.hpp"
 
@@ -39,7 +36,7 @@ inline vehicle::Planner sliding_planner(const vehicle::PlannerOptions& options =
 
 /// The numbers of calls.
 struct PlannerTally {
-  long planners = 0, refused = 0, updates = 0, corrections = 0;
+  long planners = 0, refused = 0, updates = 0;
   long statuses[7] = {};
 };
 
@@ -123,7 +120,6 @@ inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
     check_output(out, options);
     ++tally.updates;
     ++tally.statuses[static_cast<int>(out.status)];
-    tally.corrections += out.corrections;
     if (!adversary.below(30)) planner.reset(static_cast<std::uint64_t>(i));
   }
 }

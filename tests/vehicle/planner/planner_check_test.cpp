@@ -111,15 +111,68 @@ TEST(PlannerCheck, AfterAJumpOfThePosePlansStayBetweenTheWallsOfTheScan) {
   EXPECT_GT(planned, 80);
 }
 
+// A car that stands a millimetre outside of its margin, where every way out begins inside of it.
+// m, in the car's frame: the side of a box to the left of its rear.
+const testing::LaneScan beside_box({{{0.048, 0.232}, {0.288, 0.782}}}, 1081);
+
+TEST(Confined, ACarThatCanMoveNeitherWayOutsideOfItsMarginKeepsLessOfIt) {
+  VehicleOptions car;
+  car.body = {
+      .front = 0.461, .rear = 0.119, .width = 0.31, .margin = 0.05, .soft_margin = 0.25, .soft_cost = 20};
+  Planner planner = testing::sliding_planner({}, car);
+  const PlannerInput input{beside_box.view(), {{5, 0, 0}, 0}};
+  double highest = 0, time = 0;
+  for (; time < 2 && highest < 0.2; time += PlannerOptions().control_period)
+    highest = planner.update(input).command.speed;
+  EXPECT_GT(highest, 0.2);
+}
+
+constexpr double speed = 3, period = 0.025;      // m/s, s
+constexpr double position_error = -0.25;         // m, to the right
+const std::vector<float> straight_on(2 * 6, 0);  // six steps without steering and acceleration
+// m: a wall to the left of the car.
+const testing::LaneScan beside_wall({{{-25, 0.5}, {25, 0.5}}}, 1081);
+
+/// The collision cost of driving straight on beside the wall, after a second in which the pose was right and
+/// one update in which it is wrong by `error` (m, to the left).
+double cost_beside_the_wall(double error) {
+  Planner planner = testing::sliding_planner();
+  PlannerInput input{beside_wall.view(), {{5, 0, 0}, speed}};
+  const auto update = [&](double deviation) {
+    for (std::size_t i = 0; i < 3; ++i) input.odometry.covariance[i][i] = deviation * deviation;
+    planner.update(input);
+    input.odometry.pose.x += speed * period;
+  };
+  for (int i = 0; i < 40; ++i) update(0.02);
+  input.odometry.pose.y = error;
+  update(0.3);
+  std::vector<PredictedState> states(straight_on.size() / 2 + 1);
+  return planner.predict(straight_on, states).collision;
+}
+
+// The filter does not follow a pose that is as uncertain, and the walls must not follow it either: the car is
+// as far from them as its laser says.
+TEST(EstimatedPose, DoesNotMoveTheWallsThatTheCarSees) {
+  const double right = cost_beside_the_wall(0);
+  EXPECT_LT(right, 1) << "the wall is far enough";
+  EXPECT_NEAR(cost_beside_the_wall(position_error), right, 5);
+}
+
+TEST(PlannerPrediction, CostsNothingBeforeAPlanAndAfterAReset) {
+  Planner planner = testing::sliding_planner();
+  std::vector<PredictedState> states(straight_on.size() / 2 + 1);
+  EXPECT_EQ(planner.predict(straight_on, states).state, 0);
+  planner.update({beside_wall.view(), {{5, 0.2, 0}, speed}});
+  EXPECT_GT(planner.predict(straight_on, states).state, 0);
+  planner.reset(1);
+  EXPECT_EQ(planner.predict(straight_on, states).state, 0);
+}
+
 TEST(PlannerCheck, EveryCommandIsValidForAnyInput) {
   testing::PlannerTally tally;
   testing::try_adversaries(
       testing::repetitions(20000), tally.updates,
       [&](testing::Adversary& adversary, std::uint64_t) { testing::call_planner(adversary, 200, tally); });
-  std::printf("[ calls    ] %ld updates of %ld planners (%ld more refused), %ld corrections;", tally.updates,
-              tally.planners - tally.refused, tally.refused, tally.corrections);
-  for (int i = 0; i < 7; ++i) std::printf(" %s %ld", name(static_cast<PlannerStatus>(i)), tally.statuses[i]);
-  std::printf("\n");
   EXPECT_GT(tally.planners, 2 * tally.refused);
   for (int i = 0; i < 6; ++i) EXPECT_GT(tally.statuses[i], 0) << name(static_cast<PlannerStatus>(i));
 }

@@ -115,8 +115,7 @@ class PlanNearAWall : public SequenceSelection {
     std::vector<PredictedState> states(horizon + 1);
     return {model_->predict(straight_on, states).collided, begin(straight_on).cost.collided};
   }
-  /// Expects that a plan collides with a post that is ahead of the body in one state, and behind it in the
-  /// next.
+  /// Expects that a plan collides with a post that is ahead of the body in one state, behind it in the next.
   void expect_post_is_seen() {
     const auto braking = held(0, -9);
     for (const auto& [beside, met] : {std::pair(0.15, true), {0.3, false}}) {
@@ -194,8 +193,7 @@ TEST_F(PlanNearAWall, BrakesBeforeAWallAcrossTheWay) {
   EXPECT_LT(choice_->states().back().speed, 0.5 * speed);
 }
 
-// The car is about to touch the wall beside it. Brakes would turn it into the wall, and would take next to
-// nothing from its speed.
+// The car is about to touch the wall beside it. Brakes would turn it into the wall and hardly slow it down.
 TEST_F(PlanNearAWall, ContinuesWhereBrakingComesTooLate) {
   see_wall({0.9, 0.12}, {2, 0.12});
   const auto chosen = chosen_for(held(0, 1));

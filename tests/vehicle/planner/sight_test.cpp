@@ -9,13 +9,13 @@
 #include <numbers>
 #include <vector>
 
+#include "vehicle/planner/lane_scan.hpp"
+
 namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double laser_x = 0.275, front = 0.46, corner = 5;  // m
 constexpr double period = 0.025;                             // s
-constexpr int beams = 1081;
-constexpr double field_of_view = 1.5 * std::numbers::pi;
 
 /// m, an axis-parallel box.
 struct Box {
@@ -30,39 +30,21 @@ std::vector<maps::ReferencePoint> left_turn() {
   return path;
 }
 
-/// The range that a laser at (laser_x, 0) measures among boxes: the least distance at which a beam enters
-/// one.
-class Scan {
- public:
-  explicit Scan(const std::vector<Box>& boxes, double angle_min = -field_of_view / 2)
-      : angle_min_(angle_min), ranges_(beams) {
-    for (int i = 0; i < beams; ++i) {
-      const double angle = angle_min + i * increment(), c = std::cos(angle), s = std::sin(angle);
-      double range = 30;
-      for (const Box& box : boxes) {
-        const double x1 = (box.left - laser_x) / c, x2 = (box.right - laser_x) / c;
-        const double y1 = box.bottom / s, y2 = box.top / s;
-        const double enters = std::max(std::min(x1, x2), std::min(y1, y2));
-        const double leaves = std::min(std::max(x1, x2), std::max(y1, y2));
-        if (enters > 0 && enters < leaves) range = std::min(range, enters);
-      }
-      ranges_[static_cast<std::size_t>(i)] = static_cast<float>(range);
-    }
+/// The scan of a laser at (laser_x, 0) among boxes, whose beams cover 4.7 rad from `first` (rad) on.
+testing::LaneScan scan_of(const std::vector<Box>& boxes, double first = -2.35) {
+  std::vector<testing::Wall> walls;
+  for (const Box& box : boxes) {
+    const maps::Point a{box.left, box.bottom}, b{box.right, box.bottom}, c{box.right, box.top},
+        d{box.left, box.top};
+    walls.insert(walls.end(), {{a, b}, {b, c}, {c, d}, {d, a}});
   }
-  static double increment() { return field_of_view / (beams - 1); }
-  std::vector<float>& ranges() { return ranges_; }
-  maps::LaserScanView view() const { return {ranges_, angle_min_, increment(), 0, 30}; }
-
- private:
-  double angle_min_;
-  std::vector<float> ranges_;
-};
+  return testing::LaneScan(walls, 1081, first);
+}
 
 Sight sight(double reach = 12) {
   PlannerOptions options;
   options.laser_x = laser_x;
   options.control_period = period;
-  options.sight_deceleration = 6;
   BodyOptions body;
   body.front = front;
   return {left_turn(), false, reach, options, body};
@@ -72,37 +54,37 @@ const Box inner_wall{-20, 4.5, 0.5, 20};
 const Box parked{2.7, 3.3, -0.15, 0.15};
 
 TEST(Sight, OfAFreePathAllIsInSight) {
-  const PathInSight seen = sight().look(Scan({}).view(), {}, 0);
+  const PathInSight seen = sight().look(scan_of({}).view(), {}, 0);
   EXPECT_EQ(seen.way, PathInSight::all);
   EXPECT_EQ(seen.obstacle, PathInSight::all);
 }
 
 TEST(Sight, TheInnerWallHidesThePathBehindTheCorner) {
   // The beam past the wall's corner (4.5, 0.5) meets x = 5 at y = 0.5 (5 - 0.275) / (4.5 - 0.275) = 0.56.
-  const PathInSight seen = sight().look(Scan({inner_wall}).view(), {}, 0);
+  const PathInSight seen = sight().look(scan_of({inner_wall}).view(), {}, 0);
   EXPECT_NEAR(seen.way, corner + 0.56, 0.25);
   EXPECT_EQ(seen.obstacle, PathInSight::all);
-  EXPECT_EQ(sight(5).look(Scan({inner_wall}).view(), {}, 0).way, PathInSight::all) << "beyond the reach";
-  const PathInSight nearer = sight().look(Scan({inner_wall}).view(), {}, 20);
+  EXPECT_EQ(sight(5).look(scan_of({inner_wall}).view(), {}, 0).way, PathInSight::all) << "beyond the reach";
+  const PathInSight nearer = sight().look(scan_of({inner_wall}).view(), {}, 20);
   EXPECT_NEAR(nearer.way, seen.way - 2, 1e-9) << "from the nearest point on";
 }
 
 TEST(Sight, WhatStandsOnThePathHidesNothing) {
-  const PathInSight alone = sight().look(Scan({parked}).view(), {}, 0);
+  const PathInSight alone = sight().look(scan_of({parked}).view(), {}, 0);
   EXPECT_EQ(alone.way, PathInSight::all);
   EXPECT_NEAR(alone.obstacle, 2.9, 0.25);
-  const PathInSight both = sight().look(Scan({parked, inner_wall}).view(), {}, 0);
+  const PathInSight both = sight().look(scan_of({parked, inner_wall}).view(), {}, 0);
   EXPECT_NEAR(both.way, corner + 0.56, 0.25);
   EXPECT_EQ(both.obstacle, alone.obstacle);
   const Box beside{2.7, 3.3, 0.25, 0.4};
-  EXPECT_EQ(sight().look(Scan({beside}).view(), {}, 0).obstacle, PathInSight::all);
+  EXPECT_EQ(sight().look(scan_of({beside}).view(), {}, 0).obstacle, PathInSight::all);
 }
 
 TEST(Sight, BesideThePathThatIsHiddenNothingIsKnown) {
   Sight made = sight();
-  made.look(Scan({parked}).view(), {}, 0);
+  made.look(scan_of({parked}).view(), {}, 0);
   EXPECT_TRUE(made.unknown().empty());
-  const PathInSight seen = made.look(Scan({inner_wall}).view(), {1, 0, 0}, 10);
+  const PathInSight seen = made.look(scan_of({inner_wall}).view(), {1, 0, 0}, 10);
   ASSERT_FALSE(made.unknown().empty());
   int inside = 0;
   for (const maps::Point& place : made.unknown()) {  // in the frame of the car at x = 1
@@ -116,19 +98,19 @@ TEST(Sight, BesideThePathThatIsHiddenNothingIsKnown) {
 }
 
 TEST(Sight, ABeamWithoutAReadingShowsAll) {
-  Scan scan({inner_wall});
+  testing::LaneScan scan = scan_of({inner_wall});
   std::fill(scan.ranges().begin(), scan.ranges().end(), std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(sight().look(scan.view(), {}, 0).way, PathInSight::all);
   EXPECT_EQ(sight().look({}, {}, 0).way, PathInSight::all) << "an empty scan";
 }
 
 TEST(Sight, TheFirstBeamMayPointAnyWay) {
-  const PathInSight seen = sight().look(Scan({inner_wall}).view(), {}, 0);
-  EXPECT_EQ(sight().look(Scan({inner_wall}, 1.25 * std::numbers::pi).view(), {}, 0).way, seen.way);
+  const PathInSight seen = sight().look(scan_of({inner_wall}).view(), {}, 0);
+  EXPECT_EQ(sight().look(scan_of({inner_wall}, 2 * std::numbers::pi - 2.35).view(), {}, 0).way, seen.way);
 }
 
 TEST(Sight, WhatIsBesideTheScanIsNotInSight) {
-  const Scan left({}, 0);  // from straight ahead to the left, and not to the right
+  const testing::LaneScan left({}, 1081, 0);  // from straight ahead to the left, and not to the right
   EXPECT_EQ(sight().look(left.view(), {0, 0, -0.5}, 0).way, PathInSight::all);
   EXPECT_LT(sight().look(left.view(), {0, 0, 0.5}, 0).way, 1);
 }
@@ -136,11 +118,11 @@ TEST(Sight, WhatIsBesideTheScanIsNotInSight) {
 TEST(Sight, ACarStopsFromTheStoppingSpeed) {
   const Sight made = sight();
   for (const double way : {2.0, 5.0, 12.0}) {
-    const double speed = made.stopping_speed(way);
+    const double speed = made.stopping_speed(way, 6);
     EXPECT_NEAR(speed * 2 * period + speed * speed / 12, way - front - 0.1, 1e-9) << way;
   }
-  EXPECT_GT(made.stopping_speed(0), 0) << "it looks around the corner";
-  EXPECT_TRUE(std::isinf(made.stopping_speed(PathInSight::all)));
+  EXPECT_GT(made.stopping_speed(0, 6), 0) << "it looks around the corner";
+  EXPECT_TRUE(std::isinf(made.stopping_speed(PathInSight::all, 6)));
 }
 
 }  // namespace

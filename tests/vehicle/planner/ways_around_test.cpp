@@ -19,8 +19,7 @@ namespace {
 
 constexpr int horizon = 28;
 
-/// A car on a straight course at x = 10 m, with a wall of points across the way from `right` to `left` (m),
-/// `ahead` (m) of it.
+/// A car on a straight course at x = 10 m; `ahead` (m) of it a wall of points from `right` to `left` (m).
 class Lane {
  public:
   Lane(double ahead, double right, double left)

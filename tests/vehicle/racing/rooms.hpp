@@ -12,11 +12,8 @@ constexpr double pi = 3.14159265358979323846;
 
 /// A map without anything known, cells of 0.05 m, origin in the lower left corner.
 inline maps::OccupancyGrid unknown_map(double width, double height, double x = 0, double y = 0) {
-  maps::OccupancyGrid map{static_cast<int>(std::lround(width / 0.05)),
-                          static_cast<int>(std::lround(height / 0.05)),
-                          0.05,
-                          {x, y, 0},
-                          {}};
+  const auto cells = [](double length) { return static_cast<int>(std::lround(length / 0.05)); };
+  maps::OccupancyGrid map{cells(width), cells(height), 0.05, {x, y, 0}, {}};
   map.cells.assign(static_cast<std::size_t>(map.width) * map.height, maps::Occupancy::unknown);
   return map;
 }

@@ -21,13 +21,15 @@ struct NetworkModel {
   std::vector<double> goal, state_weights, terminal_weights;  ///< one for each state
   std::vector<double> input_weights;                          ///< one for each input
   std::vector<Disc> discs;
-  double disc_weight = 0;   ///< cost of a state that collides
-  bool has_walls = false;   ///< whether a state collides where `walls` is below `clearance`
-  maps::Field walls;        ///< distance from the nearest wall, m, at the first two states
-  double clearance = 0;     ///< m
-  maps::Field field;        ///< cost map, at the first two states
-  bool has_field = false;   ///< whether `field` has a part in the cost
-  double field_weight = 1;  ///< factor of `field` in the cost of a state
+  double disc_weight = 0;                    ///< cost of a state that collides
+  bool has_walls = false;                    ///< whether a state collides where `walls` is below `clearance`
+  maps::Field walls;                         ///< distance from the nearest wall, m, at the first two states
+  double clearance = 0;                      ///< m
+  maps::Field field;                         ///< cost map, at the first two states
+  bool has_field = false;                    ///< whether `field` has a part in the cost
+  double field_weight = 1;                   ///< factor of `field` in the cost of a state
+  double dt = 0;                             ///< s; 0: unknown
+  std::vector<double> input_min, input_max;  ///< one value, one for each input, or none
 };
 
 /// Most values of a state and the inputs of a step.

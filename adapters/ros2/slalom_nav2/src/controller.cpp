@@ -18,8 +18,7 @@ using slalom::maps::Pose;
 using slalom::nodes::FollowerAnswer;
 using slalom::nodes::GoalTolerance;
 
-/// Returns a tolerance of a goal checker, or 0 if it does not measure that: then it tells 0, or a value that
-/// no tolerance has.
+/// A tolerance of a goal checker, or 0 if it does not measure that: then it tells 0 or no sensible value.
 double tolerance(double told) {
   return std::isfinite(told) && told > 0 && told < 1e6 ? told : 0;
 }

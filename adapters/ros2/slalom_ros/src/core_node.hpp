@@ -12,8 +12,7 @@
 
 namespace slalom_ros {
 
-/// A node whose work a class of slalom::nodes does, from the messages of the LiDAR and the transforms of a
-/// car. Its options are parameters.
+/// A node whose work a class of slalom::nodes does. Its options are parameters.
 template <class Core>
 class CoreNode : public ManagedNode {
  protected:

@@ -1,6 +1,5 @@
 // Localisation: computes the transform from map to odom, `pf/pose/odom` and `particlecloud` from `scan`,
-// `odom` and a map. LocaliserCore does the work. docs/on-the-car.md has topics, frames, parameters and
-// faults.
+// `odom` and a map. LocaliserCore does the work. docs/on-the-car.md has topics, parameters and faults.
 #include <ctime>
 #include <limits>
 #include <optional>

@@ -63,8 +63,7 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
     while_configured_.push_back(made);
     return made.get();
   }
-  /// Makes a publisher whose last message later subscribers receive. Humble knows no such messages within a
-  /// process.
+  /// Makes a publisher whose last message later subscribers receive; Humble has none within a process.
   template <class Message>
   rclcpp_lifecycle::LifecyclePublisher<Message>* advertise_latched(const std::string& topic) {
     rclcpp::PublisherOptions options;
@@ -80,8 +79,7 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
   }
 
   /// Subscribes until the node is deactivated. An executor may already have taken messages when a transition
-  /// drops their subscription, so these are not heard. `hear` takes a message, or a message and its
-  /// rclcpp::MessageInfo.
+  /// drops their subscription, so these are not heard. `hear` takes a message, or also its MessageInfo.
   template <class Message, class Hear>
   void subscribe(const std::string& topic, const rclcpp::QoS& qos, Hear hear,
                  const rclcpp::SubscriptionOptions& options = {}) {

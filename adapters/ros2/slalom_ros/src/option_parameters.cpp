@@ -27,16 +27,12 @@ ParameterValue value_of(const OptionEntry& entry) {
 
 std::string text_of(const ParameterValue& value) {
   switch (value.get_type()) {
-    case ParameterType::PARAMETER_BOOL:
-      return slalom::to_text(value.get<bool>());
     case ParameterType::PARAMETER_INTEGER:
       return std::to_string(value.get<std::int64_t>());
     case ParameterType::PARAMETER_DOUBLE:
       return slalom::to_text(value.get<double>());
     case ParameterType::PARAMETER_DOUBLE_ARRAY:
       return slalom::to_text(value.get<std::vector<double>>());
-    case ParameterType::PARAMETER_STRING:
-      return value.get<std::string>();
     default:
       return rclcpp::to_string(value);
   }

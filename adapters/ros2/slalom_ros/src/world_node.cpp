@@ -1,7 +1,6 @@
 // The simulator as a car: subscribes to `drive` and publishes `scan`, `odom` (wheel odometry) with its
-// transforms, the parked cars, and the true state as `ground_truth`, `laps` and `contacts` (number of
-// collisions). Like a real car it must brake without a finite command for a while, or when two nodes command
-// it.
+// transforms, the parked cars, and the true state as `ground_truth`, `laps` and `contacts`. Like a real car
+// it must brake without a finite command for a while, or when two nodes command it.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

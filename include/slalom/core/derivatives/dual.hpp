@@ -25,7 +25,6 @@ struct DualMask {
   friend DualMask operator|(DualMask a, DualMask b) { return {a.value || b.value, a.kink || b.kink}; }
   friend DualMask operator&&(DualMask a, DualMask b) { return a & b; }
   friend DualMask operator||(DualMask a, DualMask b) { return a | b; }
-  /// Negation.
   friend DualMask operator!(DualMask a) { return {!a.value, a.kink}; }
 };
 
@@ -83,40 +82,27 @@ struct Dual {
     for (T& d : derivative) d = T(0.0);
   }
   /// A constant.
-  Dual(float constant) : Dual(static_cast<double>(constant)) {}
-  /// A constant.
-  Dual(int constant) : Dual(static_cast<double>(constant)) {}
-  /// A constant.
   explicit Dual(const Coefficient& constant) : Dual(static_cast<double>(constant)) {}
   /// A constant.
   explicit Dual(const T& constant) requires(!std::same_as<T, double>) : Dual(0.0) { value = constant; }
 
-  /// Sum, with its derivatives.
   friend Dual operator+(const Dual& a, const Dual& b) {
     return linear(a, T(1.0), b, T(1.0), a.value + b.value);
   }
-  /// Difference, with its derivatives.
   friend Dual operator-(const Dual& a, const Dual& b) {
     return linear(a, T(1.0), b, T(-1.0), a.value - b.value);
   }
-  /// Product, with its derivatives.
   friend Dual operator*(const Dual& a, const Dual& b) {
     return linear(a, b.value, b, a.value, a.value * b.value);
   }
-  /// Quotient, with its derivatives.
   friend Dual operator/(const Dual& a, const Dual& b) {
     const T quotient = a.value / b.value, inverse = T(1.0) / b.value;
     return linear(a, inverse, b, -quotient * inverse, quotient);
   }
-  /// Negative, with its derivatives.
   friend Dual operator-(const Dual& a) { return Dual(0.0) - a; }
-  /// Adds.
   Dual& operator+=(const Dual& b) { return *this = *this + b; }
-  /// Subtracts.
   Dual& operator-=(const Dual& b) { return *this = *this - b; }
-  /// Multiplies.
   Dual& operator*=(const Dual& b) { return *this = *this * b; }
-  /// Divides.
   Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
   friend DualMask operator<(const Dual& a, const Dual& b) {

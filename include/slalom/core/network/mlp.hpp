@@ -188,7 +188,6 @@ class Mlp {
   template <class T>
   struct Result {
     T value[Outputs];  ///< one for each output
-    /// The value of an output.
     const T& operator[](int i) const { return value[i]; }
   };
 

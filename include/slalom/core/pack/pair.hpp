@@ -40,7 +40,6 @@ struct Mask<Pair<T>> {
     low.store(to);
     high.store(to + T::lanes);
   }
-  /// The value of one lane.
   bool operator[](int lane) const { return lane < T::lanes ? low[lane] : high[lane - T::lanes]; }
 };
 
@@ -72,23 +71,14 @@ struct Pack<Pair<T>> {
     low.store(to);
     high.store(to + T::lanes);
   }
-  /// Value of one lane.
   float operator[](int lane) const { return lane < T::lanes ? low[lane] : high[lane - T::lanes]; }
 
   SLALOM_INLINE friend Pack operator-(const Pack& a) { return Pack(-a.low, -a.high); }
 
-/// An operator of two pairs, and of a pair and a number, which stands for the same value in all lanes.
+/// An operator of two pairs.
 #define SLALOM_PAIR_OPERATOR(Result, op)                                        \
   SLALOM_INLINE_CALLS friend Result operator op(const Pack& a, const Pack& b) { \
     return Result(a.low op b.low, a.high op b.high);                            \
-  }                                                                             \
-  template <Number N>                                                           \
-  SLALOM_INLINE_CALLS friend Result operator op(const Pack& a, N b) {           \
-    return a op Pack(b);                                                        \
-  }                                                                             \
-  template <Number N>                                                           \
-  SLALOM_INLINE_CALLS friend Result operator op(N a, const Pack& b) {           \
-    return Pack(a) op b;                                                        \
   }
   SLALOM_PAIR_OPERATOR(Pack, +)
   SLALOM_PAIR_OPERATOR(Pack, -)

@@ -25,8 +25,7 @@ struct Waypoint {
 /// A course is a folder with one ROS map (a yaml file and the image it names) and one waypoint CSV in one of
 /// two formats:
 ///  - a header `opt_x,opt_y,...,ref_v` and comma-separated rows; the columns opt_x, opt_y and ref_v are read;
-///  - leading lines that begin with `#`, then rows `s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2`, of
-///  which
+///  - leading lines that begin with `#`, then rows `s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2`;
 ///    x, y and vx are read.
 /// The yaw is computed from the points, since files differ in the axis from which they measure it.
 /// `opp_ref_path.csv`, if present, has no header; its columns 0 and 1 are the points where obstacles may
@@ -40,12 +39,10 @@ struct Course {
   std::string description;  ///< one sentence
   maps::Point origin;       ///< m, map frame; origin of the coordinates below
   maps::OccupancyGrid map;  ///< the map
-  std::vector<Waypoint>
-      waypoints;  ///< at least 3, successive ones differ; the first is not repeated at the end
-  std::vector<maps::Point>
-      obstacle_path;  ///< path on which obstacles are placed; the waypoints if the folder has no such file
-  maps::Pose start;   ///< pose of the centre of gravity: the first waypoint, along the path, or the one of
-                      ///< course.yaml
+  /// At least 3; successive ones differ, and the first is not repeated at the end.
+  std::vector<Waypoint> waypoints;
+  std::vector<maps::Point> obstacle_path;  ///< where obstacles are placed; without a file the waypoints
+  maps::Pose start;  ///< pose of the centre of gravity: course.yaml has it, else the first waypoint
   std::optional<double> timeout;   ///< s per lap, if course.yaml gives one
   bool closed = true;              ///< the path continues from the last waypoint to the first
   double length = 0;               ///< m along the waypoints, with the closing stretch if closed
@@ -80,8 +77,7 @@ double profile_time(const Course& course);
 /// Whether the start is the pose of the first waypoint.
 bool starts_at_first_waypoint(const Course& course) noexcept;
 
-/// Throws std::invalid_argument unless `start` is finite, on the map, and at least `clearance` (m) from the
-/// centre of every occupied cell.
+/// Throws std::invalid_argument unless `start` is finite, on the map, and this far (m) from occupied cells.
 void check_start(const Course& course, const maps::Pose& start, double clearance = 0.15);
 
 /// The folders in which courses are searched by name: SLALOM_COURSES_DIR if set, then, relative to the folder

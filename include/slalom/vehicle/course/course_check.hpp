@@ -14,8 +14,6 @@ struct CourseCheckOptions {
   double half_width = 0.155;  ///< m, of the body
   double margin = 0;          ///< m, that the body keeps from walls
   SpeedLimits limits;         ///< limits of tyres, motor and brakes
-  double tolerance = 0.05;    ///< share by which a profile may exceed the accelerations, since files are
-                              ///< rounded; there is none for the top speed
 };
 
 /// A part of a course where it breaks a rule. Parts with a gap of less than 1 m between them count as one.

@@ -16,8 +16,7 @@ namespace slalom::vehicle {
 /// curvature. Source: Heilmeier et al., "Minimum curvature trajectory planning and control for an autonomous
 /// race car", Vehicle System Dynamics 58(10), 2020, Sec. 3, which takes derivatives of splines; here plain
 /// differences, since the points are close. The quadratic program is solved by projected successive
-/// over-relaxation from coarse to fine. Needs at least 8 points and a bound >= 0 (m), else
-/// std::invalid_argument.
+/// over-relaxation from coarse to fine. Throws std::invalid_argument on fewer than 8 points or a bound < 0 m.
 std::vector<double> minimum_curvature_offsets(const std::vector<maps::Point>& centre_line, double bound);
 
 }  // namespace slalom::vehicle

@@ -20,22 +20,16 @@ struct SpeedLimits {
 /// above the limits of motor (`acceleration`) and brakes (`braking`, both m/s^2).
 SpeedLimits grip_limits(double friction, double top_speed, double acceleration, double braking);
 
-/// The highest speeds (m/s) along a closed path of the given curvatures (1/m), points `step` m apart, such
-/// that
+/// The highest speeds v (m/s) along a path, nowhere above `speed`, such that
 ///
 ///   v <= top_speed,   v^2 |k| <= a_lat,   -braking * g <= dv/dt <= acceleration * g,   g = sqrt(1 - (v^2 k /
 ///   a_lat)^2):
 ///
 /// the tyres' force is shared between turning and accelerating. One pass forward and one backward from the
-/// slowest point. Source: Heilmeier et al. 2020 (see raceline.hpp), Sec. 4. Throws std::invalid_argument for
-/// limits or a step that are not finite and above 0.
-std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
-                                  const SpeedLimits& limits);
-
-/// Lowers the speeds of a path that has a profile already: returns the highest speeds (m/s), nowhere above
-/// `speed`, that obey the rules above. `speed` and `curvature` have one entry per point, and `step[i]` is the
-/// way (m) from point i to the next, from the last to the first; that of an open path is not used. Throws
-/// std::invalid_argument for limits that are not finite and above 0, and for sizes that differ.
+/// slowest point. Source: Heilmeier et al. 2020 (see raceline.hpp), Sec. 4. `speed` and `curvature` (k, 1/m)
+/// have one entry per point, and `step[i]` is the way (m) from point i to the next, from the last to the
+/// first; that of an open path is not used. Throws std::invalid_argument for limits that are not finite and
+/// above 0, and for sizes that differ.
 std::vector<double> feasible_speeds(std::span<const double> speed, std::span<const double> curvature,
                                     std::span<const double> step, bool closed, const SpeedLimits& limits);
 
@@ -47,10 +41,9 @@ struct PathGeometry {
 };
 
 /// Steps and curvatures of a path. The curvature is the change of direction between the chords of at least
-/// `arm` (m) before and after the point, over their mean length, so that rounded coordinates and uneven steps
-/// do not show. Without `closed` a path is closed if its ends are at most three of its longest steps apart.
+/// 0.4 m before and after the point, over their mean length, so that rounded coordinates and uneven steps do
+/// not show. Without `closed` a path is closed if its ends are at most three of its longest steps apart.
 /// Successive points must differ.
-PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bool> closed = {},
-                           double arm = 0.4);
+PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bool> closed = {});
 
 }  // namespace slalom::vehicle

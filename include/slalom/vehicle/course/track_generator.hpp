@@ -49,8 +49,7 @@ struct RacelinePoint {
   double acceleration = 0;  ///< m/s^2, along the path
 };
 
-/// A generated track, which is closed. It starts at the first point of the raceline, the origin of the map
-/// frame.
+/// A closed track. It starts at the first point of the raceline, which is the origin of the map frame.
 struct GeneratedTrack {
   TrackGeneratorOptions options;           ///< from which it was generated
   std::vector<maps::Point> centre_line;    ///< equal steps of about 0.1 m

@@ -61,18 +61,15 @@ struct LocaliserInput {
 struct LocaliserOutput {
   LocaliserStatus status = LocaliserStatus::uncertain;  ///< how reliable the estimate is
   maps::Pose pose;                                      ///< pose of the rear axle, map frame
-  double covariance[3][3] =
-      {};             ///< covariance of x, y (m, map frame) and yaw (rad) of the particles near the estimate
-  double fit = 0;     ///< share of beams that the map explains at the estimate, 0 .. 1
-  double share = 0;   ///< share of the weight near the estimate, 0 .. 1
-  double health = 0;  ///< fit times share
+  double covariance[3][3] = {};  ///< covariance of x, y (m, map frame), yaw (rad) near the estimate
+  double fit = 0;                ///< share of beams that the map explains at the estimate, 0 .. 1
+  double share = 0;              ///< share of the weight near the estimate, 0 .. 1
+  double health = 0;             ///< fit times share
   double effective_samples = 0;  ///< 1 / sum of squared weights, before resampling
   double update_time = 0;        ///< s of wall clock
   int particles = 0;             ///< particles that weighed this scan
   int beams = 0;                 ///< used of this scan
-  bool resampled = false;        ///< the particles were resampled after this scan
   bool searching = false;        ///< hypotheses in other places are tracked
-  bool relocated = false;        ///< the particles moved to another place, which fits better
 };
 
 /// A particle; the weights of all sum to 1.
@@ -86,9 +83,8 @@ struct Particle {
 class Localiser {
  public:
   /// Copies the needed parts of `map` into tables, and starts everywhere. Throws std::invalid_argument on
-  /// options out of range; on a map without free or without occupied cells, with more than 32766 cells to a
-  /// side, with sizes that disagree, with an origin that is not finite or a resolution that is not finite and
-  /// positive.
+  /// options out of range, and on a map without free or without occupied cells, with more than 32766 cells to
+  /// a side, sizes that disagree, an origin that is not finite or a resolution not finite and above 0.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
   /// Copies everything: the copy continues bit for bit like the original. The tables of the map are shared.
@@ -114,9 +110,8 @@ class Localiser {
 
   int particle_count() const noexcept;          ///< number of the present particles
   Particle particle(int index) const noexcept;  ///< 0 <= index < particle_count()
-  /// The options given at construction. `sensor_model` is the one in use: likelihood_field where the table of
-  /// ranges would have more than 2^27 entries, with 180 for each cell of 0.1 m (or of the map, if larger)
-  /// that is free.
+  /// The options given at construction, but for `sensor_model`: likelihood_field where the table of ranges
+  /// would have more than 2^27 entries, 180 for each free cell of 0.1 m (or of the map, if larger).
   const LocaliserOptions& options() const noexcept;
 
  private:

@@ -6,8 +6,7 @@
 
 namespace slalom::vehicle {
 
-/// The probability of a range at a pose (Thrun, Burgard & Fox, "Probabilistic Robotics", MIT Press 2005, Ch.
-/// 6).
+/// The probability of a range at a pose (Thrun, Burgard & Fox, "Probabilistic Robotics", 2005, Ch. 6).
 enum class SensorModel {
   likelihood_field,  ///< distance from the beam's end to the nearest wall (Table 6.3)
   beam,              ///< range expected from the map, by a table that is computed at construction (Table 6.1)

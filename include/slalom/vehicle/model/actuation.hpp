@@ -9,8 +9,7 @@ namespace slalom::vehicle {
 /// The steering between a command and the wheels: dead time and first-order lag.
 class SteeringActuator {
  public:
-  /// Discretises the lag exactly for a command that is held during a step or, without `exact`, by explicit
-  /// Euler.
+  /// Discretises the lag exactly for commands held during a step or, without `exact`, by explicit Euler.
   explicit SteeringActuator(const PathTrackingOptions& options, bool exact = true);
 
   /// The command (rad) that acts in step `k`: the step's input, or the first one while that is held.

@@ -2,18 +2,16 @@
 
 #include <span>
 
-/// Identification of a car's steering from a recorded drive: gain, offset, delay, lag and understeer, and the
-/// wheelbase.
+/// Identification of a car from a drive: wheelbase, understeer, and gain, offset, delay and lag of steering.
 ///
 /// The model is the kinematic bicycle of the vehicle problem with a steering servo and understeer,
 ///
 ///     steer' = (gain u(t - delay) + offset - steer) / time_constant
 ///     yaw'   = v tan(steer) / (wheelbase + understeer v^2)
 ///
-/// (R. Rajamani, "Vehicle Dynamics and Control", 2nd ed., eq. 2.2 and 3.13), fitted to the
-/// change of yaw from one sample to the next by least squares (Levenberg 1944, Marquardt 1963). The effects
-/// of gain and wheelbase differ only through the nonlinearity of the tangent, so give the wheelbase if it was
-/// measured.
+/// (R. Rajamani, "Vehicle Dynamics and Control", 2nd ed., eq. 2.2 and 3.13), fitted to the change of yaw
+/// from one sample to the next by least squares (Levenberg 1944, Marquardt 1963). Gain and wheelbase differ
+/// in effect only through the nonlinearity of the tangent, so give a wheelbase that was measured.
 namespace slalom::vehicle {
 
 /// One control step of the drive.
@@ -35,8 +33,7 @@ struct IdentificationOptions {
 /// An estimate and its standard deviation.
 struct Identified {
   double value = 0;  ///< value in the unit of the quantity
-  /// Standard deviation, in the same unit; 0 if the value was given, infinite if the drive does not determine
-  /// it.
+  /// Standard deviation, in the same unit; 0 of a given value, infinite if the drive does not determine it.
   double deviation = 0;
 };
 

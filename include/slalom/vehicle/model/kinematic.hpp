@@ -3,7 +3,6 @@
 #include <array>
 
 #include "slalom/vehicle/model/actuation.hpp"
-#include "slalom/vehicle/model/model_options.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 
 namespace slalom::vehicle {

@@ -8,8 +8,7 @@
 
 namespace slalom::vehicle {
 
-/// The cost map value of the car's body at a pose: 100 in collision, less where it is near an obstacle,
-/// negative off the map.
+/// The cost map value of the car's body at a pose: 100 in collision, less near one, negative off the map.
 class ObstacleCost {
  public:
   /// Takes the options of the body.
@@ -50,13 +49,11 @@ class ObstacleCost {
     }
   }
 
-  /// m ahead of the rear axle, of the point for which `blocked` is asked: the centre of the foremost disc, or
-  /// with a box the rear axle, 0.
+  /// m, how far the point of `blocked` is ahead of the rear axle: the foremost disc's centre; with a box 0.
   double foremost() const noexcept { return discs_ ? double(disc_[2]) : 0; }
 
   /// Whether the body collides with the point of `foremost` at a position in the map frame, m: with discs the
-  /// foremost one, with a box the whole body in its heading at the time of the scan. Off the map nothing is
-  /// known, and nothing collides.
+  /// foremost one, with a box all of it in its heading at the time of the scan. Off the map nothing collides.
   template <class T>
   SLALOM_INLINE mask_t<T> blocked(const T& x, const T& y) const {
     const T value = slalom::look_up(obstacles_, T(to_local_[0]) * x + (T(to_local_[1]) * y + T(to_local_[2])),

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
 #include <concepts>
 
-#include "slalom/vehicle/model/model_options.hpp"
 #include "slalom/vehicle/model/obstacle_cost.hpp"
 #include "slalom/vehicle/model/tracking_cost.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
@@ -128,8 +126,7 @@ class PathTracking {
     return cost_.look_up(s.x, s.y, s.speed, obstacle);
   }
 
-  /// The state after step `k` with inputs `u`: steering, rad, of a magnitude below pi / 2; acceleration,
-  /// m/s^2.
+  /// The state after step `k` with inputs `u`: steering, rad, within pi / 2; acceleration, m/s^2.
   template <class T>
   State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, inputs>& u, int k) const {
     return motion_.step(s, seen.speed, u, k);

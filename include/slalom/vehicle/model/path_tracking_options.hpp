@@ -77,6 +77,15 @@ struct PathTrackingOptions {
   double wheelbase() const noexcept { return front_length + rear_length; }
 };
 
+/// The options of a model that has none of its own.
+struct NoOptions {
+  bool operator==(const NoOptions&) const = default;
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, NoOptions>
+void visit_options(Options&, Visit&&) {}
+
 namespace detail {
 
 template <class Options, class Visit>

@@ -66,8 +66,7 @@ class SingleTrack {
     const T share = T(squared_half_steer_speed_) / (T(squared_half_steer_speed_) + square(s.speed));
     return clamp(input * share, T(-1.5), T(1.5));
   }
-  /// The acceleration (m/s^2) that takes effect where `wanted` is asked for on a path of this reference speed
-  /// (m/s).
+  /// The acceleration (m/s^2) that takes effect if `wanted` is asked for at this speed (m/s) of the path.
   template <class T>
   SLALOM_INLINE T limited(const State<T>& s, const T& reference_speed, const T& wanted) const {
     const T grip = dynamics_.grip_left(s, T(friction_)), braking = dynamics_.braking_limit(grip);

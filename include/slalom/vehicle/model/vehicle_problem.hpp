@@ -72,8 +72,7 @@ enum class Urgency {
   detour    ///< the path leads around an obstacle: lost time costs 10 times as much
 };
 
-/// The ground, and the way in which a car whose tyres slip should drive on it. The defaults are for a free
-/// road.
+/// The ground, and how a car whose tyres slip should drive on it. The defaults are for a free road.
 struct DrivingConditions {
   double friction = 1;               ///< coefficient between tyres and ground, > 0
   double top_speed = 1e3;            ///< m/s, the highest speed of predictions
@@ -99,8 +98,7 @@ struct VehicleTraits {
   ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< content of the map of obstacles
   double clearance_reach = 0;                        ///< m
   BodyOptions body;                                  ///< the body that must not collide
-  /// The friction that the options give, > 0 if tyres slip, else 0.
-  double friction = 0;
+  double friction = 0;               ///< friction that the options give, > 0 if tyres slip, else 0
   double usable_grip = 0;            ///< the share of the friction that plans may use
   double braking_share = 1;          ///< the share of the usable grip that the mean deceleration may use
   bool seeks_lap_time = false;       ///< plans seek the shortest time, whatever the path's speeds

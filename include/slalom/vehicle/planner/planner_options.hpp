@@ -1,9 +1,21 @@
 #pragma once
 
 #include "slalom/core/options.hpp"
-#include "slalom/vehicle/published/planner_options.hpp"
 
 namespace slalom::vehicle {
+
+namespace published {
+
+/// Parts of the planner that follow the published program of Honda et al. (ICRA 2024).
+struct PlannerOptions {
+  bool maps = false;  ///< cost map and reference field as in the paper's program
+  /// Subtract whole turns from the planned steering angle, and limit only the command to `steer_limit`: the
+  /// observer follows the angle itself. It matters where a method leaves its bounds (`clamp_solution`). The
+  /// paper's program sends the angle without a limit; its simulator stops the wheels at 0.4189 rad.
+  bool wrap_steer = false;
+};
+
+}  // namespace published
 
 /// Options of the estimates of state, car and ground that are made while driving, for models whose tyres
 /// slip. `visit_options` below describes the fields.
@@ -107,8 +119,8 @@ void visit_options(Options& o, Visit&& visit) {
                         "loses time; 0: no cost",
                         0, 1000});
   visit(o.sight_deceleration, {"sight_deceleration", "m/s^2",
-                               "with objective lap_time: a car that brakes with it stops on the path that "
-                               "the scan shows; 0: no limit",
+                               "with a model whose tyres slip: a car that brakes with it, or with all the "
+                               "grip that the ground has, stops on the path that the scan shows; 0: no limit",
                                0, 100});
   visit(o.grip_shares, {"grip_shares", "",
                         "with objective lap_time: share of usable_grip for the path's speeds; one value, or "

@@ -124,8 +124,7 @@ class OneTrajectory {
   }
 
  protected:
-  /// Sets the speed of the next state, and finds the command that acts (rad) and the way for which it is held
-  /// (m).
+  /// Sets the speed of the next state; finds the command that acts (rad) and the way on which it does (m).
   template <class S, class T>
   SLALOM_INLINE void begin_step(const S& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k, S& next,
                                 T& command, T& travelled) const {

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "slalom/maps/distance_field.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::vehicle {

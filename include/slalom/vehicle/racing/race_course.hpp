@@ -55,13 +55,11 @@ RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const Rac
 /// m, the steps of a centre line that suit a car and a length (m).
 double centre_line_step(const RacingCar& car, double length);
 
-/// A map of a corridor: free between its walls, which are `wall` m thick, unknown beyond; cells of
-/// `resolution` m.
+/// A map of a corridor, cells of `resolution` m: free between walls that are `wall` m thick, unknown beyond.
 maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, double wall);
 
 /// The point to which a line jumps, 0 if it does not: it is more than 20 usual (median) steps from the point
-/// before, and the line turns by more than 1 rad there or at that point, unlike a straight whose ends alone
-/// are given.
+/// before, and the line turns by more than 1 rad at one of them, unlike a straight with only its ends.
 std::size_t find_jump(std::span<const maps::Point> points);
 /// A sentence without subject on the jump to a point.
 std::string jump_text(std::span<const maps::Point> points, std::size_t jump);
@@ -79,9 +77,8 @@ struct CentreLineFile {
 /// that part is left out. Throws IoError with file, line, column, value and rule, also where the line jumps.
 CentreLineFile read_centre_line(const std::filesystem::path& file);
 
-/// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), centerline.csv
-/// (`# x_m, y_m, w_tr_right_m, w_tr_left_m`) and course.yaml. Creates the folder if it does not exist. Throws
-/// IoError.
+/// Writes a course folder, and creates it if it does not exist: map.yaml, map.png, raceline.csv (`# s_m; x_m;
+/// ...`), centerline.csv (`# x_m, y_m, w_tr_right_m, w_tr_left_m`) and course.yaml. Throws IoError.
 void save_race_course(const RaceCourse& course, const std::filesystem::path& folder, const TrackLabel& label);
 
 }  // namespace slalom::vehicle

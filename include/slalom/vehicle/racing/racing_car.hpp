@@ -30,8 +30,7 @@ struct RacingCar {
   double max_steering_rate = 3.2;              ///< rad/s
   SpeedLimits limits{8, 8.829, 8.829, 8.829};  ///< top speed and accelerations, where `grip` is empty
   double power = std::numeric_limits<double>::infinity();  ///< W/kg: v dv/dt is at most this
-  /// Rows by rising speed, which replace the accelerations of `limits`. Linear between rows, constant beyond
-  /// them.
+  /// Rows by rising speed instead of the accelerations of `limits`. Linear between them, constant beyond.
   std::vector<GripAtSpeed> grip;
 };
 
@@ -45,9 +44,8 @@ std::vector<std::string> racing_car_names();
 /// `passenger` (a full-scale car on a dry road). Throws std::invalid_argument that lists the names.
 RacingCar racing_car(const std::string& name);
 
-/// The car of a configuration, with the grip that its plans may use (friction times usable_grip), and three
-/// times their margin. The top speed is that of racing_car(), by the wheelbase: planner.max_speed is a limit
-/// for driving.
+/// The car of a configuration, with the grip that its plans may use (friction times usable_grip), three times
+/// their margin, and the top speed of racing_car(), by the wheelbase; planner.max_speed is for driving.
 RacingCar racing_car(const Configuration& configuration);
 
 /// Sets the accelerations to those of a friction coefficient, `friction` g in every direction, and removes

@@ -55,16 +55,6 @@ struct State {
   const double* velocities() const noexcept { return values + Positions; }                ///< qvel [nv]
   double* activations() noexcept { return values + Positions + Velocities; }              ///< act [na]
   const double* activations() const noexcept { return values + Positions + Velocities; }  ///< act [na]
-
-  /// The state that a simulation of MuJoCo is in.
-  static State of(const mjData& data) noexcept {
-    State state;
-    state.time = data.time;
-    mju_copy(state.positions(), data.qpos, Positions);
-    mju_copy(state.velocities(), data.qvel, Velocities);
-    mju_copy(state.activations(), data.act, Activations);
-    return state;
-  }
 };
 
 /// Options of the rollouts of a model. `visit_options` below describes the fields.
@@ -84,8 +74,7 @@ void visit_options(Options& o, Visit&& visit) {
          1024});
 }
 
-/// The number of control sequences that were simulated, and of those among them that led to a simulation that
-/// is not valid.
+/// The number of control sequences that were simulated, and of those whose simulation became invalid.
 struct RolloutCount {
   long simulated = 0;  ///< all
   long invalid = 0;    ///< those that diverged, or whose contacts or constraints did not fit into the memory
@@ -104,8 +93,7 @@ struct Sizes {
   int positions, velocities, activations, inputs;
 };
 
-/// Throws std::invalid_argument, which names the model's file, if the model has other sizes, or what a
-/// rollout cannot do.
+/// Throws std::invalid_argument with the model's file if it has other sizes, or what a rollout cannot do.
 void check_model(const Model& model, const Sizes& task);
 
 /// The range of an input of a model: infinite where the model does not limit it.
@@ -138,8 +126,7 @@ class Evaluator final : public BatchEvaluator {
     double dt = 0;                              ///< duration of a step, s
   };
 
-  /// Allocates the simulations of all threads. Throws std::invalid_argument if task or options do not fit the
-  /// model, and std::bad_alloc.
+  /// Throws std::invalid_argument if task or options do not fit the model, and std::bad_alloc.
   explicit Evaluator(Model model, T task, const RolloutOptions& options = {})
       : model_(std::move(model)), task_(std::move(task)), physics_steps_(options.physics_steps) {
     validate_options(options, "rollouts");
@@ -159,7 +146,14 @@ class Evaluator final : public BatchEvaluator {
   const Inputs& problem() const noexcept { return inputs_; }  ///< the bounds of the inputs
 
   /// The state that a simulation of the model is in.
-  static State state_of(const mjData& data) noexcept { return State::of(data); }
+  static State state_of(const mjData& data) noexcept {
+    State state;
+    state.time = data.time;
+    mju_copy(state.positions(), data.qpos, T::positions);
+    mju_copy(state.velocities(), data.qvel, T::velocities);
+    mju_copy(state.activations(), data.act, detail::activations_of<T>());
+    return state;
+  }
 
   /// The rollouts since construction.
   RolloutCount rollouts() const noexcept {
@@ -218,7 +212,7 @@ class Evaluator final : public BatchEvaluator {
     ++worker.rollouts.simulated;
     int step = 0;
     for (; step < steps && advance(simulation, input, step, total); ++step)
-      if (x) x[step + 1] = State::of(simulation.data());
+      if (x) x[step + 1] = state_of(simulation.data());
     if (step == steps && simulation.observe()) {
       add(total, task_.terminal_cost(model_.get(), simulation.data()));
       return total;

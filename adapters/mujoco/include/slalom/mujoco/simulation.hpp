@@ -36,8 +36,7 @@ class Simulation {
   /// so that what follows depends on nothing else.
   void restart(double time, const double* state) noexcept;
 
-  /// Computes what depends on positions and velocities, with sensors of both (mj_step1). Whether the state is
-  /// valid.
+  /// Computes what depends on positions and velocities, with their sensors (mj_step1). Whether it is valid.
   bool observe() noexcept;
   /// After `observe`: applies the inputs for a time step of the model (mj_step2). Whether the simulation is
   /// valid: no value diverged, and contacts and constraints fit into the memory that the model has for them.

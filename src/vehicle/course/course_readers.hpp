@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/course/course.hpp"
 
+/// Readers of the files of a course.
 namespace slalom::vehicle::detail {
 
 /// The header of a centre line with its widths.
@@ -17,9 +19,9 @@ enum class CsvForm { optimised_line, raceline, centre_line, other };
 /// Detects the format of a CSV from its first lines. Throws IoError if it cannot be read.
 CsvForm csv_form(const std::filesystem::path& file);
 
-/// Position and speed of every row; yaw and arc length are left 0. Throws IoError for cells that are not
-/// finite numbers, wrong column counts, negative speeds and speeds that are all 0. `lines` gets the line
-/// number of every row.
+/// Position and speed of every row; yaw and arc length are left 0. `lines` gets the rows' line numbers.
+/// Throws IoError for cells that are not finite, wrong column counts, negative speeds and speeds that are all
+/// 0.
 std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm form,
                                      std::vector<int>& lines);
 
@@ -35,5 +37,21 @@ std::vector<CentreLineRow> read_centre_line_rows(const std::filesystem::path& fi
 
 /// Columns 0 and 1 of a CSV without header, one point at least.
 std::vector<maps::Point> read_points(const std::filesystem::path& file);
+
+/// The content of course.yaml; every key is optional.
+struct CourseFile {
+  std::optional<std::string> name, description;
+  std::optional<maps::Pose> start;
+  std::optional<double> timeout;  ///< s
+  std::optional<bool> closed;
+  int start_line = 0;  ///< the line of `start`
+};
+
+/// Reads course.yaml. Throws IoError for unknown keys and for values of the wrong type or out of range.
+CourseFile read_course_file(const std::filesystem::path& file);
+
+/// Whether a yaml file can be a map: it has the key `image`, or it is not valid YAML, so that
+/// loading it as a map reports the error.
+bool may_be_map(const std::filesystem::path& file);
 
 }  // namespace slalom::vehicle::detail

@@ -1,0 +1,283 @@
+#include "solvers/golden_json.hpp"
+#include "solvers/kernels/kernels.hpp"
+#include "solvers/methods/guides.hpp"
+#include "solvers/methods/reverse_weights.hpp"
+#include "solvers/methods/stein.hpp"
+#include "solvers/published/published_program.hpp"
+#include "solvers/sampling/sample_set.hpp"
+
+/// The parts of the solvers against those of the published program.
+namespace slalom::testing {
+namespace {
+
+TEST(SolverGolden, Softmax) {
+  int shifted = 0;
+  compare_cases("softmax", [&](const Json& json, Comparison& comparison) {
+    auto exact = numbers<double>(json["costs"]);
+    // Costs whose differences float32 cannot tell, for their size, are given relative to the least: the
+    // weights do not depend on a common offset.
+    const double min_cost = *std::min_element(exact.begin(), exact.end());
+    const double resolution =
+        std::numeric_limits<float>::epsilon() * std::abs(min_cost) / number(json["lambda"]);
+    if (resolution > 0.1 * 1e-4) {
+      for (double& cost : exact) cost -= min_cost;
+      comparison.note(std::to_string(++shifted) + " of them relative to the least cost, for their precision");
+    }
+    std::vector<float> costs(exact.begin(), exact.end());
+    costs.resize(padded(static_cast<int>(costs.size())), std::numeric_limits<float>::infinity());
+    std::vector<float> weights(costs.size());
+    const detail::Range range{0, static_cast<int>(costs.size())};
+    const float least = detail::kernels::minimum(costs.data(), range);
+    const auto sums = detail::kernels::exponential_weights(
+        costs.data(), costs.data(), least, static_cast<float>(number(json["lambda"])), range, weights.data());
+    detail::kernels::scale(1.0f / (sums.weight + 1e-10f), range, weights.data());
+    comparison.compare(weights, numbers<double>(json["weights"]), case_name(json));
+  });
+}
+
+TEST(SolverGolden, ControlTerm) {
+  compare_cases("control_term", [&](const Json& json, Comparison& comparison) {
+    SequenceBatch samples = batch_of(json["samples"]);
+    const auto mean = numbers<float>(json["mean"]), nominal = numbers<float>(json["nominal"]);
+    const auto variance = numbers<float>(json["cov"]);
+    std::vector<float> coefficients(mean.size());
+    detail::control_coefficients(number(json["lambda"]), number(json["alpha"]), 1e-4, mean.data(),
+                                 nominal.data(), variance.data(), samples.rows(), coefficients.data());
+    auto costs = padded_numbers(json["costs"], 0);
+    detail::kernels::add_linear(rows_of(samples), coefficients.data(), all_of(samples), costs.data());
+    comparison.compare(costs, numbers<double>(json["costs_with_control_term"]), case_name(json));
+  });
+}
+
+TEST(SolverGolden, GaussianFitting) {
+  int undetermined = 0;
+  const auto compare = [&](const Json& json, Comparison& comparison) {
+    const auto x = numbers<double>(json["x"]), y = numbers<double>(json["y"]);
+    const auto fit = published_fit(x, y);
+    const double fitted = std::sqrt(detail::fitted_variance(fit, true)), expected = number(json["variance"]);
+    EXPECT_EQ(std::isinf(fitted), std::isinf(expected)) << case_name(json) << ": the rank decision differs";
+    if (std::isinf(expected))
+      comparison.note(std::to_string(++undetermined) + " of them undetermined, every decision equal");
+    comparison.compare<double>({std::clamp(fitted, 0.001, 0.1)}, {std::clamp(expected, 0.001, 0.1)},
+                               case_name(json), 1);
+    if (number(json["cond_A"]) < 1e8) {
+      EXPECT_NEAR(std::clamp(fitted, 0.001, 0.1), std::clamp(expected, 0.001, 0.1), 1e-11) << case_name(json);
+    }
+  };
+  compare_cases("gaussian_fitting", compare, ", clamped (double)");
+}
+
+TEST(SolverGolden, MirrorDescent) {
+  compare_cases("md_update", [&](const Json& json, Comparison& comparison) {
+    auto mean = numbers<float>(json["prior_mean"]), variance = numbers<float>(json["prior_cov"]);
+    const auto prior_mean = mean, prior_variance = variance;
+    const auto weighted_mean = numbers<float>(json["weighted_mean"]),
+               weighted_variance = numbers<float>(json["weighted_cov"]);
+    const int rows = static_cast<int>(mean.size());
+    detail::mirror_descent(static_cast<float>(number(json["step_size"])), weighted_mean.data(),
+                           weighted_variance.data(), rows, mean.data(), variance.data());
+    comparison.compare(mean, numbers<double>(json["new_mean"]), case_name(json) + " mean");
+    comparison.compare(variance, numbers<double>(json["new_cov"]), case_name(json) + " variance");
+    const float ratio = static_cast<float>(number(json["interp_ratio"]));
+    detail::interpolate(prior_mean.data(), mean.data(), ratio, rows, mean.data());
+    detail::interpolate(prior_variance.data(), variance.data(), ratio, rows, variance.data());
+    comparison.compare(mean, numbers<double>(json["interp_mean"]), case_name(json) + " warm mean");
+    comparison.compare(variance, numbers<double>(json["interp_cov"]), case_name(json) + " warm variance");
+  });
+}
+
+/// Gradients so small that the published program's floor has swallowed them count as zero.
+constexpr double swallowed = 1e-12;
+
+TEST(SolverGolden, SvgGradient) {
+  compare_cases("svg_grad", [&](const Json& json, Comparison& comparison) {
+    SequenceBatch samples = batch_of(json["grad_samples"]);
+    auto totals = padded_numbers(json["grad_sample_costs"], 0);
+    const auto centre = numbers<float>(json["particle"]), previous = numbers<float>(json["prev_control_seq"]);
+    const auto inverse = numbers<float>(json["grad_sampler_inv_cov"]);
+    auto weight = numbers<float>(json["guide_inv_cov"]);
+    const float temperature = static_cast<float>(number(json["grad_lambda"]));
+    for (float& w : weight) w *= temperature;
+    std::vector<float> weights(totals.size()), gradient(centre.size());
+    const detail::SurrogateGradient how{.temperature = temperature,
+                                        .subtract_minimum = false,
+                                        .floor = 1e-10,
+                                        .centre = centre.data(),
+                                        .inverse_variance = inverse.data(),
+                                        .distance_centre = previous.data(),
+                                        .distance_weight = weight.data()};
+    detail::surrogate_gradient(how, rows_of(samples), all_of(samples), samples.samples(), totals.data(),
+                               weights.data(), gradient.data());
+    comparison.compare(gradient, numbers<double>(json["grad_log_likelihood"]), case_name(json), swallowed);
+  });
+}
+
+TEST(SolverGolden, SvMpcGradient) {
+  compare_cases("svmpc_grad", [&](const Json& json, Comparison& comparison) {
+    // One particle: its samples stand a whole padding apart.
+    const int count = static_cast<int>(json["grad_samples"].size());
+    const auto centre = numbers<float>(json["particle"]), mean = numbers<float>(json["prior_mean"]);
+    const int rows = static_cast<int>(centre.size());
+    SequenceBatch samples(1, rows, count * simd::padding), theta(1, rows, 1), gradient(1, rows, 1);
+    std::vector<float> exponents(samples.stride()), linear(mean.size());
+    for (int s = 0; s < count; ++s) {
+      exponents[s * simd::padding] = static_cast<float>(number(json["grad_sample_costs"][s]));
+      for (int r = 0; r < rows; ++r)
+        samples.data(r)[s * simd::padding] = static_cast<float>(number(json["grad_samples"][s][r]));
+    }
+    for (int r = 0; r < rows; ++r) theta.data(r)[0] = centre[r];
+    const auto inverse = numbers<float>(json["grad_sampler_inv_cov"]),
+               prior_inverse = numbers<float>(json["prior_inv_cov"]);
+    for (std::size_t r = 0; r < linear.size(); ++r) linear[r] = mean[r] * prior_inverse[r];
+    const detail::GradientSettings how{
+        count,         simd::padding, static_cast<float>(number(json["lambda"])), false, 1e-10f,
+        linear.data(), inverse.data()};
+    detail::kernels::particle_gradients(how, rows_of(samples), rows_of(theta), all_of(theta),
+                                        exponents.data(), rows_of(gradient));
+    comparison.compare(sequence(gradient, 0), numbers<double>(json["grad_log_likelihood"]), case_name(json),
+                       swallowed);
+    std::vector<float> prior(centre.size());
+    for (std::size_t r = 0; r < prior.size(); ++r)
+      prior[r] = detail::published_prior_gradient(centre[r], mean[r], prior_inverse[r]);
+    comparison.compare(prior, numbers<double>(json["grad_log_prior_as_called"]), case_name(json) + " prior");
+  });
+}
+
+TEST(SolverGolden, SvMpcPhi) {
+  compare_cases("svmpc_phi", [&](const Json& json, Comparison& comparison) {
+    SequenceBatch x = batch_of(json["samples"]), gradient = batch_of(json["grad"]),
+                  phi(1, x.rows(), x.samples());
+    std::vector<float> norms(x.samples());
+    const int count = detail::squared_norms(rows_of(x), x.samples(), norms.data());
+    const float h = detail::bandwidth(norms.data(), count, x.samples());
+    comparison.compare<float>({h}, {number(json["bandwidth_h"])}, case_name(json) + " bandwidth");
+    detail::kernels::stein_directions(rows_of(x), rows_of(gradient), x.samples(), h, all_of(x), rows_of(phi));
+    for (int i = 0; i < x.samples(); ++i) {
+      comparison.compare(sequence(phi, i), numbers<double>(json["phi"][i]),
+                         case_name(json) + " particle " + std::to_string(i));
+    }
+    // The kernel alone: two particles, one of them with a gradient of one.
+    SequenceBatch pair(1, x.rows(), 2), ones = pair, zeros = pair, out = pair;
+    for (int r = 0; r < x.rows(); ++r) {
+      pair.data(r)[0] = x.data(r)[0];
+      pair.data(r)[1] = x.data(r)[1];
+      ones.data(r)[0] = 1;
+    }
+    detail::kernels::stein_directions(rows_of(pair), rows_of(zeros), 2, h, all_of(pair), rows_of(out));
+    auto repulsion = sequence(out, 1);  // half of grad_{x0} k(x0, x1)
+    for (float& v : repulsion) v *= 2;
+    // The repulsion is a summand of phi and as exact as that: particles may differ by less than float32
+    // tells.
+    double scale = 0;
+    for (const Json& direction : json["phi"])
+      for (const double entry : numbers<double>(direction)) scale = std::max(scale, std::abs(entry));
+    comparison.compare(repulsion, numbers<double>(json["grad_kernel_01"]), case_name(json) + " grad kernel",
+                       scale);
+    detail::kernels::stein_directions(rows_of(pair), rows_of(ones), 2, h, all_of(pair), rows_of(out));
+    const auto with_gradient = sequence(out, 1);
+    comparison.compare<float>({2 * with_gradient[0] - repulsion[0]}, {number(json["kernel_01"])},
+                              case_name(json) + " kernel", 1);
+  });
+}
+
+bool any_nan(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+}
+
+/// Weighted mean, and the published program's dimensionless second moment about the samples' mean.
+void compare_moments(const Json& json, const char* suffix, SequenceBatch& samples,
+                     const std::vector<float>& weights, Comparison& comparison) {
+  const auto expected_mean = numbers<double>(json[std::string("mean_") + suffix]);
+  if (any_nan(expected_mean)) return;
+  const auto prior = numbers<float>(json["mean"]), variance = numbers<float>(json["cov"]);
+  const std::vector<float> zero(prior.size());
+  std::vector<float> mean(prior.size()), sigma(prior.size());
+  detail::kernels::weighted_sums(rows_of(samples), weights.data(), zero.data(), all_of(samples), mean.data());
+  detail::kernels::weighted_squares(rows_of(samples), weights.data(), prior.data(), all_of(samples),
+                                    sigma.data());
+  for (std::size_t r = 0; r < sigma.size(); ++r) sigma[r] *= detail::inverse_variance(variance[r], 1e-4f);
+  comparison.compare(mean, expected_mean, case_name(json) + " mean_" + suffix);
+  comparison.compare(sigma, numbers<double>(json[std::string("sigma_") + suffix]),
+                     case_name(json) + " sigma_" + suffix);
+}
+
+/// Plain mean and variance of the samples.
+void compare_plain_moments(const Json& json, SequenceBatch& samples, Comparison& comparison) {
+  std::vector<float> weights(samples.stride()), mean(json["mean"].size()), variance(mean.size());
+  std::fill_n(weights.begin(), samples.samples(), 1.0f / static_cast<float>(samples.samples()));
+  const std::vector<float> zero(mean.size());
+  detail::kernels::weighted_sums(rows_of(samples), weights.data(), zero.data(), all_of(samples), mean.data());
+  detail::kernels::weighted_squares(rows_of(samples), weights.data(), mean.data(), all_of(samples),
+                                    variance.data());
+  for (float& v : variance) v += 1e-5f;
+  comparison.compare(mean, numbers<double>(json["est_mu"]), case_name(json) + " est_mu");
+  comparison.compare(variance, numbers<double>(json["est_sigma"]), case_name(json) + " est_sigma");
+}
+
+TEST(SolverGolden, ReverseWeights) {
+  int overflown = 0;
+  compare_cases("reverse_weights", [&](const Json& json, Comparison& comparison) {
+    SequenceBatch samples = batch_of(json["samples"]);
+    const auto mean = numbers<float>(json["mean"]), variance = numbers<float>(json["cov"]);
+    const std::vector<float> nominal(mean.size());
+    std::vector<float> coefficients(mean.size());
+    const double temperature = number(json["lambda"]);
+    detail::control_coefficients(temperature, number(json["alpha"]), 1e-4, mean.data(), nominal.data(),
+                                 variance.data(), samples.rows(), coefficients.data());
+    auto totals = padded_numbers(json["costs"], std::numeric_limits<float>::infinity());
+    detail::kernels::add_linear(rows_of(samples), coefficients.data(), all_of(samples), totals.data());
+    std::vector<float> evaluated(totals.size()), rejected(totals.size());
+    const auto sums = detail::reverse_weights(totals.data(), static_cast<float>(temperature),
+                                              static_cast<float>(number(json["negative_ratio"])), 1e-10f,
+                                              all_of(samples), evaluated.data(), rejected.data());
+    const auto expected = numbers<double>(json["weights_eval"]),
+               expected_rejected = numbers<double>(json["weights_reject"]);
+    const bool published_nan = any_nan(expected) || any_nan(expected_rejected);
+    // Where the published program overflows or divides by zero ours has finite weights, and says so.
+    EXPECT_EQ(published_nan, sums.log_growth > 709.78 || sums.evaluated == 0 || sums.rejected == 0)
+        << case_name(json) << " log growth " << sums.log_growth;
+    if (published_nan) comparison.note(std::to_string(++overflown) + " of them NaN in the published program");
+    for (const float w : evaluated) EXPECT_TRUE(std::isfinite(w));
+    if (!any_nan(expected)) comparison.compare(evaluated, expected, case_name(json) + " evaluated");
+    if (!any_nan(expected_rejected))
+      comparison.compare(rejected, expected_rejected, case_name(json) + " rejected");
+    compare_moments(json, "eval", samples, evaluated, comparison);
+    compare_moments(json, "reject", samples, rejected, comparison);
+    compare_plain_moments(json, samples, comparison);
+  });
+}
+
+TEST(SolverGolden, RejectionProbability) {
+  compare_cases("rejection_prob", [&](const Json& json, Comparison& comparison) {
+    SequenceBatch samples = batch_of(json["samples"]);
+    const auto mean = numbers<float>(json["mean"]), variance = numbers<float>(json["cov"]);
+    const auto rejected = numbers<float>(json["rejected_mean"]),
+               rejected_variance = numbers<float>(json["rejected_cov"]);
+    detail::PublishedRejection densities(static_cast<int>(mean.size()));
+    densities.set(mean.data(), variance.data(), rejected.data(), rejected_variance.data());
+    std::vector<float> base(densities.base(), densities.base() + mean.size());
+    comparison.compare(base, numbers<double>(json["normal_pdf_rejected_mean"]), case_name(json) + " base");
+    std::vector<float> first;
+    for (int r = 0; r < samples.rows(); ++r)
+      first.push_back(detail::published_density(samples.data(r)[0], rejected[r], rejected_variance[r]));
+    comparison.compare(first, numbers<double>(json["normal_pdf_sample0"]), case_name(json) + " sample 0");
+
+    std::vector<float> logarithms(samples.stride());
+    detail::kernels::published_rejection(rows_of(samples), densities.rows(), all_of(samples),
+                                         logarithms.data());
+    // The program divides by min(sum, 1e-10); only ratios matter, so both are compared as ratios to the
+    // whole.
+    std::vector<double> raw, expected = numbers<double>(json["prob_raw"]);
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      raw.push_back(std::exp(-static_cast<double>(logarithms[k])));
+    comparison.compare(raw, expected, case_name(json) + " probabilities");
+    double sum = 0;
+    for (const double p : raw) sum += p;
+    for (double& p : raw) p /= std::min(sum, 1e-10);
+    comparison.compare(raw, numbers<double>(json["prob_normalised_as_in_code"]),
+                       case_name(json) + " as coded");
+  });
+}
+
+}  // namespace
+}  // namespace slalom::testing
