@@ -117,7 +117,7 @@ void scan_1080(benchmark::State& state) {
     sum += static_cast<double>(ranges[540]);
   }
   if (!(sum > 0)) state.SkipWithError("nothing was seen");
-  state.SetLabel(detail::scan_kernels().name);
+  state.SetLabel(simd::name(simd::active_target()));
 }
 BENCHMARK(scan_1080);
 

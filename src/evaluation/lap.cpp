@@ -12,7 +12,6 @@
 #include "evaluation/lap_setup.hpp"
 #include "evaluation/overtaking/overtaking_meter.hpp"
 #include "slalom/evaluation/passability.hpp"
-#include "slalom/sim/collision_log.hpp"
 #include "slalom/sim/shapes.hpp"
 
 namespace slalom::evaluation {

@@ -6,7 +6,6 @@
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap_settings.hpp"
 #include "slalom/maps/laser_scan.hpp"
-#include "slalom/sim/collision_log.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/world.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"

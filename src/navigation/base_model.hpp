@@ -21,8 +21,7 @@ class BaseModel {
   virtual const Velocity& command() const noexcept = 0;
   virtual std::span<const maps::Pose> plan() const noexcept = 0;
   virtual const SolveResult& solution() const noexcept = 0;
-  /// As Navigator::roll_out.
-  virtual Trajectories roll_out(std::span<const float> sequences) const = 0;
+  virtual Trajectories roll_out(std::span<const float> sequences) const = 0;  ///< as Navigator::roll_out
   virtual void reset(std::uint64_t seed) noexcept = 0;
   virtual void set_cost(StateCost cost) noexcept = 0;
 };

@@ -97,8 +97,7 @@ class CommandDelay {
     }
     motion_ = kept * motion_ + elapsed * difference(measured, {});
     const bool is_clear = errors_[best] < clear_share * errors_[0];
-    if (is_clear && errors_[0] > least_error && motion_ > least_error)
-      longest_ = delay_step * static_cast<double>(best);
+    if (is_clear && errors_[0] > least_error && motion_ > least_error) longest_ = delay_step * best;
   }
   double difference(const Velocity& a, const Velocity& b) const noexcept {
     const double forward = per_speed_ * (a.forward - b.forward), left = per_speed_ * (a.left - b.left),

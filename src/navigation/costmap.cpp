@@ -4,14 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/options.hpp"
 #include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::navigation {
-
 namespace {
 
 /// Half of the diagonal of a cell, in edges of a cell.
@@ -19,17 +17,11 @@ constexpr double half_diagonal = 0.70710678118654752;
 
 constexpr float most_expensive = 1e6F;
 
-int checked_size(int cells, const char* name) {
-  if (cells >= 3 && cells <= 20000) return cells;
-  throw std::invalid_argument("costmap." + std::string(name) + ": " + std::to_string(cells) +
-                              ": must be 3 to 20000 cells");
-}
-
-double checked_resolution(double resolution) {
-  if (resolution >= 0.001 && resolution <= 10) return resolution;
-  std::ostringstream text;
-  text << "costmap.resolution: " << resolution << ": must be in [0.001, 10] m";
-  throw std::invalid_argument(text.str());
+maps::GridGeometry checked(int width, int height, double resolution) {
+  slalom::detail::check("costmap", {"width", "cells", "", 3, 20000}, width);
+  slalom::detail::check("costmap", {"height", "cells", "", 3, 20000}, height);
+  slalom::detail::check("costmap", {"resolution", "m", "", 0.001, 10}, resolution);
+  return {width, height, resolution, 0, 0};
 }
 
 /// Whether the segment from a to b has a point inside the square of half edge `half` around `middle` (Liang
@@ -50,10 +42,9 @@ bool enters_square(const maps::Point& a, const maps::Point& b, const maps::Point
 
 Costmap::Costmap(int width, int height, double resolution, UnknownCells unknown)
     : unknown_(unknown),
-      geometry_{checked_size(width, "width"), checked_size(height, "height"), checked_resolution(resolution),
-                0, 0},
+      geometry_(checked(width, height, resolution)),
       transform_(width, height),
-      transformed_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
+      transformed_(static_cast<std::size_t>(width) * height),
       distances_(width, height),
       prices_(width, height) {
   const bool priced = unknown == UnknownCells::priced;
@@ -74,9 +65,8 @@ bool Costmap::update(const maps::OccupancyGrid& grid, std::span<const float> pri
   const int width = grid.width, height = grid.height;
   for (int row = 0; row < width; ++row) {
     float *distance = distances_.at(row, 0), *price = prices_.at(row, 0);
-    std::size_t from = static_cast<std::size_t>(width) * static_cast<std::size_t>(height - 1) +
-                       static_cast<std::size_t>(width - 1 - row);
-    for (int column = 0; column < height; ++column, from -= static_cast<std::size_t>(width)) {
+    std::size_t from = static_cast<std::size_t>(width) * height - 1 - row;
+    for (int column = 0; column < height; ++column, from -= width) {
       distance[column] = std::min(static_cast<float>(transformed_[from]), reach);
       if (unknown_ == UnknownCells::obstacle) {  // and so is the space off the grid
         const int to_edge = std::min(std::min(row + 1, width - row), std::min(column + 1, height - column));
@@ -91,7 +81,7 @@ bool Costmap::update(const maps::OccupancyGrid& grid, std::span<const float> pri
 }
 
 double Costmap::distance(double x, double y) const noexcept {
-  return static_cast<double>(*distances_.at(geometry_.row(x), geometry_.column(y)));
+  return *distances_.at(geometry_.row(x), geometry_.column(y));
 }
 
 /// Whether the body overlaps an obstacle cell at `to`, or a vertex enters one on its straight way from there

@@ -5,11 +5,11 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation {
-
 namespace {
 
 using maps::Point;
@@ -42,6 +42,16 @@ void check_vertices(std::span<const Point> vertices) {
                                     " and from vertex " + std::to_string(k) + " must not cross");
 }
 
+/// The lower left and the upper right corner of the box around points.
+std::pair<Point, Point> bounds_of(const std::vector<Point>& points) {
+  Point low = points.front(), high = low;
+  for (const Point& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  return {low, high};
+}
+
 }  // namespace
 
 double distance_to_segment(const Point& point, const Point& a, const Point& b) noexcept {
@@ -54,18 +64,15 @@ double distance_to_segment(const Point& point, const Point& a, const Point& b) n
 Footprint::Footprint(std::span<const Point> vertices) : vertices_(vertices.begin(), vertices.end()) {
   check_vertices(vertices);
   if (!contains({0, 0})) throw std::invalid_argument("footprint: the origin must be inside");
-  Point low = vertices_.front(), high = low;
   for (const Point& v : vertices_) {
     circumscribed_ = std::max(circumscribed_, std::hypot(v.x, v.y));
     half_width_ = std::max(half_width_, std::abs(v.y));
-    low = {std::min(low.x, v.x), std::min(low.y, v.y)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y)};
   }
+  const auto [low, high] = bounds_of(vertices_);
   const bool along_x = high.x - low.x >= high.y - low.y;
   const double from = along_x ? low.x : low.y, length = along_x ? high.x - low.x : high.y - low.y;
   for (int i = 0; i < part_count; ++i)
-    parts_[static_cast<std::size_t>(i)] =
-        part_of(from + length * i / part_count, from + length * (i + 1) / part_count, along_x);
+    parts_[i] = part_of(from + length * i / part_count, from + length * (i + 1) / part_count, along_x);
 }
 
 Footprint Footprint::rectangle(double front, double rear, double width) {
@@ -86,11 +93,7 @@ Footprint::Part Footprint::part_of(double from, double to, bool along_x) const {
       points.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
     }
   }
-  Point low = points.front(), high = low;
-  for (const Point& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
+  const auto [low, high] = bounds_of(points);
   Part part{{(low.x + high.x) / 2, (low.y + high.y) / 2}, 0, 0};
   for (const Point& p : points)
     part.covering = std::max(part.covering, std::hypot(p.x - part.middle.x, p.y - part.middle.y));
@@ -104,7 +107,7 @@ std::size_t Footprint::part_at(const Point& point) const noexcept {
   };
   const auto deepest = std::max_element(parts_.begin(), parts_.end(),
                                         [&](const Part& a, const Part& b) { return depth(a) < depth(b); });
-  return static_cast<std::size_t>(deepest - parts_.begin());
+  return deepest - parts_.begin();
 }
 
 bool Footprint::contains(const Point& point) const noexcept {

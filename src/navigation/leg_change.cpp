@@ -6,10 +6,8 @@
 #include <numbers>
 
 #include "navigation/manoeuvre.hpp"
-#include "navigation/path_yaws.hpp"
 
 namespace slalom::navigation::detail {
-
 namespace {
 
 constexpr double wrong_way = std::numbers::pi / 3;  // rad from the path, from which the robot first turns
@@ -54,7 +52,7 @@ void LegChange::turn_round(PathGuide& guide, const maps::Pose& robot, const Cost
   std::size_t best = 0;
   Manoeuvre found;
   for (std::size_t i = guide.nearest(); i <= last; i += join_stride) {
-    const double saved = guide.step() * static_cast<double>(i - guide.nearest());
+    const double saved = guide.step() * (i - guide.nearest());
     const Manoeuvre made = find_manoeuvre(robot, points[i], limits, least + saved, costmap, footprint_);
     if (!(made.cost() < least + saved)) continue;
     least = made.cost() - saved;
@@ -65,7 +63,7 @@ void LegChange::turn_round(PathGuide& guide, const maps::Pose& robot, const Cost
   buffer.clear();
   found.append(robot, buffer);
   if (buffer.size() + points.size() > buffer.capacity()) return;
-  buffer.insert(buffer.end(), points.begin() + static_cast<std::ptrdiff_t>(best), points.end());
+  buffer.insert(buffer.end(), points.begin() + best, points.end());
   buffer.back() = guide.goal();
   guide.set(buffer, false);
 }
@@ -82,7 +80,7 @@ void LegChange::face_goal(PathGuide& guide, const Costmap& costmap,
   std::size_t best = 0;
   Manoeuvre found;
   for (std::size_t i = first; i < last; i += join_stride) {
-    const double saved = guide.step() * static_cast<double>(last - i);
+    const double saved = guide.step() * (last - i);
     const Manoeuvre made =
         find_manoeuvre(points[i], guide.goal(), limits, least + saved, costmap, footprint_);
     if (!(made.cost() < least + saved)) continue;
@@ -91,7 +89,7 @@ void LegChange::face_goal(PathGuide& guide, const Costmap& costmap,
     found = made;
   }
   if (!std::isfinite(least)) return;
-  buffer.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(best));
+  buffer.assign(points.begin(), points.begin() + best);
   found.append(points[best], buffer);
   if (buffer.size() == buffer.capacity()) return;
   buffer.push_back(guide.goal());

@@ -23,8 +23,7 @@ class LegChange {
   void skip(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap) noexcept;
   /// Whether a leg has begun since the last call.
   bool takes_leg() noexcept { return std::exchange(begun_, false); }
-  /// The rest of a turn, rad; 0 on other legs.
-  double turn_left() const noexcept { return turn_left_; }
+  double turn_left() const noexcept { return turn_left_; }  ///< the rest of a turn, rad; 0 on other legs
 
  private:
   void place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,

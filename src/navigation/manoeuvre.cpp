@@ -8,7 +8,6 @@
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation::detail {
-
 namespace {
 
 constexpr double pi = std::numbers::pi;

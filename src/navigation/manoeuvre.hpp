@@ -24,8 +24,7 @@ struct Manoeuvre {
   std::array<Part, 3> parts;
   double radius = 1;  ///< m, of the arcs
 
-  /// The length, and 0.5 m for each change between forward and reverse: m.
-  double cost() const noexcept;
+  double cost() const noexcept;  ///< the length, and 0.5 m for each change between forward and reverse: m
   /// Appends poses at most 0.05 m apart from `from` on, without the last one. The yaws are those of the base.
   void append(const maps::Pose& from, std::vector<maps::Pose>& poses) const noexcept;
   /// Whether the body is free at all its poses.

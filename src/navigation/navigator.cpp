@@ -14,7 +14,6 @@
 #include "slalom/solvers/trajectories.hpp"
 
 namespace slalom::navigation {
-
 namespace {
 
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
@@ -69,25 +68,19 @@ class Navigator::Implementation {
         geometry_(costmap.geometry()),
         model_(detail::make_base_model(options, footprint, geometry_.resolution, solver)),
         way_(options, footprint, geometry_,
-             static_cast<double>(model_->plan().size()) * options.time_step *
+             model_->plan().size() * options.time_step *
                  std::max({options.base.max_forward, options.base.max_reverse, options.base.max_sideways})),
         delay_(options.base),
         others_(footprint, options, model_->plan().size() - 1) {}
 
   std::unique_ptr<Implementation> clone() const { return std::make_unique<Implementation>(*this); }
 
-  void set_path(std::span<const maps::Pose> path) { way_.set_path(path); }
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                           double elapsed, std::span<const maps::PredictedObstacle> others) noexcept;
   void reset(std::uint64_t seed) noexcept;
-  void set_cost(StateCost cost) noexcept { model_->set_cost(std::move(cost)); }
-  /// Takes a decision, and returns the command to send.
-  Velocity send(const Velocity& decision) noexcept { return command_ = delay_.send(decision); }
-  double delay() const noexcept { return delay_.longest(); }
-  const BaseOptions& base() const noexcept { return options_.base; }
-  const detail::BaseModel& model() const noexcept { return *model_; }
 
  private:
+  friend Navigator;
   bool fits(const Costmap& costmap) const noexcept;
   bool watch_commands(const Velocity& velocity, double elapsed) noexcept;
   double room_at(const Costmap& costmap, const maps::Pose& pose) const noexcept;
@@ -157,7 +150,7 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   if (others_.meet(plan, last)) return true;
   if (maps_.overlaps && costmap.collides(core_, plan.front())) {
     const double begin = room_at(costmap, plan.front());
-    return std::any_of(plan.begin() + 1, plan.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+    return std::any_of(plan.begin() + 1, plan.begin() + last + 1,
                        [&](const maps::Pose& pose) { return room_at(costmap, pose) < begin; });
   }
   const Footprint& body = maps_.overlaps ? core_ : footprint_;
@@ -183,8 +176,6 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
                                                   double elapsed) const noexcept {
   NavigationResult result;
   result.status = status;
-  result.remaining = way_.remaining();
-  result.path = way_.points();
   if (!plausible(velocity)) return result;
   result.command = braked(velocity, options_.base, std::clamp(elapsed, 0.0, max_period));
   return result;
@@ -240,9 +231,7 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
     result.command = model_->command();
     result.status = way_.is_detour() ? NavigationStatus::detour : NavigationStatus::following;
   }
-  result.remaining = way_.remaining();
   result.plan = model_->plan();
-  result.path = way_.points();
   return result;
 }
 
@@ -258,28 +247,31 @@ Navigator::Navigator(Navigator&&) noexcept = default;
 Navigator& Navigator::operator=(Navigator&&) noexcept = default;
 
 void Navigator::set_path(std::span<const maps::Pose> path) {
-  implementation_->set_path(path);
+  implementation_->way_.set_path(path);
 }
 
 NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                                    double elapsed, std::span<const maps::PredictedObstacle> others) noexcept {
-  NavigationResult result = implementation_->update(pose, velocity, costmap, elapsed, others);
-  check_result(result, implementation_->base());
-  result.command = implementation_->send(result.command);
-  result.delay = implementation_->delay();
+  Implementation& own = *implementation_;
+  NavigationResult result = own.update(pose, velocity, costmap, elapsed, others);
+  check_result(result, own.options_.base);
+  result.command = own.command_ = own.delay_.send(result.command);
+  result.delay = own.delay_.longest();
+  result.remaining = own.way_.remaining();
+  result.path = own.way_.points();
   return result;
 }
 
 void Navigator::set_cost(StateCost cost) noexcept {
-  implementation_->set_cost(std::move(cost));
+  implementation_->model_->set_cost(std::move(cost));
 }
 
 const SolveResult& Navigator::solution() const noexcept {
-  return implementation_->model().solution();
+  return implementation_->model_->solution();
 }
 
 Trajectories Navigator::roll_out(std::span<const float> sequences) const {
-  return implementation_->model().roll_out(sequences);
+  return implementation_->model_->roll_out(sequences);
 }
 
 void Navigator::reset(std::uint64_t seed) noexcept {

@@ -7,7 +7,6 @@
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation::detail {
-
 namespace {
 
 constexpr double waits_for = 2;       // m from the robot to moving objects for which it may wait
@@ -75,9 +74,7 @@ std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, dou
       std::min(path.size(), saturate_cast<std::size_t>(foresight * speed_ / std::max(step, 1e-3)));
   for (const maps::PredictedObstacle* const other : obstacles_.taken()) {
     const int likeliest = other->likeliest();
-    const auto pose_at = [&](std::size_t i) {
-      return other->at(likeliest, static_cast<double>(i) * step / speed_).pose;
-    };
+    const auto pose_at = [&](std::size_t i) { return other->at(likeliest, i * step / speed_).pose; };
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < last; ++i) {

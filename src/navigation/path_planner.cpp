@@ -7,7 +7,6 @@
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation {
-
 namespace {
 
 constexpr double cautious = 0.3;     // m beside the body's corridor in which driving costs more
@@ -37,9 +36,7 @@ void visit_around(const maps::GridGeometry& geometry, const maps::Point& point, 
     for (int column = first_column; column <= last_column; ++column) {
       const double dx = corner.x + (column + 0.5) * geometry.resolution - point.x,
                    dy = corner.y + (row + 0.5) * geometry.resolution - point.y;
-      if (dx * dx + dy * dy <= radius * radius)
-        visit(static_cast<std::size_t>(row) * static_cast<std::size_t>(geometry.rows) +
-              static_cast<std::size_t>(column));
+      if (dx * dx + dy * dy <= radius * radius) visit(static_cast<std::size_t>(row) * geometry.rows + column);
     }
 }
 
@@ -49,7 +46,7 @@ PathPlanner::PathPlanner(const maps::GridGeometry& geometry, double half_width)
     : half_width_(half_width),
       geometry_(geometry),
       grid_(geometry.rows, geometry.columns, geometry.resolution, max_points),
-      is_kept_(static_cast<std::size_t>(grid_.size())) {}
+      is_kept_(grid_.size()) {}
 
 bool PathPlanner::knows(const Costmap& costmap, const maps::Point& point) const noexcept {
   const maps::GridGeometry& geometry = costmap.geometry();
@@ -98,7 +95,7 @@ bool PathPlanner::search_from(const maps::Point& start) noexcept {
 
 double PathPlanner::cost_to(const maps::Point& point) const noexcept {
   const int cell = grid_.cell_at(point);
-  return cell < 0 ? std::numeric_limits<double>::infinity() : static_cast<double>(grid_.cost(cell));
+  return cell < 0 ? std::numeric_limits<double>::infinity() : grid_.cost(cell);
 }
 
 std::span<const maps::Point> PathPlanner::path_to(const maps::Point& point) noexcept {

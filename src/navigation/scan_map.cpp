@@ -8,16 +8,14 @@
 #include "slalom/maps/laser_scan.hpp"
 
 namespace slalom::navigation {
-
 namespace {
 
 /// Calls `visit` with column and row of the cell at a position, if there is one.
 template <class Visit>
 void visit_cell(const maps::OccupancyGrid& grid, const maps::Point& at, Visit&& visit) {
-  const double column = std::floor((at.x - grid.origin.x) / grid.resolution),
-               row = std::floor((at.y - grid.origin.y) / grid.resolution);
-  if (column >= 0 && column < grid.width && row >= 0 && row < grid.height)
-    visit(saturate_cast<int>(column), saturate_cast<int>(row));
+  const int column = saturate_cast<int>(std::floor((at.x - grid.origin.x) / grid.resolution)),
+            row = saturate_cast<int>(std::floor((at.y - grid.origin.y) / grid.resolution));
+  if (grid.contains(column, row)) visit(column, row);
 }
 
 }  // namespace

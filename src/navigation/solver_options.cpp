@@ -4,7 +4,6 @@
 #include "slalom/solvers/registry.hpp"
 
 namespace slalom::navigation {
-
 namespace {
 
 constexpr double least_turn = 0.01;  // rad/s, limit that variances of a robot that does not turn have
@@ -15,9 +14,6 @@ PerInput variances(const BaseOptions& base, double share, double share_of_turn) 
                turn = share_of_turn * std::max(base.max_turn, least_turn);
   if (base.kind == BaseKind::omnidirectional) return {forward * forward, left * left, turn * turn};
   return {forward * forward, turn * turn};
-}
-PerInput variances(const BaseOptions& base, double share) {
-  return variances(base, share, share);
 }
 
 template <class Type>
@@ -31,14 +27,13 @@ void set_shared(SolverOptions& options, const BaseOptions& base) {
   set(options, "samples", 3000);
   set(options, "temperature", 0.1);
   set(options, "variance", variances(base, 0.4, 0.2));
-  set(options, "gradient_variance", variances(base, 0.1));
+  set(options, "gradient_variance", variances(base, 0.1, 0.1));
   set(options, "noise_exponent", PerInput(4));
   set(options, "noise_pinned", true);
   set(options, "control_cost_discount", 1.0);
 }
 
-/// The rollouts of a solve with these options, divided by its samples. Those of icem decrease from iteration
-/// to iteration.
+/// The rollouts of a solve with these options, divided by its samples. Those of icem decrease.
 int rollouts_per_sample(const SolverOptions& options) {
   const int* const iterations = options.find<int>("iterations");
   const int* const gradient_samples = options.find<int>("gradient_samples");
@@ -52,11 +47,11 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   SolverOptions shared = solver_options(SvgMppiOptions::method);
   set_shared(shared, base);
   SvgMppiOptions options = *shared.get_if<SvgMppiOptions>();
-  options.variance_min = variances(base, 0.15);
+  options.variance_min = variances(base, 0.15, 0.15);
   options.variance_max = variances(base, 0.4, 0.2);
-  options.guides.variance = variances(base, 0.05);
-  options.guides.restart_variance = variances(base, 0.4);
-  options.guides.step = variances(base, 0.06);  // about a third of a step to the samples' mean
+  options.guides.variance = variances(base, 0.05, 0.05);
+  options.guides.restart_variance = variances(base, 0.4, 0.4);
+  options.guides.step = variances(base, 0.06, 0.06);  // about a third of a step to the samples' mean
   options.guides.gradient_temperature = options.temperature;
   options.guides.count = 1;  // the best of several changes from solve to solve, and with it the variances
   options.guides.iterations = 2;

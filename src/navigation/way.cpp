@@ -5,18 +5,15 @@
 #include <stdexcept>
 #include <string>
 
-#include "navigation/path_yaws.hpp"
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::navigation::detail {
-
 namespace {
 
-constexpr double longest_path = 1e6;   // steps of a path
-constexpr double search_period = 0.1;  // s between searches while there is no way
-constexpr double nearest_unseen =
-    0.5;  // m before a closed place, beside those of braking, at which its end is seen
+constexpr double longest_path = 1e6;    // steps of a path
+constexpr double search_period = 0.1;   // s between searches while there is no way
+constexpr double nearest_unseen = 0.5;  // m, beside those of braking, before a closed place whose end is seen
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_step = 0.1;   // m of progress after which the robot is not stuck
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
@@ -26,6 +23,7 @@ constexpr int max_attempts = 5;         // times without progress until the robo
 constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place
 constexpr double retry_after = 10;      // s without a way after which ways that were closed are tried again
 constexpr double around_joint = 0.2;    // m behind the end of a detour, where the path may have a corner
+constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
 constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
 
 }  // namespace
@@ -61,12 +59,12 @@ void Way::set_path(std::span<const maps::Pose> path) {
   if (!guide_.empty() && !is_done_ &&
       std::equal(path.begin(), path.end(), given_.begin(), given_.end(), same))
     return;
-  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > PathAhead::min_rejoin) {
+  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > min_rejoin) {
     chosen_.clear();
     closed_.forget_dead_ends();
   }
   // A detour is at most as long as a path of the search, and goes on along the path.
-  const double longest = length + 2 * static_cast<double>(PathPlanner::max_points) * PathPlanner::spacing;
+  const double longest = length + 2 * PathPlanner::max_points * PathPlanner::spacing;
   const std::size_t most = count(longest, PathGuide::spacing, longest_path, "path") + path.size() + 8;
   guide_.reserve(most);
   poses_.reserve(most);
@@ -92,8 +90,7 @@ void Way::clear() noexcept {
   stop_ = no_stop;
 }
 
-/// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth`
-/// metres.
+/// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth` m.
 void Way::follow(std::span<const maps::Pose> path, double smooth) noexcept {
   guide_.set(path, turns_on_the_spot(options_.base), smooth);
   legs_.restart();
@@ -109,6 +106,40 @@ bool Way::ends_at(const maps::Pose& pose) const noexcept {
           std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle);
 }
 
+/// The first closed point of the path within `look_ahead`; the number of points if there is none.
+std::size_t Way::first_closed(const Costmap& costmap) const noexcept {
+  const std::size_t count = guide_.points().size();
+  const std::size_t last = std::min(count - 1, guide_.nearest() + guide_.points_for(options_.look_ahead));
+  for (std::size_t i = guide_.nearest(); i <= last; ++i)
+    if (is_closed(costmap, i)) return i;
+  return count;
+}
+
+/// Whether a point is closed: the body has no room there, or it is in a closed place.
+bool Way::is_closed(const Costmap& costmap, std::size_t point) const noexcept {
+  const maps::Point place = position(guide_.points()[point]);
+  return (planner_.knows(costmap, place) && !planner_.has_room(costmap, place)) || closed_.contain(place);
+}
+
+/// Whether a detour may end at a point: the path is open from there on for a while, or to its end.
+bool Way::can_rejoin(const Costmap& costmap, std::size_t point) const noexcept {
+  const std::size_t last = std::min(guide_.points().size() - 1, point + guide_.points_for(min_rejoin));
+  for (std::size_t i = point; i <= last; ++i)
+    if (is_closed(costmap, i)) return false;
+  return true;
+}
+
+/// Whether the path leaves the costmap before a detour around its closed point could end, and the robot is
+/// more than `distance` (m) before that point.
+bool Way::opens_off_the_map(const Costmap& costmap, std::size_t closed, double distance) const noexcept {
+  if (guide_.step() * (closed - guide_.nearest()) <= distance) return false;
+  for (std::size_t i = closed + 1; i < guide_.points().size(); ++i) {
+    if (!planner_.knows(costmap, position(guide_.points()[i]))) return true;
+    if (can_rejoin(costmap, i)) return false;
+  }
+  return false;
+}
+
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
 /// of the path. Returns false and keeps the path if there is none that costs less than `most` (m).
 bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept {
@@ -118,9 +149,9 @@ bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t c
   double least = most;
   std::size_t best = path.size();
   for (std::size_t i = closed + 1; i < path.size(); ++i) {
-    const double left = guide_.step() * static_cast<double>(path.size() - 1 - i);
+    const double left = guide_.step() * (path.size() - 1 - i);
     const double cost = planner_.cost_to(position(path[i])) + left;
-    if (cost >= least || !ahead(costmap).can_rejoin(i)) continue;
+    if (cost >= least || !can_rejoin(costmap, i)) continue;
     least = cost;
     best = i;
   }
@@ -129,14 +160,14 @@ bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t c
   poses_.clear();
   for (const maps::Point& point : way) poses_.push_back({point.x, point.y, 0});
   const std::size_t joint = poses_.size();
-  poses_.insert(poses_.end(), path.begin() + static_cast<std::ptrdiff_t>(best), path.end());
+  poses_.insert(poses_.end(), path.begin() + best, path.end());
   double length = 0;
   for (std::size_t i = 0; i < joint && i + 1 < poses_.size(); ++i) {
     poses_[i].yaw = std::atan2(poses_[i + 1].y - poses_[i].y, poses_[i + 1].x - poses_[i].x);
     length += distance(position(poses_[i]), position(poses_[i + 1]));
   }
   poses_.back() = guide_.goal();
-  detour_left_ = guide_.step() * static_cast<double>(path.size() - 1 - best);
+  detour_left_ = guide_.step() * (path.size() - 1 - best);
   follow(poses_, length + around_joint);
   chosen_.assign(guide_.points().begin(), guide_.points().end());
   return true;
@@ -151,18 +182,18 @@ void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Ot
   const auto place = others.meeting(guide_.points().subspan(guide_.nearest()), guide_.step());
   if (!place) return;
   since_meeting_ = 0;
-  const ClosedPlaces::Meeting meeting(closed_, *place);
-  const std::size_t closed = ahead(costmap).first_closed(options_.look_ahead);
+  closed_.begin_meeting(*place);
+  const std::size_t closed = first_closed(costmap);
   if (closed < guide_.points().size()) find_way(pose, costmap, closed, guide_.remaining() + longest_way_past);
+  closed_.end_meeting();
 }
 
-/// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
 bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& others,
                double elapsed) noexcept {
   watch_progress(pose, costmap, others, elapsed);
   stop_ = no_stop;
   if (!options_.find_detours) return true;
-  const std::size_t closed = ahead(costmap).first_closed(options_.look_ahead);
+  const std::size_t closed = first_closed(costmap);
   if (closed == guide_.points().size()) {
     without_way_ = 0;
     avoid_meeting(pose, costmap, others, elapsed);
@@ -183,7 +214,7 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
   // A costmap that moves with the robot may show the end of the closed place once the robot is nearer.
   const BaseOptions& base = options_.base;
   const double braking = base.max_forward * base.max_forward / (2 * axis_limits(base)[0].deceleration);
-  if (ahead(costmap).opens_off_the_map(closed, nearest_unseen + braking)) {
+  if (opens_off_the_map(costmap, closed, nearest_unseen + braking)) {
     without_way_ = least_period;
     return true;
   }
@@ -198,7 +229,7 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
 /// Whether the goal is closed; then the robot drives up to it.
 bool Way::waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept {
   const std::size_t last = guide_.points().size() - 1;
-  if (!ahead(costmap).is_closed(last) || closed_.contain(position(guide_.points()[last]))) return false;
+  if (!is_closed(costmap, last) || closed_.contain(position(guide_.points()[last]))) return false;
   const std::size_t room =
       guide_.points_for(footprint_.circumscribed_radius() - footprint_.half_width() + options_.goal_room);
   stop_ = closed > room ? closed - room : 0;

@@ -1,16 +1,50 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <span>
 
 #include "navigation/leg_change.hpp"
 #include "navigation/others.hpp"
-#include "navigation/path_ahead.hpp"
 #include "navigation/path_guide.hpp"
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/navigation/path_planner.hpp"
 
 namespace slalom::navigation::detail {
+
+/// Places that count as closed although the costmap shows room: dead ends, and the place of a meeting.
+class ClosedPlaces {
+ public:
+  bool has_dead_ends() const noexcept { return dead_ends_ > 0; }
+  void forget_dead_ends() noexcept { dead_ends_ = 0; }
+  /// Adds a dead end; the last four count.
+  void add_dead_end(const maps::Point& middle) noexcept {
+    if (dead_ends_ == max_dead_ends) {
+      std::copy(places_.begin() + 1, places_.begin() + max_dead_ends, places_.begin());
+      --dead_ends_;
+    }
+    places_[dead_ends_++] = {middle, PathPlanner::dead_end_radius};
+  }
+  /// Closes a place until `end_meeting`.
+  void begin_meeting(const ClosedPlace& place) noexcept {
+    places_[dead_ends_] = place;
+    meetings_ = 1;
+  }
+  void end_meeting() noexcept { meetings_ = 0; }
+
+  std::span<const ClosedPlace> all() const noexcept { return {places_.data(), dead_ends_ + meetings_}; }
+  bool contain(const maps::Point& point) const noexcept {
+    const auto places = all();
+    return std::any_of(places.begin(), places.end(),
+                       [&](const ClosedPlace& each) { return distance(point, each.middle) < each.radius; });
+  }
+
+ private:
+  static constexpr std::size_t max_dead_ends = 4;
+  std::array<ClosedPlace, max_dead_ends + 1> places_{};
+  std::size_t dead_ends_ = 0, meetings_ = 0;
+};
 
 /// The path that the robot follows, with detours where it is blocked, and the progress on it.
 class Way {
@@ -19,8 +53,7 @@ class Way {
   Way(const NavigatorOptions& options, const Footprint& footprint, const maps::GridGeometry& geometry,
       double reach);
 
-  /// As Navigator::set_path.
-  void set_path(std::span<const maps::Pose> path);
+  void set_path(std::span<const maps::Pose> path);  ///< as Navigator::set_path
   void clear() noexcept;
   bool empty() const noexcept { return guide_.empty(); }
 
@@ -32,13 +65,10 @@ class Way {
   /// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
   bool keep(const maps::Pose& robot, const Costmap& costmap, const Others& others, double elapsed) noexcept;
 
-  /// Whether the robot is at the end of the path, within the tolerances. If it is, the same path may be set
-  /// again.
+  /// Whether the robot is at the end of the path, within the tolerances. Then the same path may be set again.
   bool has_ended(const maps::Pose& robot) noexcept;
-  /// Whether a robot there would be.
-  bool ends_at(const maps::Pose& robot) const noexcept;
-  /// Whether the robot has made no progress for so long that it gives up.
-  bool is_stuck() noexcept;
+  bool ends_at(const maps::Pose& robot) const noexcept;  ///< whether a robot there would be
+  bool is_stuck() noexcept;  ///< whether the robot has made no progress for so long that it gives up
   bool is_detour() const noexcept { return guide_.remaining() > detour_left_; }
   /// Whether the robot has come as near to an occupied goal as it may.
   bool is_at_stop() const noexcept {
@@ -54,7 +84,10 @@ class Way {
   }
 
  private:
-  PathAhead ahead(const Costmap& costmap) const noexcept { return {guide_, planner_, closed_, costmap}; }
+  std::size_t first_closed(const Costmap& costmap) const noexcept;
+  bool is_closed(const Costmap& costmap, std::size_t point) const noexcept;
+  bool can_rejoin(const Costmap& costmap, std::size_t point) const noexcept;
+  bool opens_off_the_map(const Costmap& costmap, std::size_t closed, double distance) const noexcept;
   void follow(std::span<const maps::Pose> path, double smooth = 0) noexcept;
   bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
   void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,

@@ -24,10 +24,10 @@ double diameter(std::span<const Reading> readings) noexcept {
   return farthest(farthest(readings.front().point).first->point).second;
 }
 
-std::size_t find_clusters(std::span<const Reading> readings, double increment, const TrackerOptions& options,
-                          std::span<Cluster> clusters) noexcept {
-  std::size_t count = 0;
-  for (std::size_t begin = 0, i = 1; begin < readings.size() && count < clusters.size(); ++i) {
+void find_clusters(std::span<const Reading> readings, double increment, const TrackerOptions& options,
+                   std::vector<Cluster>& clusters) noexcept {
+  clusters.clear();
+  for (std::size_t begin = 0, i = 1; begin < readings.size() && clusters.size() < clusters.capacity(); ++i) {
     if (i < readings.size()) {
       const Reading &a = readings[i - 1], &b = readings[i];
       const double apart = std::hypot(b.point.x - a.point.x, b.point.y - a.point.y);
@@ -35,10 +35,9 @@ std::size_t find_clusters(std::span<const Reading> readings, double increment, c
                                   options.min_incidence, options.range_deviation))
         continue;
     }
-    clusters[count++] = {begin, i};
+    clusters.push_back({begin, i});
     begin = i;
   }
-  return count;
 }
 
 double outline_distance(const maps::Point& point, const Tracked& object) noexcept {
@@ -76,8 +75,8 @@ int owner(const maps::Point& point, std::span<const Tracked> objects,
 
 void associate(std::span<const Reading> readings, std::span<const Cluster> clusters,
                std::span<const Tracked> objects, const TrackerOptions& options,
-               std::span<int> owners) noexcept {
-  std::fill(owners.begin(), owners.end(), -1);
+               std::vector<int>& owners) noexcept {
+  owners.assign(readings.size(), -1);
   for (const Cluster& cluster : clusters) {
     int only = -1;
     bool several = false;
@@ -93,8 +92,7 @@ void associate(std::span<const Reading> readings, std::span<const Cluster> clust
     if (only < 0 || several || 2 * owned < size ||
         diameter(readings.subspan(cluster.begin, size)) > max_diameter(options))
       continue;
-    std::fill(owners.begin() + static_cast<std::ptrdiff_t>(cluster.begin),
-              owners.begin() + static_cast<std::ptrdiff_t>(cluster.end), only);
+    std::fill(owners.begin() + cluster.begin, owners.begin() + cluster.end, only);
   }
 }
 

@@ -110,26 +110,22 @@ BoxFit fit_box(std::span<const Reading> readings, double deviation) noexcept {
 void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Reading> readings,
                  double min_incidence, double deviation, AxisMeasurement (&axes)[2]) noexcept {
   const double c = std::cos(prior.pose.yaw), s = std::sin(prior.pose.yaw);
-  const auto along = [&](const maps::Point& p) {
-    return c * (p.x - prior.pose.x) + s * (p.y - prior.pose.y);
-  };
-  const auto across = [&](const maps::Point& p) {
-    return -s * (p.x - prior.pose.x) + c * (p.y - prior.pose.y);
+  const auto coordinate = [&](int axis) {
+    const double x = axis == 0 ? c : -s, y = axis == 0 ? s : c;
+    return
+        [&prior, x, y](const maps::Point& p) { return x * (p.x - prior.pose.x) + y * (p.y - prior.pose.y); };
   };
   const std::size_t count = readings.size();
-  const auto a = [&](std::size_t i) { return along(readings[i].point); };
-  const auto b = [&](std::size_t i) { return across(readings[i].point); };
   const bool first_ends = scan.ends_at(readings.front().beam, -1, min_incidence, deviation),
              last_ends = scan.ends_at(readings.back().beam, 1, min_incidence, deviation);
-  const maps::Point sensor{scan.sensor().x, scan.sensor().y};
-  const double view[2] = {along(sensor), across(sensor)};
   // An object whose outline ends with nothing beside it reaches half a beam farther than its last reading.
   const double beam = 0.5 * readings[count / 2].range * scan.increment();
   for (int axis = 0; axis < 2; ++axis) {
-    End low = axis == 0 ? find_end(count, 1, deviation, a, b, first_ends, last_ends)
-                        : find_end(count, 1, deviation, b, a, first_ends, last_ends);
-    End high = axis == 0 ? find_end(count, -1, deviation, a, b, first_ends, last_ends)
-                         : find_end(count, -1, deviation, b, a, first_ends, last_ends);
+    const auto own = coordinate(axis), other = coordinate(1 - axis);
+    const auto along = [&](std::size_t i) { return own(readings[i].point); };
+    const auto across = [&](std::size_t i) { return other(readings[i].point); };
+    End low = find_end(count, 1, deviation, along, across, first_ends, last_ends);
+    End high = find_end(count, -1, deviation, along, across, first_ends, last_ends);
     if (!low.side) low.at -= beam;
     if (!high.side) high.at += beam;
     const double half = 0.5 * prior.size[axis];
@@ -138,7 +134,8 @@ void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Re
     const double anchored = reading + 0.25 * prior.size_deviation * prior.size_deviation;
     const bool both = low.in_view && high.in_view;
     // If the box is to one side of the sensor, its near end counts alone: the far one is hidden.
-    const bool from_low = view[axis] + half<0, from_high = view[axis] - half> 0;
+    const double view = own({scan.sensor().x, scan.sensor().y});
+    const bool from_low = view + half<0, from_high = view - half> 0;
     if (low.in_view && (from_low || (!high.in_view && !from_high))) {
       m = {low.at + half, anchored, 0};
     } else if (high.in_view && (from_high || (!low.in_view && !from_low))) {

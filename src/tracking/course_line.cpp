@@ -31,10 +31,10 @@ CourseLine::CourseLine(std::span<const maps::ReferencePoint> points) {
     arcs.push_back(arcs.back() + distance(points[i], points[(i + 1) % n]));
   length_ = arcs.back();
   const std::size_t count = std::max<std::size_t>(slalom::count(length_, spacing, most_steps, "course"), 3);
-  step_ = length_ / static_cast<double>(closed_ ? count : count - 1);
+  step_ = length_ / (closed_ ? count : count - 1);
   std::size_t i = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    const double arc = static_cast<double>(k) * step_;
+    const double arc = k * step_;
     while (i + 2 < arcs.size() && arcs[i + 1] < arc) ++i;
     const maps::ReferencePoint &a = points[i], &b = points[(i + 1) % n];
     const double t = std::clamp((arc - arcs[i]) / std::max(arcs[i + 1] - arcs[i], 1e-9), 0.0, 1.0);
@@ -54,8 +54,7 @@ CourseLine::CourseLine(std::span<const maps::ReferencePoint> points) {
     points_[k].yaw = yaw_between(neighbour(k, 1, true), neighbour(k, 1, false));
     const std::size_t before = neighbour(k, arm, true), after = neighbour(k, arm, false);
     if (before == k || after == k) continue;  // an end of an open course
-    points_[k].curvature =
-        maps::wrap_angle(yaw_between(k, after) - yaw_between(before, k)) / (static_cast<double>(arm) * step_);
+    points_[k].curvature = maps::wrap_angle(yaw_between(k, after) - yaw_between(before, k)) / (arm * step_);
   }
 }
 
@@ -63,13 +62,13 @@ CourseLine::Point CourseLine::at(double arc) const noexcept {
   const std::size_t count = points_.size();
   double place = arc / step_;
   if (closed_) {
-    place -= std::floor(place / static_cast<double>(count)) * static_cast<double>(count);
+    place -= std::floor(place / count) * count;
   } else {
     place = std::clamp(place, 0.0, static_cast<double>(count - 1));
   }
   const std::size_t i = std::min(saturate_cast<std::size_t>(place), count - 1);
   const Point &a = points_[i], &b = points_[closed_ ? (i + 1) % count : std::min(i + 1, count - 1)];
-  const double t = place - static_cast<double>(i);
+  const double t = place - i;
   const auto mix = [t](double from, double to) { return from + t * (to - from); };
   return {mix(a.x, b.x), mix(a.y, b.y), a.yaw + t * maps::wrap_angle(b.yaw - a.yaw),
           mix(a.curvature, b.curvature), mix(a.speed, b.speed)};
@@ -89,7 +88,7 @@ CourseLine::Place CourseLine::project(const maps::Point& position) const noexcep
   const double c = std::cos(point.yaw), s = std::sin(point.yaw);
   const double dx = position.x - point.x, dy = position.y - point.y;
   const double along = std::clamp(dx * c + dy * s, -step_, step_);
-  double arc = static_cast<double>(nearest) * step_ + along;
+  double arc = nearest * step_ + along;
   arc = closed_ ? arc - std::floor(arc / length_) * length_ : std::clamp(arc, 0.0, length_);
   const Point there = at(arc);
   return {arc, (position.y - there.y) * std::cos(there.yaw) - (position.x - there.x) * std::sin(there.yaw)};

@@ -49,13 +49,14 @@ double way(const maps::Pose& a, const maps::Pose& b) {
 
 }  // namespace
 
-FreeSpace::FreeSpace(int max_beams) : left_(2 * static_cast<std::size_t>(max_beams)) {
+FreeSpace::FreeSpace(int max_beams) {
+  left_.reserve(std::size(compared) * max_beams);
   past_.resize(scans, {0, Readings(max_beams, 1e300)});
 }
 
 const FreeSpace::Past* FreeSpace::past(int back) const noexcept {
   if (kept_ == 0) return nullptr;
-  return &past_[static_cast<std::size_t>((last_ + scans - std::min(back, kept_ - 1)) % scans)];
+  return &past_[(last_ + scans - std::min(back, kept_ - 1)) % scans];
 }
 
 void FreeSpace::keep(const Readings& scan, double stamp) noexcept {
@@ -64,29 +65,29 @@ void FreeSpace::keep(const Readings& scan, double stamp) noexcept {
   last_ = (last_ + 1) % scans;
   kept_ = std::min(kept_ + 1, scans);
   // The vectors have the same sizes, so this does not allocate.
-  Past& kept = past_[static_cast<std::size_t>(last_)];
+  Past& kept = past_[last_];
   kept.stamp = stamp;
   kept.scan = scan;
 }
 
 void FreeSpace::find_left(const Readings& scan, double stamp, double margin) noexcept {
-  left_count_ = 0;
+  left_.clear();
   here_ = scan.sensor();
   for (const int back : compared) {
     const Past* before = past(back);
     if (!before || stamp - before->stamp < spacing) continue;
     const double apart = margin + odometry_error * way(before->scan.sensor(), here_);
     for (const Reading& reading : before->scan.all())
-      if (sight(scan, reading.point, apart).through) left_[left_count_++] = reading.point;
+      if (sight(scan, reading.point, apart).through) left_.push_back(reading.point);
   }
 }
 
 bool FreeSpace::moves(std::span<const Reading> cluster, double margin, double reach) const noexcept {
-  const double size = static_cast<double>(cluster.size());
+  const double size = cluster.size();
   const maps::Point& middle = cluster[cluster.size() / 2].point;
-  const auto left_near =
-      std::count_if(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(left_count_),
-                    [&](const maps::Point& p) { return std::hypot(p.x - middle.x, p.y - middle.y) < reach; });
+  const auto left_near = std::count_if(left_.begin(), left_.end(), [&](const maps::Point& p) {
+    return std::hypot(p.x - middle.x, p.y - middle.y) < reach;
+  });
   for (const int back : compared) {
     const Past* before = past(back);
     if (!before) continue;

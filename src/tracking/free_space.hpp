@@ -1,23 +1,21 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
+#include "slalom/core/reserved_vector.hpp"
 #include "tracking/readings.hpp"
 
 namespace slalom::tracking {
 
 /// Finds motion between scans, without a map. Some earlier scans are kept. A reading has entered free space
-/// if an earlier scan saw through its place; an earlier reading has left if the present scan sees through
-/// its.
+/// if an earlier scan saw through its place; an earlier one has left if the present scan does.
 class FreeSpace {
  public:
   /// Keeps scans of at most `max_beams`.
   explicit FreeSpace(int max_beams);
 
-  /// Forgets all scans.
-  void clear() noexcept { kept_ = 0; }
+  void clear() noexcept { kept_ = 0; }  ///< forgets all scans
   /// Keeps the present scan if the last one that was kept is old enough.
   void keep(const Readings& scan, double stamp) noexcept;
   /// Finds the earlier readings whose place the present scan sees through by `margin` (m), which grows with
@@ -41,8 +39,7 @@ class FreeSpace {
   std::vector<Past> past_;
   int kept_ = 0, last_ = 0;
   maps::Pose here_;  ///< pose of the sensor in the present scan
-  std::vector<maps::Point> left_;
-  std::size_t left_count_ = 0;
+  ReservedVector<maps::Point> left_;
 };
 
 }  // namespace slalom::tracking

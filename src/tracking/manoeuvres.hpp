@@ -6,14 +6,13 @@
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor_options.hpp"
 #include "tracking/course_line.hpp"
-#include "tracking/habits.hpp"
 
 namespace slalom::tracking {
 
 /// A manoeuvre of an object. The first two are also those of an object without a course; the last one is
 /// possible only where a car came by before.
 enum class Manoeuvre { keep, brake, follow, left, right, repeat };
-inline constexpr int manoeuvres = 6, manoeuvres_without_course = 2;
+inline constexpr std::size_t manoeuvres = 6, manoeuvres_without_course = 2;
 /// Weights of the manoeuvres before an object is known. They are divided by their sum.
 inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0.08, 0.08, 0.4};
 
@@ -45,8 +44,7 @@ class Way {
         course_(course),
         habits_(habits),
         options_(options) {}
-  /// Goes on for `duration` (s).
-  void advance(double duration) noexcept;
+  void advance(double duration) noexcept;  ///< goes on for `duration` (s)
   const Motion& now() const noexcept { return now_; }
   maps::Pose pose() const noexcept;
 

@@ -60,8 +60,7 @@ MapBackground::MapBackground(const maps::OccupancyGrid& map)
 }
 
 double MapBackground::cell(int column, int row) const noexcept {
-  return static_cast<double>(distance_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
-                                       static_cast<std::size_t>(column)]);
+  return distance_[static_cast<std::size_t>(row) * width_ + column];
 }
 
 MapBackground::Slope MapBackground::slope(const maps::Point& point) const noexcept {

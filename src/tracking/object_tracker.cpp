@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "tracking/association.hpp"
 #include "tracking/free_space.hpp"
@@ -31,14 +32,13 @@ constexpr int max_splits = 4;           // times that a cluster is halved
 
 struct ObjectTracker::Implementation {
   Implementation(const maps::OccupancyGrid* map, const TrackerOptions& given)
-      : options((given.validate(), given)),
-        readings(given.max_beams, given.max_range),
-        candidates(static_cast<std::size_t>(given.max_beams)),
-        owners(candidates.size()),
-        clusters(candidates.size()),
-        own(candidates.size()),
-        objects(static_cast<std::size_t>(given.max_objects)),
-        reported(objects.size()) {
+      : options((validate_options(given, "tracker"), given)), readings(given.max_beams, given.max_range) {
+    candidates.reserve(given.max_beams);
+    owners.reserve(given.max_beams);
+    clusters.reserve(given.max_beams);
+    own.reserve(given.max_beams);
+    objects.reserve(given.max_objects);
+    reported.reserve(objects.capacity());
     if (map) {
       background = std::make_shared<const MapBackground>(*map);
     } else {
@@ -47,7 +47,7 @@ struct ObjectTracker::Implementation {
   }
 
   void forget() noexcept {
-    object_count = 0;
+    objects.clear();
     started = false;
     if (free_space) free_space->clear();
     output = {};
@@ -63,19 +63,16 @@ struct ObjectTracker::Implementation {
   void remove_objects() noexcept;
   void report() noexcept;
 
-  std::span<Tracked> active() noexcept { return {objects.data(), object_count}; }
-
   TrackerOptions options;
   Readings readings;
   std::shared_ptr<const MapBackground> background;  ///< null without a map
   std::optional<FreeSpace> free_space;
-  std::vector<Reading> candidates;  ///< readings that may belong to objects
-  std::vector<int> owners;          ///< object of each candidate, by index, or -1
-  std::vector<Cluster> clusters;
-  std::vector<Reading> own;  ///< the readings of one object
-  std::vector<Tracked> objects;
-  std::vector<TrackedObject> reported;
-  std::size_t candidate_count = 0, cluster_count = 0, object_count = 0;
+  ReservedVector<Reading> candidates;  ///< readings that may belong to objects
+  ReservedVector<int> owners;          ///< object of each candidate, by index, or -1
+  ReservedVector<Cluster> clusters;
+  ReservedVector<Reading> own;  ///< the readings of one object
+  ReservedVector<Tracked> objects;
+  ReservedVector<TrackedObject> reported;
   int next_id = 1;
   bool started = false;
   double stamp = 0;
@@ -90,7 +87,7 @@ bool ObjectTracker::Implementation::detect(const TrackerInput& input) noexcept {
     output.sensor = background->align(readings, input.sensor, input.position_deviation, input.yaw_deviation,
                                       options.range_deviation);
   readings.place(output.sensor);
-  candidate_count = 0;
+  candidates.clear();
   std::size_t behind_walls = 0;
   for (const Reading& reading : readings.all()) {
     if (background) {
@@ -100,13 +97,11 @@ bool ObjectTracker::Implementation::detect(const TrackerInput& input) noexcept {
       behind_walls += distance < -2 * margin;
       if (distance <= margin) continue;
     }
-    candidates[candidate_count++] = reading;
+    candidates.push_back(reading);
   }
   // Other cars hide walls, but let nobody look through them.
-  if (static_cast<double>(behind_walls) > max_behind_walls * static_cast<double>(readings.all().size()))
-    return false;
-  const std::span<const Reading> found(candidates.data(), candidate_count);
-  cluster_count = find_clusters(found, readings.increment(), options, clusters);
+  if (behind_walls > max_behind_walls * readings.all().size()) return false;
+  find_clusters(candidates, readings.increment(), options, clusters);
   if (free_space) {
     leave_out_large_clusters();
     free_space->find_left(readings, input.stamp, options.free_margin);
@@ -118,27 +113,24 @@ bool ObjectTracker::Implementation::detect(const TrackerInput& input) noexcept {
 /// lost must not go on along one of them.
 void ObjectTracker::Implementation::leave_out_large_clusters() noexcept {
   std::size_t kept_candidates = 0, kept_clusters = 0;
-  for (std::size_t c = 0; c < cluster_count; ++c) {
-    const auto [begin, end] = clusters[c];
+  for (const auto [begin, end] : clusters) {
     if (diameter({candidates.data() + begin, end - begin}) > largest_object * max_diameter(options)) continue;
     clusters[kept_clusters++] = {kept_candidates, kept_candidates + (end - begin)};
     for (std::size_t i = begin; i < end; ++i) candidates[kept_candidates++] = candidates[i];
   }
-  candidate_count = kept_candidates;
-  cluster_count = kept_clusters;
+  candidates.resize(kept_candidates);
+  clusters.resize(kept_clusters);
 }
 
 /// Corrects the objects with their readings.
 void ObjectTracker::Implementation::correct() noexcept {
-  const std::span<const Reading> found(candidates.data(), candidate_count);
-  associate(found, {clusters.data(), cluster_count}, active(), options, {owners.data(), candidate_count});
-  for (std::size_t k = 0; k < object_count; ++k) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < candidate_count; ++i)
-      if (owners[i] == static_cast<int>(k)) own[count++] = candidates[i];
-    const std::span<const Reading> part(own.data(), count);
-    if (count >= 2) {
-      objects[k].correct(options, readings, part, moves(part));
+  associate(candidates, clusters, objects, options, owners);
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    own.clear();
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      if (owners[i] == static_cast<int>(k)) own.push_back(candidates[i]);
+    if (own.size() >= 2) {
+      objects[k].correct(options, readings, own, moves(own));
     } else {
       objects[k].miss(seen_through(objects[k]));
     }
@@ -198,14 +190,15 @@ void ObjectTracker::Implementation::begin_object(std::size_t begin, std::size_t 
       return;
     }
   }
-  if (size > largest_object * most || size < 0.25 * options.width || object_count == objects.size()) return;
+  if (size > largest_object * most || size < 0.25 * options.width || objects.size() == objects.capacity())
+    return;
   if (!moves(part)) return;
-  objects[object_count++] = Tracked(next_id++, options, readings, part);
+  objects.emplace_back(next_id++, options, readings, part);
 }
 
 /// Begins objects with the readings that belong to none, apart from those at the outline of one.
 void ObjectTracker::Implementation::begin_objects() noexcept {
-  const std::size_t old_count = object_count;
+  const std::size_t old_count = objects.size();
   const auto is_new = [&](std::size_t i) {
     if (owners[i] >= 0) return false;
     for (std::size_t k = 0; k < old_count; ++k)
@@ -214,10 +207,10 @@ void ObjectTracker::Implementation::begin_objects() noexcept {
         return false;
     return true;
   };
-  for (std::size_t c = 0; c < cluster_count; ++c) {
-    for (std::size_t i = clusters[c].begin; i < clusters[c].end;) {
+  for (const Cluster& cluster : clusters) {
+    for (std::size_t i = cluster.begin; i < cluster.end;) {
       std::size_t end = i;
-      while (end < clusters[c].end && is_new(end)) ++end;
+      while (end < cluster.end && is_new(end)) ++end;
       if (end > i) begin_object(i, end, 0);
       i = end + 1;
     }
@@ -239,33 +232,23 @@ void ObjectTracker::Implementation::remove_objects() noexcept {
     if (object.confirmed() != other.confirmed()) return other.confirmed();
     return object.id() > other.id();
   };
-  const auto end =
-      std::remove_if(objects.begin(), objects.begin() + static_cast<std::ptrdiff_t>(object_count), given_up);
-  object_count = static_cast<std::size_t>(end - objects.begin());
-  for (std::size_t k = 0; k < object_count;) {
-    const bool twice =
-        std::any_of(objects.begin(), objects.begin() + static_cast<std::ptrdiff_t>(object_count),
-                    [&](const Tracked& other) { return doubles(objects[k], other); });
-    if (twice) {
-      std::move(objects.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-                objects.begin() + static_cast<std::ptrdiff_t>(object_count),
-                objects.begin() + static_cast<std::ptrdiff_t>(k));
-      --object_count;
-    } else {
-      ++k;
-    }
+  std::erase_if(objects, given_up);
+  for (auto object = objects.begin(); object != objects.end();) {
+    const bool twice = std::any_of(objects.begin(), objects.end(),
+                                   [&](const Tracked& other) { return doubles(*object, other); });
+    object = twice ? objects.erase(object) : object + 1;
   }
 }
 
 void ObjectTracker::Implementation::report() noexcept {
-  std::size_t count = 0;
-  for (Tracked& object : active()) {
+  reported.clear();
+  for (Tracked& object : objects) {
     object.confirm(options, background ? 0 : options.min_speed);
-    if (object.confirmed()) reported[count++] = object.object();
+    if (object.confirmed()) reported.push_back(object.object());
   }
-  std::sort(reported.begin(), reported.begin() + static_cast<std::ptrdiff_t>(count),
+  std::sort(reported.begin(), reported.end(),
             [](const TrackedObject& a, const TrackedObject& b) { return a.id < b.id; });
-  output.objects = {reported.data(), count};
+  output.objects = reported;
 }
 
 ObjectTracker::ObjectTracker(const TrackerOptions& options)
@@ -301,7 +284,6 @@ const TrackerOutput& ObjectTracker::update(const TrackerInput& input) noexcept {
     self.output.update_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return self.output;
   };
-  self.output.clusters = 0;
   if (!maps::is_plausible(input.sensor) || !std::isfinite(input.stamp))
     return finish(TrackerStatus::bad_pose);
   double elapsed = self.started ? input.stamp - self.stamp : 0;
@@ -316,11 +298,10 @@ const TrackerOutput& ObjectTracker::update(const TrackerInput& input) noexcept {
   self.started = true;
   self.stamp = input.stamp;
   self.last_sensor = input.sensor;
-  for (Tracked& object : self.active()) object.predict(elapsed, self.options);
+  for (Tracked& object : self.objects) object.predict(elapsed, self.options);
   TrackerStatus status = TrackerStatus::bad_scan;
   if (self.readings.set(input.scan)) status = self.detect(input) ? TrackerStatus::ok : TrackerStatus::misfit;
   if (status == TrackerStatus::ok) {
-    self.output.clusters = static_cast<int>(self.cluster_count);
     self.correct();
     self.begin_objects();
     if (self.free_space) self.free_space->keep(self.readings, input.stamp);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "slalom/core/math.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "tracking/manoeuvres.hpp"
 
@@ -32,20 +34,17 @@ bool plausible(const TrackedObject& object) noexcept {
   return holds;
 }
 
-int possible(const Motion& motion) noexcept {
+std::size_t possible(const Motion& motion) noexcept {
   if (!motion.on_course) return manoeuvres_without_course;
   return motion.habit.ratio > 0 ? manoeuvres : manoeuvres - 1;
 }
 
 /// The weights of an object of which nothing is known.
 Weights first_weights(const Motion& motion) noexcept {
-  Weights weights = usual_weights;
-  double sum = 0;
-  for (int m = 0; m < manoeuvres; ++m) sum += m < possible(motion) ? weights[static_cast<std::size_t>(m)] : 0;
-  for (int m = 0; m < manoeuvres; ++m) {
-    double& weight = weights[static_cast<std::size_t>(m)];
-    weight = m < possible(motion) ? weight / sum : 0;
-  }
+  Weights weights{};
+  std::copy_n(usual_weights.begin(), possible(motion), weights.begin());
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights) weight /= sum;
   return weights;
 }
 
@@ -69,14 +68,14 @@ struct Predictor::Implementation {
   CourseLine course;
   Habits habits;
   std::size_t times;
-  std::vector<Remembered> remembered;  ///< ascending by id
+  ReservedVector<Remembered> remembered;  ///< ascending by id
   std::vector<maps::PredictedPose> poses;
-  std::vector<maps::PredictedObstacle> predicted;
+  ReservedVector<maps::PredictedObstacle> predicted;
 
   Implementation(const PredictorOptions& o, CourseLine line)
       : options(o), course(std::move(line)), habits(course) {
-    options.validate();
-    const auto most = static_cast<std::size_t>(o.max_objects);
+    validate_options(options, "predictor");
+    const std::size_t most = o.max_objects;
     times = saturate_cast<std::size_t>(std::ceil(o.horizon / o.interval - 1e-9)) + 1;
     remembered.reserve(most);
     poses.resize(most * maps::PredictedObstacle::max_hypotheses * times);
@@ -111,20 +110,16 @@ struct Predictor::Implementation {
   void learn(Remembered& past, const Motion& now, double elapsed) noexcept {
     const Weights first = first_weights(now);
     std::array<double, manoeuvres> mismatches{};
-    const int count = std::min(possible(now), possible(past.motion));
-    double least = 1e300, sum = 0;
-    for (int m = 0; m < count; ++m) {
-      double& each = mismatches[static_cast<std::size_t>(m)];
-      each = mismatch(past, static_cast<Manoeuvre>(m), now, elapsed);
-      least = std::min(least, each);
-    }
-    for (int m = 0; m < count; ++m) {
-      const auto i = static_cast<std::size_t>(m);
-      past.weights[i] *= std::exp(least - mismatches[i]);
+    const std::size_t count = std::min(possible(now), possible(past.motion));
+    for (std::size_t i = 0; i < count; ++i)
+      mismatches[i] = mismatch(past, static_cast<Manoeuvre>(i), now, elapsed);
+    const double least = *std::min_element(mismatches.begin(), mismatches.begin() + count);
+    double sum = 0;
+    for (std::size_t i = 0; i < manoeuvres; ++i) {
+      past.weights[i] = i < count ? past.weights[i] * std::exp(least - mismatches[i]) : 0;
       sum += past.weights[i];
     }
-    for (std::size_t i = static_cast<std::size_t>(count); i < past.weights.size(); ++i) past.weights[i] = 0;
-    for (std::size_t i = 0; i < past.weights.size(); ++i) {
+    for (std::size_t i = 0; i < manoeuvres; ++i) {
       const double posterior = sum > 0 ? past.weights[i] / sum : first[i];
       past.weights[i] = (1 - options.forgetting) * posterior + options.forgetting * first[i];
     }
@@ -191,28 +186,26 @@ struct Predictor::Implementation {
     made.length = object.length;
     made.width = object.width;
     made.interval = options.interval;
-    std::array<int, manoeuvres> order{0, 1, 2, 3, 4, 5};
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
-      const double one = weights[static_cast<std::size_t>(a)], other = weights[static_cast<std::size_t>(b)];
-      return one != other ? one > other : a < b;
+    std::array<std::size_t, manoeuvres> order{0, 1, 2, 3, 4, 5};
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return weights[a] != weights[b] ? weights[a] > weights[b] : a < b;
     });
-    made.hypotheses = std::min(possible(motion), maps::PredictedObstacle::max_hypotheses);
+    const auto count = std::min<std::size_t>(possible(motion), maps::PredictedObstacle::max_hypotheses);
+    made.hypotheses = static_cast<int>(count);
     const std::size_t begin = predicted.size() * maps::PredictedObstacle::max_hypotheses * times;
     double sum = 0;
-    for (int h = 0; h < made.hypotheses; ++h) {
-      const int chosen = order[static_cast<std::size_t>(h)];
-      made.weights[static_cast<std::size_t>(h)] = weights[static_cast<std::size_t>(chosen)];
-      sum += weights[static_cast<std::size_t>(chosen)];
-      Way way(motion, static_cast<Manoeuvre>(chosen), course, habits, options);
+    for (std::size_t h = 0; h < count; ++h) {
+      made.weights[h] = weights[order[h]];
+      sum += made.weights[h];
+      Way way(motion, static_cast<Manoeuvre>(order[h]), course, habits, options);
       for (std::size_t k = 0; k < times; ++k) {
         if (k > 0) way.advance(options.interval);
         const maps::Pose pose = k > 0 ? way.pose() : object.pose;
-        poses[begin + static_cast<std::size_t>(h) * times + k] =
-            spread(object, pose, static_cast<double>(k) * options.interval);
+        poses[begin + h * times + k] = spread(object, pose, k * options.interval);
       }
     }
     for (double& weight : made.weights) weight /= sum;
-    made.poses = {poses.data() + begin, static_cast<std::size_t>(made.hypotheses) * times};
+    made.poses = {poses.data() + begin, count * times};
     predicted.push_back(made);
   }
 };
@@ -223,12 +216,7 @@ Predictor::Predictor(std::span<const maps::ReferencePoint> course, const Predict
     : implementation_(std::make_unique<Implementation>(options, CourseLine(course))) {}
 Predictor::~Predictor() = default;
 Predictor::Predictor(const Predictor& other)
-    : implementation_(
-          std::make_unique<Implementation>(other.implementation_->options, other.implementation_->course)) {
-  const auto& remembered = other.implementation_->remembered;
-  implementation_->remembered.assign(remembered.begin(), remembered.end());
-  implementation_->habits = other.implementation_->habits;
-}
+    : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
 Predictor& Predictor::operator=(const Predictor& other) {
   return *this = Predictor(other);
 }

@@ -21,10 +21,7 @@ double break_distance(double range, double increment, double min_incidence, doub
 }
 
 Readings::Readings(int max_beams, double max_range)
-    : ranges_(static_cast<std::size_t>(max_beams)),
-      directions_(ranges_.size()),
-      readings_(ranges_.size()),
-      max_range_(max_range) {}
+    : ranges_(max_beams), directions_(ranges_.size()), readings_(ranges_.size()), max_range_(max_range) {}
 
 bool Readings::set(const maps::LaserScanView& scan) noexcept {
   count_ = 0;
@@ -32,8 +29,8 @@ bool Readings::set(const maps::LaserScanView& scan) noexcept {
   const std::size_t size = scan.ranges.size();
   if (size < 2 || size > ranges_.size() || !std::isfinite(scan.angle_min) ||
       !std::isfinite(scan.angle_increment) || scan.angle_increment <= 0 ||
-      scan.angle_increment * static_cast<double>(size - 1) > 2 * std::numbers::pi + 1e-6 ||
-      std::isnan(scan.range_min) || std::isnan(scan.range_max))
+      scan.angle_increment * (size - 1) > 2 * std::numbers::pi + 1e-6 || std::isnan(scan.range_min) ||
+      std::isnan(scan.range_max))
     return false;
   if (angle_min_ != scan.angle_min || increment_ != scan.angle_increment) known_directions_ = 0;
   angle_min_ = scan.angle_min;
@@ -41,10 +38,10 @@ bool Readings::set(const maps::LaserScanView& scan) noexcept {
   beams_ = static_cast<int>(size);
   for (std::size_t i = 0; i < size; ++i) {
     if (i >= known_directions_) {
-      const double angle = angle_min_ + static_cast<double>(i) * increment_;
+      const double angle = angle_min_ + i * increment_;
       directions_[i] = {std::cos(angle), std::sin(angle)};
     }
-    const double range = static_cast<double>(scan.ranges[i]);
+    const double range = scan.ranges[i];
     const bool hit = range > std::max(scan.range_min, 0.0) && range < scan.range_max;
     ranges_[i] = hit ? range : range >= scan.range_max ? std::numeric_limits<double>::infinity() : 0;
     if (hit && range <= max_range_) readings_[count_++] = {{}, range, static_cast<int>(i)};

@@ -18,8 +18,7 @@ struct Reading {
 /// The scan of an update with the directions of its beams.
 class Readings {
  public:
-  /// Room for scans of `max_beams`.
-  Readings(int max_beams, double max_range);
+  Readings(int max_beams, double max_range);  ///< room for scans of `max_beams`
 
   /// Takes over a scan; false, and no readings, if it is empty, too long or of invalid geometry.
   bool set(const maps::LaserScanView& scan) noexcept;
@@ -31,9 +30,9 @@ class Readings {
   int beams() const noexcept { return beams_; }
   double increment() const noexcept { return increment_; }  ///< rad between beams, above 0
   /// The range of a beam, 0 without a reading, infinite where nothing was hit.
-  double range(int beam) const noexcept { return ranges_[static_cast<std::size_t>(beam)]; }
+  double range(int beam) const noexcept { return ranges_[beam]; }
   /// The direction of a beam in the frame of the sensor, of length 1.
-  maps::Point direction(int beam) const noexcept { return directions_[static_cast<std::size_t>(beam)]; }
+  maps::Point direction(int beam) const noexcept { return directions_[beam]; }
   /// The beam nearest to a direction in the frame of the sensor (rad); -1 outside the field of view.
   int beam_at(double bearing) const noexcept;
   const maps::Pose& sensor() const noexcept { return sensor_; }

@@ -33,6 +33,17 @@ double yaw_of(const BoxFit& fit, const TrackerOptions& options, double bearing) 
   return fit.angle + right_angle * std::round(away / right_angle);
 }
 
+/// Corrects x and y with the middle of a box of this yaw (rad), whose variances are larger by `floor` (m^2).
+template <int Size>
+void correct_middle(Gaussian<Size>& state, const AxisMeasurement (&axes)[2], double yaw, double floor) {
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  // Both are measured from the same prediction.
+  const double before[2] = {state.mean[0], state.mean[1]};
+  state.correct({c, s}, axes[0].offset, axes[0].variance + floor);
+  const double moved = -s * (state.mean[0] - before[0]) + c * (state.mean[1] - before[1]);
+  state.correct({-s, c}, axes[1].offset - moved, axes[1].variance + floor);
+}
+
 }  // namespace
 
 Tracked::Tracked(int id, const TrackerOptions& options, const Readings& scan,
@@ -96,20 +107,13 @@ void Tracked::correct_new(const TrackerOptions& options, const Readings& scan,
   AxisMeasurement axes[2];
   measure_box({{point_.mean[0], point_.mean[1], yaw_}, {size_[0], size_[1]}, options.size_deviation}, scan,
               readings, options.min_incidence, options.range_deviation, axes);
-  const double c = std::cos(yaw_), s = std::sin(yaw_);
-  const double floor = square(round_ ? round_deviation : new_position_deviation);
-  // Both are measured from the same prediction.
-  const double before[2] = {point_.mean[0], point_.mean[1]};
-  point_.correct({c, s, 0, 0}, axes[0].offset, axes[0].variance + floor);
-  const double moved = -s * (point_.mean[0] - before[0]) + c * (point_.mean[1] - before[1]);
-  point_.correct({-s, c, 0, 0}, axes[1].offset - moved, axes[1].variance + floor);
+  correct_middle(point_, axes, yaw_, square(round_ ? round_deviation : new_position_deviation));
 }
 
 void Tracked::correct_size(const AxisMeasurement (&axes)[2], double deviation) noexcept {
   for (int i = 0; i < 2; ++i) {
     if (axes[i].size <= 0) continue;
-    // Ends are biased the same way in many scans, so a measurement counts little and the variance has a
-    // floor.
+    // Ends are biased the same way in many scans, so a measurement counts little, and the variance stays.
     const double variance = 4 * axes[i].variance + square(2 * deviation);
     const double gain = size_variance_[i] / (size_variance_[i] + variance);
     size_[i] = std::max(deviation, size_[i] + gain * (axes[i].size - size_[i]));
@@ -141,11 +145,7 @@ void Tracked::correct(const TrackerOptions& options, const Readings& scan, std::
   AxisMeasurement axes[2];
   measure_box({{x[0], x[1], x[2]}, {size_[0], size_[1]}, std::sqrt(size_variance_[0])}, scan, readings,
               options.min_incidence, options.range_deviation, axes);
-  const double c = std::cos(x[2]), s = std::sin(x[2]);
-  const double before[2] = {x[0], x[1]};
-  state_.correct({c, s, 0, 0, 0}, axes[0].offset, axes[0].variance);
-  const double moved = -s * (x[0] - before[0]) + c * (x[1] - before[1]);
-  state_.correct({-s, c, 0, 0, 0}, axes[1].offset - moved, axes[1].variance);
+  correct_middle(state_, axes, x[2], 0);
   correct_size(axes, options.range_deviation);
   x[3] = std::clamp(x[3], -options.max_speed, options.max_speed);
   if (x[3] < reversing) {
@@ -229,8 +229,6 @@ TrackedObject Tracked::object() const noexcept {
                        .yaw_rate = state.mean[4],
                        .length = size_[0],
                        .width = size_[1],
-                       .length_deviation = std::sqrt(size_variance_[0]),
-                       .width_deviation = std::sqrt(size_variance_[1]),
                        .unseen = unseen_};
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j < 5; ++j) object.covariance[i][j] = state.covariance[i][j];

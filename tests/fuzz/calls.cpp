@@ -30,7 +30,7 @@ const Target controller_target(
       testing::Adversary adversary(bytes);
       testing::ControllerTally tally;
       const int set = adversary.below(static_cast<int>(sets.size()));
-      testing::call_any_controller(sets[static_cast<std::size_t>(set)].options, adversary, tally);
+      testing::call_any_controller(sets[set].options, adversary, tally);
       return tally.plans > 0;
     },
     100);
@@ -51,9 +51,9 @@ const Target navigator_target(
       testing::Adversary adversary(bytes);
       navigation::NavigatorTally tally;
       const navigation::Hall hall(adversary);
-      std::vector<maps::Point> outline(static_cast<std::size_t>(3 + adversary.below(8)));
+      std::vector<maps::Point> outline(3 + adversary.below(8));
       for (std::size_t i = 0; i < outline.size(); ++i) {
-        const double angle = 6.28 * static_cast<double>(i) / static_cast<double>(outline.size());
+        const double angle = 6.28 * i / outline.size();
         const double radius = adversary.once_in(8) ? adversary.any(0.05, 5) : adversary.within(0.05, 1);
         outline[i] = {radius * std::cos(angle), radius * std::sin(angle)};
       }

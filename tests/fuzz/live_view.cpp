@@ -2,7 +2,6 @@
 // server. The first byte of the latter chooses whether the others are sent as they are, or behind the opening
 // of a WebSocket.
 #include <chrono>
-#include <initializer_list>
 #include <stdexcept>
 
 #include "fuzz/target.hpp"
@@ -123,12 +122,6 @@ std::string frame(unsigned first, std::string_view payload) {
   return bytes;
 }
 
-std::string joined(std::initializer_list<std::string> parts) {
-  std::string all;
-  for (const std::string& part : parts) all += part;
-  return all;
-}
-
 /// Checks the messages that the server has received. Returns whether there was a client.
 bool check_received(view::Server& server) {
   int clients = 0;
@@ -148,13 +141,13 @@ const Target server_target(
       const std::string upgrade =
           "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
-      return {joined({"h", get, "Accept-Encoding: gzip\r\n\r\n"}),
-              joined({"h", get, "Origin: http://127.0.0.1\r\nContent-Length: 3\r\n\r\nabc"}),
+      return {"h" + get + "Accept-Encoding: gzip\r\n\r\n",
+              "h" + get + "Origin: http://127.0.0.1\r\nContent-Length: 3\r\n\r\nabc",
               "hHEAD /ws?ack=1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
-              joined({"h", upgrade, frame(0x81, "{}")}),
-              joined({"w", frame(0x81, R"({"do":"pause"})"), frame(0x82, std::string("\1\0\0\0", 4)),
-                      frame(0x89, "ping"), frame(0x88, "\x03\xe8")}),
-              joined({"w", frame(0x01, "in two"), frame(0x80, " parts"), frame(0x8a, "")})};
+              "h" + upgrade + frame(0x81, "{}"),
+              "w" + frame(0x81, R"({"do":"pause"})") + frame(0x82, std::string("\1\0\0\0", 4)) +
+                  frame(0x89, "ping") + frame(0x88, "\x03\xe8"),
+              "w" + frame(0x01, "in two") + frame(0x80, " parts") + frame(0x8a, "")};
     },
     [](std::string_view bytes) {
       static view::Server server({.max_message = max_message}, {{"/", {"text/html", "compressed", true}}});

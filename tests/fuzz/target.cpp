@@ -3,19 +3,16 @@
 #include "support/promise.hpp"
 
 namespace slalom::fuzz {
-namespace {
 
-std::vector<const Target*>& all_targets() {
+std::vector<const Target*>& targets() {
   static std::vector<const Target*> all;
   return all;
 }
 
-}  // namespace
-
 Target::Target(const char* target_name, std::size_t longest, Seeds (*make_seeds)(),
                bool (*take_bytes)(std::string_view bytes), int most_calls)
     : name(target_name), max_bytes(longest), seeds(make_seeds), calls(most_calls), take(take_bytes) {
-  all_targets().push_back(this);
+  targets().push_back(this);
 }
 
 bool Target::run(std::string_view bytes) const {
@@ -24,10 +21,6 @@ bool Target::run(std::string_view bytes) const {
   const bool valid = is_valid([&] { accepted = take(bytes); }) && accepted;
   limits.check(calls);
   return valid;
-}
-
-const std::vector<const Target*>& targets() {
-  return all_targets();
 }
 
 const testing::ScopedFolder& scratch_folder() {

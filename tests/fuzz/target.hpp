@@ -48,7 +48,7 @@ struct Target {
 };
 
 /// All targets.
-const std::vector<const Target*>& targets();
+std::vector<const Target*>& targets();
 
 /// The folder of this process for files of targets.
 const testing::ScopedFolder& scratch_folder();

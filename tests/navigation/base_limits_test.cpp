@@ -28,7 +28,7 @@ TEST(BaseLimits, EveryAxisBrakesHarderThanItSpeedsUp) {
   base.max_sideways_deceleration = 1.2;
   base.max_turn_acceleration = 1;
   base.max_turn_deceleration = 3;
-  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+  drive.restart();
   drive.start({1, 1, 1.5}, {{1, 1, 0}, {4, 1, 0}, {4, 3, 0}, {6, 4, 2}});
   Changes forward, left, turn;
   NavigationStatus status{};
@@ -55,7 +55,7 @@ TEST(BaseLimits, ARobotWithWeakBrakesStopsBeforeAWallThatAppears) {
   BaseOptions& base = drive.options.base;
   base.max_forward = 1.5;
   base.max_deceleration = 0.5;
-  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+  drive.restart();
   drive.plant = [&](const Velocity& asked) {
     Velocity driven = asked;
     driven.forward = std::max(asked.forward, drive.velocity.forward - 0.5 * drive_period);
@@ -64,8 +64,7 @@ TEST(BaseLimits, ARobotWithWeakBrakesStopsBeforeAWallThatAppears) {
   drive.start({1, 3, 0}, {{1, 3, 0}, {9, 3, 0}});
   while (drive.pose.x < 4) drive.step();
   EXPECT_GT(drive.velocity.forward, 1.4);
-  fill(drive.grid, 4 + 0.35 + 2.6, 0, 8, 6);  // 2.25 m take it to 0
-  drive.costmap.update(drive.grid);
+  drive.block(4 + 0.35 + 2.6, 0, 8, 6);  // 2.25 m take it to 0
   drive.drive(6);
   EXPECT_FALSE(drive.collided);
   EXPECT_NEAR(drive.velocity.forward, 0, 0.05);
@@ -78,7 +77,7 @@ TEST(BaseLimits, CommandsLeaveTheDeadBandAtOnce) {
     base.max_acceleration = 0.8;
     base.dead_band_forward = 0.1;
     base.dead_band_turn = 0.3;
-    drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+    drive.restart();
     const auto outside = [](double value, double dead_band) {
       return std::abs(value) < dead_band ? 0 : value;
     };

@@ -2,13 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "navigation/grids.hpp"
 #include "slalom/core/random.hpp"
+#include "slalom/navigation/footprint.hpp"
 #include "slalom/navigation/navigation_problem.hpp"
+#include "slalom/navigation/scan_map.hpp"
 #include "support/allocations.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -94,12 +99,9 @@ TEST(Costmap, CollisionsAreExact) {
     const Pose pose{-1.5 + 4 * random.uniform(), 10.5 + 3 * random.uniform(), 6.28 * random.uniform()};
     const bool raster = overlaps(grid, body, pose);
     collisions += raster;
-    if (raster) {
-      EXPECT_TRUE(costmap.collides(body, pose)) << pose.x << ", " << pose.y << ", " << pose.yaw;
-    }
-    if (costmap.collides(body, pose)) {
-      EXPECT_TRUE(overlaps(grid, larger, pose)) << pose.x << ", " << pose.y << ", " << pose.yaw;
-    }
+    const bool collides = costmap.collides(body, pose);
+    EXPECT_TRUE(collides || !raster) << pose.x << ", " << pose.y << ", " << pose.yaw;
+    EXPECT_TRUE(!collides || overlaps(grid, larger, pose)) << pose.x << ", " << pose.y << ", " << pose.yaw;
   }
   EXPECT_GT(collisions, 20);
   EXPECT_LT(collisions, 130);
@@ -153,12 +155,8 @@ TEST(Costmap, RolloutsMissNoCollisionDeeperThanHalfACell) {
     const auto contact =
         check.check<double>(costmap.distances(), pose.x, pose.y, std::sin(pose.yaw), std::cos(pose.yaw));
     collisions += contact.collided;
-    if (contact.collided) {
-      EXPECT_TRUE(costmap.collides(body, pose)) << pose.x << ", " << pose.y;
-    }
-    if (costmap.collides(core, pose)) {
-      EXPECT_TRUE(contact.collided) << pose.x << ", " << pose.y;
-    }
+    EXPECT_TRUE(!contact.collided || costmap.collides(body, pose)) << pose.x << ", " << pose.y;
+    EXPECT_TRUE(contact.collided || !costmap.collides(core, pose)) << pose.x << ", " << pose.y;
   }
   EXPECT_GT(collisions, 1000);
 }
@@ -184,6 +182,128 @@ TEST(Costmap, RejectsInvalidSizes) {
   EXPECT_THROW(Costmap(2, 10, 0.05), std::invalid_argument);
   EXPECT_THROW(Costmap(10, 20001, 0.05), std::invalid_argument);
   EXPECT_THROW(Costmap(10, 10, 0), std::invalid_argument);
+}
+
+using maps::Point;
+
+/// A star-shaped polygon around the origin.
+Footprint random_footprint(RandomStream& random) {
+  const int count = 3 + static_cast<int>(8 * random.uniform());
+  std::vector<Point> vertices;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 6.2831853 * (i + 0.5 * random.uniform()) / count, radius = 0.2 + random.uniform();
+    vertices.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return Footprint(vertices);
+}
+
+TEST(Footprint, ARectangleHasItsMeasures) {
+  const Footprint body = Footprint::rectangle(0.5, 0.3, 0.6);
+  EXPECT_NEAR(body.circumscribed_radius(), std::hypot(0.5, 0.3), 1e-12);
+  EXPECT_NEAR(body.half_width(), 0.3, 1e-12);
+  EXPECT_TRUE(body.contains({0.49, -0.29}));
+  EXPECT_FALSE(body.contains({-0.31, 0}));
+  EXPECT_NEAR(body.distance_to_outline({0, 0}), 0.3, 1e-12);
+  EXPECT_NEAR(body.distance_to_outline({1.5, 0}), 1, 1e-12);
+}
+
+TEST(Footprint, ThePartsCoverTheBodyAndContainNothingElse) {
+  RandomStream random({1, 0});
+  for (int shape = 0; shape < 100; ++shape) {
+    const Footprint body = random_footprint(random);
+    for (int i = 0; i < 1000; ++i) {
+      const Point p{2.4 * random.uniform() - 1.2, 2.4 * random.uniform() - 1.2};
+      const auto reaches = [&](const Footprint::Part& part, double radius) {
+        return std::hypot(p.x - part.middle.x, p.y - part.middle.y) < radius - 1e-9;
+      };
+      const auto& parts = body.parts();
+      if (body.contains(p)) {
+        EXPECT_TRUE(std::any_of(parts.begin(), parts.end(),
+                                [&](const auto& part) { return reaches(part, part.covering + 2e-9); }))
+            << shape << ": " << p.x << ", " << p.y;
+        const Footprint::Part& part = parts[body.part_at(p)];
+        EXPECT_TRUE(reaches(part, part.covering + 2e-9));
+      } else {
+        for (const auto& part : parts) EXPECT_FALSE(reaches(part, part.contained));
+      }
+    }
+  }
+}
+
+TEST(Footprint, TheOutlineHasNoGaps) {
+  const Footprint body = Footprint::rectangle(0.5, 0.3, 0.6);
+  const std::vector<Point> points = body.outline_points(0.05);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point &a = points[i], &b = points[(i + 1) % points.size()];
+    EXPECT_LE(std::hypot(a.x - b.x, a.y - b.y), 0.05 + 1e-12);
+    EXPECT_LT(body.distance_to_outline(a), 1e-12);
+  }
+}
+
+TEST(Footprint, WithoutARimIsTheSameShapeButSmaller) {
+  const Footprint inner = Footprint::rectangle(0.5, 0.3, 0.6).without_rim(0.06);
+  EXPECT_NEAR(inner.half_width(), 0.24, 1e-12);
+  EXPECT_NEAR(inner.circumscribed_radius(), 0.8 * std::hypot(0.5, 0.3), 1e-12);
+  EXPECT_NEAR(Footprint::rectangle(0.5, 0.3, 0.6).without_rim(1).half_width(), 0.06, 1e-12);
+}
+
+TEST(Footprint, RejectsInvalidOutlines) {
+  const auto make = [](std::vector<Point> vertices) { return Footprint(vertices); };
+  EXPECT_THROW(make({{1, 0}, {0, 1}}), std::invalid_argument);
+  EXPECT_THROW(make({{1, 0}, {0, 1}, {std::nan(""), 0}}), std::invalid_argument);
+  EXPECT_THROW(make({{1, 1}, {2, 1}, {2, 2}, {1, 2}}), std::invalid_argument);        // origin outside
+  EXPECT_THROW(make({{-1, -1}, {1, 1}, {1, -1}, {-1, 1.5}}), std::invalid_argument);  // sides cross
+  expect_error_with<std::invalid_argument>({"vertex 1"}, [&] { make({{-1, -1}, {200, 0}, {0, 1}}); });
+}
+
+using maps::Occupancy;
+
+/// 4 x 4 m around the origin with a wall at x = 1.5.
+maps::OccupancyGrid walled() {
+  maps::OccupancyGrid grid = free_grid(-2, -2, 4, 4);
+  fill(grid, 1.5, -2, 1.6, 2);
+  return grid;
+}
+
+Occupancy at(const ScanMap& map, double x, double y) {
+  return map.grid().at(static_cast<int>(std::floor((x + 2) / 0.05)),
+                       static_cast<int>(std::floor((y + 2) / 0.05)));
+}
+
+TEST(ScanMap, MarksWhereBeamsEndAndClearsWhatTheyCross) {
+  ScanMap map(walled());
+  std::vector<double> ranges{1.02, 8, 0.52, 8};  // ahead, left, behind, right
+  map.add({{0.01, 0.01, 0}, ranges, 8});
+  EXPECT_EQ(at(map, 1.03, 0.01), Occupancy::occupied);
+  EXPECT_EQ(at(map, -0.51, 0.01), Occupancy::occupied);
+  EXPECT_EQ(at(map, 0.5, 0.01), Occupancy::free);
+  ranges[0] = 1.5;  // what stood there has gone
+  map.add({{0.01, 0.01, 0}, ranges, 8});
+  EXPECT_EQ(at(map, 1.03, 0.01), Occupancy::free);
+  EXPECT_EQ(at(map, -0.51, 0.01), Occupancy::occupied);
+}
+
+TEST(ScanMap, NeverClearsWhatTheMapKnows) {
+  ScanMap map(walled());
+  const std::vector<double> ranges{8, 8, 8, 8};
+  map.add({{0.01, 0.01, 0}, ranges, 8});
+  EXPECT_EQ(at(map, 1.55, 0.01), Occupancy::occupied);
+}
+
+TEST(ScanMap, DropsInvalidBeamsAndAllocatesNothing) {
+  ScanMap map(walled());
+  const std::vector<Occupancy> before = map.grid().cells;
+  const std::vector<double> ranges{std::nan(""), -1, INFINITY, std::nan("")};
+  const std::vector<double> away{1, 1, 1, 1};
+  const long allocations = testing::allocations();
+  map.add({{0.01, 0.01, 0}, ranges, 8});
+  map.add({{1e9, 0, 0}, away, 8});
+  EXPECT_EQ(testing::allocations(), allocations);
+  EXPECT_TRUE(map.grid().cells == before);
+  maps::OccupancyGrid turned = walled();
+  turned.origin.yaw = 1;
+  EXPECT_THROW(ScanMap{turned}, std::invalid_argument);
+  EXPECT_THROW(ScanMap{maps::OccupancyGrid{}}, std::invalid_argument);
 }
 
 }  // namespace

@@ -17,14 +17,27 @@ namespace slalom::navigation {
 inline constexpr double drive_period = 0.05;  // s
 inline constexpr double pi = std::numbers::pi;
 
-/// A room of 10 x 6 m with its corner at the origin.
+/// A robot on a floor, by default a room of 10 x 6 m with its corner at the origin.
 struct Drive {
   explicit Drive(BaseKind kind, double half_length = 0.35, double width = 0.5)
-      : body(Footprint::rectangle(half_length, half_length, width)) {
-    options.base.kind = kind;
-    options.base.min_turning_radius = 0.4;
+      : Drive(NavigatorOptions{.base = {.kind = kind, .min_turning_radius = 0.4}}, free_grid(0, 0, 10, 6),
+              half_length, width) {
+    restart();
+  }
+  Drive(const NavigatorOptions& given, const maps::OccupancyGrid& floor, double half_length = 0.35,
+        double width = 0.5)
+      : body(Footprint::rectangle(half_length, half_length, width)), options(given), grid(floor) {
     costmap.update(grid);
-    navigator.emplace(body, options, costmap);
+  }
+  /// Makes the navigator, with the present options.
+  void restart() { navigator.emplace(body, options, costmap); }
+  /// The same for a solver with few samples, which is fast.
+  void restart_fast(int threads = 1) {
+    SvgMppiOptions solver = svg_mppi_options(options.base);
+    solver.samples = 512;
+    solver.guides.iterations = 3;
+    solver.threads = threads;
+    navigator.emplace(body, options, solver, costmap);
   }
   void start(const maps::Pose& from, const std::vector<maps::Pose>& to, std::uint64_t seed = 1) {
     pose = from;
@@ -32,9 +45,14 @@ struct Drive {
     navigator->reset(seed);
     navigator->set_path(path);
   }
-  NavigationStatus step() {
+  /// Puts something into a rectangle, m.
+  void block(double x0, double y0, double x1, double y1) {
+    fill(grid, x0, y0, x1, y1);
+    costmap.update(grid);
+  }
+  NavigationResult update(std::span<const maps::PredictedObstacle> others = {}) {
     const NavigationResult result =
-        navigator->update(pose, told_zero ? Velocity{} : velocity, costmap, drive_period);
+        navigator->update(pose, told_zero ? Velocity{} : velocity, costmap, drive_period, others);
     turn_changes.push_back(result.command.turn - velocity.turn);
     command = result.command;
     on_their_way.push_back(result.command);
@@ -52,9 +70,10 @@ struct Drive {
     if (now != 0) last_direction = now;
     remaining = result.remaining;
     delay = result.delay;
-    return result.status;
+    return result;
   }
-  /// Drives until the goal is reached or for so long (s).
+  NavigationStatus step() { return update().status; }
+  /// Drives until the goal is reached, or for so long (s).
   NavigationStatus drive(double duration) {
     NavigationStatus status = NavigationStatus::following;
     for (time = 0; time < duration && status != NavigationStatus::goal_reached; time += drive_period)
@@ -65,7 +84,7 @@ struct Drive {
 
   Footprint body;
   NavigatorOptions options;
-  maps::OccupancyGrid grid = free_grid(0, 0, 10, 6);
+  maps::OccupancyGrid grid;
   Costmap costmap{grid.width, grid.height, grid.resolution};
   std::optional<Navigator> navigator;
   std::vector<maps::Pose> path;

@@ -13,8 +13,7 @@ inline maps::OccupancyGrid free_grid(double x, double y, double length_x, double
   grid.width = static_cast<int>(std::lround(length_x / grid.resolution));
   grid.height = static_cast<int>(std::lround(length_y / grid.resolution));
   grid.origin = {x, y, 0};
-  grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
-                    maps::Occupancy::free);
+  grid.cells.assign(grid.width * grid.height, maps::Occupancy::free);
   return grid;
 }
 

@@ -26,8 +26,7 @@ TEST(LastMetre, ACarReversesIntoABayWithOneChangeOfDirection) {
   for (double angle = 0; angle < pi / 2; angle += 0.05)
     path.push_back({5 - std::sin(angle), 2 + std::cos(angle), angle});
   for (double y = 1.95; y > 1; y -= 0.05) path.push_back({4, y, pi / 2});
-  for (const double x : {2.9, 4.6}) fill(drive.grid, x, 0, x + 0.5, 2);
-  drive.costmap.update(drive.grid);
+  for (const double x : {2.9, 4.6}) drive.block(x, 0, x + 0.5, 2);
   drive.start({1, 3, 0}, path);
   EXPECT_EQ(drive.drive(40), NavigationStatus::goal_reached);
   EXPECT_EQ(drive.reversals, 1);
@@ -96,7 +95,7 @@ TEST(LastMetre, ARobotThatCannotReverseDrivesEveryPathForward) {
   for (const BaseKind kind : {BaseKind::differential, BaseKind::ackermann}) {
     Drive drive(kind);
     drive.options.base.max_reverse = 0;
-    drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+    drive.restart();
     drive.start({7, 3, 0.1}, {{7, 3, 0.1}, {5, 3, 0}, {3, 3, 0}, {3, 3, -2}});
     EXPECT_EQ(drive.drive(40), NavigationStatus::goal_reached) << static_cast<int>(kind);
     EXPECT_EQ(drive.reversals, 0);
@@ -106,7 +105,7 @@ TEST(LastMetre, ARobotThatCannotReverseDrivesEveryPathForward) {
 TEST(LastMetre, ARobotThatDoesNotTurnKeepsItsHeading) {
   Drive drive(BaseKind::omnidirectional);
   drive.options.base.max_turn = 0;
-  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+  drive.restart();
   drive.start({2, 2, 0.5}, {{2, 2, 0}, {5, 2, 0}, {5, 4, 2}});
   EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached);
   EXPECT_NEAR(drive.pose.yaw, 0.5, 1e-9);
@@ -116,9 +115,8 @@ TEST(LastMetre, SaysThatItIsStuckWithoutTheSearchForDetours) {
   Drive drive(BaseKind::differential);
   drive.options.find_detours = false;
   drive.options.stuck_after = 1;
-  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
-  fill(drive.grid, 4, 1, 4.5, 5);
-  drive.costmap.update(drive.grid);
+  drive.restart();
+  drive.block(4, 1, 4.5, 5);
   drive.start({2, 3, 0}, {{2, 3, 0}, {8, 3, 0}});
   NavigationStatus status{};
   for (int i = 0; i < 800 && status != NavigationStatus::stuck; ++i) status = drive.step();
@@ -128,8 +126,7 @@ TEST(LastMetre, SaysThatItIsStuckWithoutTheSearchForDetours) {
 
 TEST(LastMetre, DrivesUpToAnOccupiedGoalAndWaits) {
   Drive drive(BaseKind::differential);
-  fill(drive.grid, 7.8, 2.8, 8.2, 3.2);
-  drive.costmap.update(drive.grid);
+  drive.block(7.8, 2.8, 8.2, 3.2);
   drive.start({1, 3, 0}, {{1, 3, 0}, {8, 3, 0}});
   EXPECT_EQ(drive.drive(18), NavigationStatus::goal_occupied);
   const double room = 7.8 - (drive.pose.x + 0.35);
@@ -146,7 +143,7 @@ TEST(LastMetre, ADelayThatIsToldCostsItsDurationAndLittleMore) {
     Drive drive(BaseKind::differential);
     drive.delay_periods = periods;
     drive.options.base.delay_forward = drive.options.base.delay_turn = periods * drive_period;
-    drive.navigator.emplace(drive.body, drive.options, drive.costmap);
+    drive.restart();
     drive.start({1, 3, 0}, {{1, 3, 0}, {6, 3, 0}});
     EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached);
     EXPECT_EQ(drive.reversals, 0);
@@ -168,9 +165,8 @@ TEST(LastMetre, ADelayThatIsNotToldIsEstimated) {
 
 TEST(LastMetre, ADoorALittleWiderThanTheRobotIsPassed) {
   Drive drive(BaseKind::differential);
-  fill(drive.grid, 4.9, 0, 5.1, 2.7);
-  fill(drive.grid, 4.9, 3.3, 5.1, 6);
-  drive.costmap.update(drive.grid);
+  drive.block(4.9, 0, 5.1, 2.7);
+  drive.block(4.9, 3.3, 5.1, 6);
   drive.start({1, 3, 0.1}, {{1, 3, 0}, {9, 3, 0}});
   EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached);
   EXPECT_FALSE(drive.collided);
@@ -187,10 +183,9 @@ TEST(LastMetre, SaysThatCommandsAreIgnored) {
 TEST(LastMetre, ARobotThatCannotReverseTurnsRoundInACorridorAtOnce) {
   Drive drive(BaseKind::differential);
   drive.options.base.max_reverse = 0;
-  drive.navigator.emplace(drive.body, drive.options, drive.costmap);
-  fill(drive.grid, 0, 0, 10, 2.55);
-  fill(drive.grid, 0, 3.5, 10, 6);
-  drive.costmap.update(drive.grid);
+  drive.restart();
+  drive.block(0, 0, 10, 2.55);
+  drive.block(0, 3.5, 10, 6);
   drive.start({5, 3.025, 0}, {{5, 3.025, pi}, {2, 3.025, pi}});
   EXPECT_EQ(drive.drive(12), NavigationStatus::goal_reached);
   EXPECT_FALSE(drive.collided);

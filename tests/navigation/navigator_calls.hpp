@@ -27,22 +27,19 @@ inline SvgMppiOptions few_samples(const BaseOptions& base) {
 
 /// 4 m x 4 m around the origin with a box in it, or any map.
 struct Hall {
-  Hall() : Hall(UnknownCells::obstacle) { add(0.5, -0.5, 1, 0.5, maps::Occupancy::occupied); }
+  Hall() : grid(free_grid(-2, -2, 4, 4)), costmap(grid.width, grid.height, grid.resolution) {
+    add(0.5, -0.5, 1, 0.5, maps::Occupancy::occupied);
+  }
   explicit Hall(testing::Adversary& adversary)
       : grid{3 + adversary.below(200), 3 + adversary.below(200), adversary.within(0.02, 0.2), {}, {}},
         costmap(grid.width, grid.height, grid.resolution, static_cast<UnknownCells>(adversary.below(2))) {
     grid.origin = {adversary.within(-5, 1), adversary.within(-5, 1), 0};
-    grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
-                      maps::Occupancy::free);
+    grid.cells.assign(grid.width * grid.height, maps::Occupancy::free);
     for (int left = adversary.below(6); left >= 0; --left) {
       const double x = adversary.within(-2, 2), y = adversary.within(-2, 2);
       add(x, y, x + adversary.within(0, 2), y + adversary.within(0, 2),
           static_cast<maps::Occupancy>(adversary.below(3)));
     }
-  }
-  explicit Hall(UnknownCells unknown)
-      : grid(free_grid(-2, -2, 4, 4)), costmap(grid.width, grid.height, grid.resolution, unknown) {
-    costmap.update(grid);
   }
   void add(double x0, double y0, double x1, double y1, maps::Occupancy value) {
     fill(grid, x0, y0, x1, y1, value);
@@ -79,7 +76,7 @@ struct NavigatorTally {
 
 /// Sets any path. Throws Finding.
 inline void set_any_path(testing::Adversary& adversary, Navigator& navigator, bool hostile) {
-  std::vector<maps::Pose> points(static_cast<std::size_t>(adversary.below(12)));
+  std::vector<maps::Pose> points(adversary.below(12));
   const double reach = adversary.once_in(4) ? 30 : 2;
   const auto value = [&] { return hostile ? adversary.any(-reach, reach) : adversary.within(-reach, reach); };
   for (maps::Pose& point : points) point = {value(), value(), value()};

@@ -4,54 +4,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 
-#include "navigation/grids.hpp"
+#include "navigation/drive.hpp"
+#include "navigation/navigator_calls.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/navigation/path_planner.hpp"
+#include "support/adversarial_tries.hpp"
+#include "support/allocation_failures.hpp"
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"
 
 namespace slalom::navigation {
 namespace {
 
-constexpr double period = 0.05;  // s
 const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
 
-/// A robot that moves as it is told, in 10 x 4 m around (5, 0).
-struct Drive {
-  explicit Drive(NavigatorOptions given = {}, int threads = 1)
-      : options(given), grid(free_grid(0, -2, 10, 4)), costmap(grid.width, grid.height, grid.resolution) {
-    SvgMppiOptions solver = svg_mppi_options(options.base);
-    solver.samples = 512;
-    solver.guides.iterations = 3;
-    solver.threads = threads;
-    navigator.emplace(body, options, solver, costmap);
-    costmap.update(grid);
-  }
-  void block(double x0, double y0, double x1, double y1) {
-    fill(grid, x0, y0, x1, y1);
-    costmap.update(grid);
+/// A robot in 10 x 4 m around (5, 0), whose commands are checked.
+struct CheckedDrive : Drive {
+  explicit CheckedDrive(const NavigatorOptions& given = {}, int threads = 1)
+      : Drive(given, free_grid(0, -2, 10, 4)) {
+    pose = {1, 0, 0};
+    restart_fast(threads);
   }
   NavigationResult step() {
-    const NavigationResult result = navigator->update(pose, velocity, costmap, period);
-    const Velocity &v = result.command, &before = velocity;
+    const Velocity before = velocity;
+    const NavigationResult result = update();
+    const Velocity& v = result.command;
     const BaseOptions& base = options.base;
     EXPECT_LE(v.forward, base.max_forward + 1e-6);
     EXPECT_GE(v.forward, -base.max_reverse - 1e-6);
     EXPECT_LE(std::abs(v.turn), base.max_turn + 1e-6);
     EXPECT_LE(std::abs(v.forward - before.forward), base.max_acceleration * period + 1e-6);
     EXPECT_LE(std::abs(v.turn - before.turn), base.max_turn_acceleration * period + 1e-6);
-    if (base.kind != BaseKind::omnidirectional) {
-      EXPECT_EQ(v.left, 0);
-    }
-    const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
-    pose = {pose.x + period * (c * v.forward - s * v.left), pose.y + period * (s * v.forward + c * v.left),
-            pose.yaw + period * v.turn};
-    velocity = v;
-    collided = collided || costmap.collides(body, pose);
+    EXPECT_TRUE(v.left == 0 || base.kind == BaseKind::omnidirectional);
     return result;
   }
   /// Drives until one of these or for so long (s); the last status.
@@ -63,15 +52,6 @@ struct Drive {
       status = step().status;
     return status;
   }
-
-  NavigatorOptions options;
-  maps::OccupancyGrid grid;
-  Costmap costmap;
-  std::optional<Navigator> navigator;
-  maps::Pose pose{1, 0, 0};
-  Velocity velocity;
-  bool collided = false;
-  double time = 0;  ///< s, of the last drive
 };
 
 const maps::Pose straight[] = {{1, 0, 0}, {6, 0, 0}};
@@ -80,7 +60,7 @@ TEST(Navigator, ReachesTheGoalInItsHeadingWithEveryBase) {
   for (const BaseKind kind : {BaseKind::differential, BaseKind::omnidirectional, BaseKind::ackermann}) {
     NavigatorOptions options;
     options.base.kind = kind;
-    Drive drive(options);
+    CheckedDrive drive(options);
     const double heading = kind == BaseKind::ackermann ? 0 : 1.2;
     const maps::Pose path[] = {{1, 0, 0}, {5, 0.5, heading}};
     drive.navigator->set_path(path);
@@ -97,7 +77,7 @@ TEST(Navigator, AnAckermannBaseKeepsItsTurningRadius) {
   NavigatorOptions options;
   options.base.kind = BaseKind::ackermann;
   options.base.min_turning_radius = 0.8;
-  Drive drive(options);
+  CheckedDrive drive(options);
   const maps::Pose path[] = {{1, 0, 0}, {3, 0, 0}, {3.5, 1.2, 0}, {6, 1.2, 0}};
   drive.navigator->set_path(path);
   for (int i = 0; i < 200; ++i) {
@@ -108,7 +88,7 @@ TEST(Navigator, AnAckermannBaseKeepsItsTurningRadius) {
 }
 
 TEST(Navigator, PassesAPalletOnThePathWithoutChangingItsSide) {
-  Drive drive;
+  CheckedDrive drive;
   drive.block(3, -0.6, 4, 0.6);  // as near to one side as to the other
   drive.navigator->set_path(straight);
   RandomStream random({1, 0});
@@ -135,13 +115,12 @@ TEST(Navigator, PassesAPalletOnThePathWithoutChangingItsSide) {
 }
 
 /// Drives on a costmap of 6 x 6 m around the robot until the goal is reached or the way is blocked.
-NavigationStatus drive_with_a_moving_costmap(Drive& drive, double x0, double y0, double x1, double y1) {
+NavigationStatus drive_with_a_moving_costmap(CheckedDrive& drive, double x0, double y0, double x1,
+                                             double y1) {
   NavigationStatus status = NavigationStatus::following;
   maps::OccupancyGrid seen = free_grid(0, 0, 6, 6);
   drive.costmap = Costmap(seen.width, seen.height, seen.resolution);
-  SvgMppiOptions solver = svg_mppi_options(drive.options.base);
-  solver.samples = 512;
-  drive.navigator.emplace(body, drive.options, solver, drive.costmap);
+  drive.restart_fast();
   const maps::Pose path[] = {{1, 0, 0}, {9, 0, 0}};
   drive.navigator->set_path(path);
   for (int i = 0; i < 800 && status != NavigationStatus::goal_reached && status != NavigationStatus::blocked;
@@ -158,18 +137,18 @@ NavigationStatus drive_with_a_moving_costmap(Drive& drive, double x0, double y0,
 
 // At first the costmap shows where the pallet begins and not where it ends.
 TEST(Navigator, GoesOnWhileTheEndOfAnObstacleIsOffTheCostmap) {
-  Drive drive;
+  CheckedDrive drive;
   EXPECT_EQ(drive_with_a_moving_costmap(drive, 4.5, -0.5, 5.5, 0.5), NavigationStatus::goal_reached);
 }
 
 TEST(Navigator, IsBlockedByAWallThatIsLongerThanTheCostmapShows) {
-  Drive drive;
+  CheckedDrive drive;
   EXPECT_EQ(drive_with_a_moving_costmap(drive, 4.5, -20, 5.5, 20), NavigationStatus::blocked);
   EXPECT_LT(drive.pose.x, 4.5 - 0.35);
 }
 
 TEST(Navigator, SaysWithinHalfASecondThatThereIsNoWay) {
-  Drive drive;
+  CheckedDrive drive;
   drive.navigator->set_path(straight);
   ASSERT_EQ(drive.drive(2), NavigationStatus::following);
   drive.block(4, -2, 4.3, 2);
@@ -186,7 +165,7 @@ TEST(Navigator, SaysWithinHalfASecondThatThereIsNoWay) {
 TEST(Navigator, WithoutDetoursItReportsNone) {
   NavigatorOptions options;
   options.find_detours = false;
-  Drive drive(options);
+  CheckedDrive drive(options);
   drive.block(4, -2, 4.3, 2);
   drive.navigator->set_path(straight);
   for (int i = 0; i < 200; ++i) {
@@ -198,7 +177,7 @@ TEST(Navigator, WithoutDetoursItReportsNone) {
 }
 
 TEST(Navigator, StandsWhereItCannotDrive) {
-  Drive drive;
+  CheckedDrive drive;
   EXPECT_EQ(drive.step().status, NavigationStatus::no_path);
   drive.navigator->set_path(straight);
   drive.velocity = {0.5, 0, 0.3};
@@ -236,7 +215,7 @@ TEST(Navigator, RejectsInvalidOptionsAndPaths) {
 }
 
 TEST(Navigator, UpdatesAllocateNothing) {
-  Drive drive;
+  CheckedDrive drive;
   drive.block(3, -0.6, 4, 0.7);
   drive.navigator->set_path(straight);
   const long before = testing::allocations();
@@ -250,24 +229,24 @@ TEST(Navigator, UpdatesAllocateNothing) {
 }
 
 TEST(Navigator, ACopyDrivesOnLikeTheOriginalAndAllocatesNothing) {
-  Drive drive;
+  CheckedDrive drive;
   drive.block(3, -0.6, 4, 0.7);
   drive.navigator->set_path(straight);
   for (int i = 0; i < 10; ++i) drive.step();
   Navigator copy = *drive.navigator;
-  const long before = testing::allocations();
   for (int i = 0; i < 30; ++i) {
+    const long before = testing::allocations();
     const Velocity of_copy = copy.update(drive.pose, drive.velocity, drive.costmap, period).command;
+    EXPECT_EQ(testing::allocations(), before);
     const Velocity of_original = drive.step().command;
     ASSERT_EQ(of_copy.forward, of_original.forward) << i;
     ASSERT_EQ(of_copy.turn, of_original.turn) << i;
   }
-  EXPECT_EQ(testing::allocations(), before);
 }
 
 TEST(Navigator, TheSameSeedGivesTheSameCommandsOnAnyNumberOfThreads) {
-  Drive one({}, 1), three({}, 3);
-  for (Drive* drive : {&one, &three}) {
+  CheckedDrive one({}, 1), three({}, 3);
+  for (CheckedDrive* drive : {&one, &three}) {
     drive->block(3, -0.6, 4, 0.7);
     drive->navigator->set_path(straight);
   }
@@ -307,6 +286,57 @@ TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
       rollouts);
   EXPECT_TRUE(method_options("svg_mppi", base).get_if<SvgMppiOptions>());
   EXPECT_THROW(method_options("dwa", base), std::invalid_argument);
+}
+
+const maps::Pose hall_path[] = {{-1.5, 0, 0}, {1.5, 0, 0}};
+
+TEST(NavigatorCheck, IgnoresAVelocityThatNoRobotHas) {
+  const Hall hall;
+  Navigator navigator = make_navigator({}, hall.costmap);
+  navigator.set_path(hall_path);
+  for (const double speed : {101.0, -4132.0, 1e300}) {
+    const NavigationResult result = navigator.update({-1.5, 0, 0}, {.forward = speed}, hall.costmap, period);
+    EXPECT_EQ(result.status, NavigationStatus::bad_input) << speed;
+    EXPECT_EQ(result.command.forward, 0) << speed;
+  }
+}
+
+TEST(NavigatorCheck, BrakesWithinTheLimitsOfTheBase) {
+  const Hall hall;
+  const NavigatorOptions options;
+  Navigator navigator = make_navigator(options, hall.costmap);
+  const NavigationResult result =
+      navigator.update({-1.5, 0, 0}, {.forward = 4, .left = 1, .turn = -9}, hall.costmap, period);
+  EXPECT_EQ(result.status, NavigationStatus::no_path);
+  EXPECT_EQ(result.command.forward, options.base.max_forward);
+  EXPECT_EQ(result.command.left, 0) << "a differential base does not move sideways";
+  EXPECT_EQ(result.command.turn, -options.base.max_turn);
+  EXPECT_EQ(result.corrections, 3);
+}
+
+TEST(NavigatorCheck, EveryCommandIsValidForAnyInput) {
+  const Hall hall;
+  NavigatorTally tally;
+  testing::try_adversaries(
+      testing::repetitions(1000), tally.updates,
+      [&](testing::Adversary& adversary, std::uint64_t) { call_navigator(adversary, hall, tally); });
+  std::printf("[ calls    ] %ld updates, %ld corrections;", tally.updates, tally.corrections);
+  for (int i = 0; i < 10; ++i)
+    std::printf(" %s %ld", name(static_cast<NavigationStatus>(i)), tally.statuses[i]);
+  std::printf("\n");
+  for (const NavigationStatus status : {NavigationStatus::following, NavigationStatus::braking,
+                                        NavigationStatus::no_path, NavigationStatus::bad_input})
+    EXPECT_GT(tally.statuses[static_cast<int>(status)], 0) << name(status);
+}
+
+TEST(AllocationFailure, ANavigatorIsMadeAndTakesAPathOrThrows) {
+  const Hall hall;
+  EXPECT_GT(testing::fail_every_allocation([&] {
+              Navigator navigator = make_navigator({}, hall.costmap);
+              navigator.set_path(hall_path);
+              return navigator.update({-1.5, 0, 0}, {}, hall.costmap, period).command.forward;
+            }),
+            20);
 }
 
 }  // namespace

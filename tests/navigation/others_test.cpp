@@ -6,17 +6,14 @@
 #include <cmath>
 #include <span>
 
-#include "navigation/grids.hpp"
-#include "slalom/navigation/navigator.hpp"
+#include "navigation/drive.hpp"
 #include "support/allocations.hpp"
 #include "support/predicted.hpp"
 
 namespace slalom::navigation {
 namespace {
 
-constexpr double period = 0.05, size = 0.5;  // s; m, of the other
-const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
-const maps::Pose straight[] = {{1, 0, 0}, {7, 0, 0}};
+constexpr double size = 0.5;  // m, of the other
 
 /// Somebody who keeps a velocity.
 struct Other {
@@ -26,38 +23,27 @@ struct Other {
     const maps::Pose from{at.x, at.y, std::atan2(velocity.y, velocity.x)};
     return {size, size, {{1, from, std::hypot(velocity.x, velocity.y), 0.02, 0.02}}, 2};
   }
-  void move() { at = {at.x + period * velocity.x, at.y + period * velocity.y}; }
+  void move() { at = {at.x + drive_period * velocity.x, at.y + drive_period * velocity.y}; }
 };
 
 /// A robot on an empty floor of 10 x 6 m around (5, 0), and somebody else.
-struct Meeting {
-  explicit Meeting(const Other& given, NavigatorOptions options = {})
-      : other(given),
-        grid(free_grid(0, -3, 10, 6)),
-        costmap(grid.width, grid.height, grid.resolution),
-        navigator(body, options, solver(), costmap) {
-    costmap.update(grid);
-    navigator.set_path(straight);
+struct Meeting : Drive {
+  explicit Meeting(const Other& given, const NavigatorOptions& chosen = {})
+      : Drive(chosen, free_grid(0, -3, 10, 6)), other(given) {
+    restart_fast();
+    start({1, 0, 0}, {{1, 0, 0}, {7, 0, 0}});
   }
-  static SvgMppiOptions solver() {
-    SvgMppiOptions made = svg_mppi_options({});
-    made.samples = 512;
-    made.guides.iterations = 3;
-    return made;
+  /// Drives a step among the other, who does not move meanwhile.
+  NavigationResult step() {
+    const testing::Predicted predicted = other.predicted();
+    return update({&predicted.obstacle, 1});
   }
   /// Returns the least distance of the two middles until the goal or for `duration` (s), and drives on.
   double drive(double duration, bool predicts) {
     double nearest = 100;
-    for (double time = 0; time < duration && status != NavigationStatus::goal_reached; time += period) {
-      const testing::Predicted predicted = other.predicted();
-      const auto others =
-          predicts ? std::span(&predicted.obstacle, 1) : std::span<const maps::PredictedObstacle>{};
-      const NavigationResult result = navigator.update(pose, velocity, costmap, period, others);
-      status = result.status;
+    for (time = 0; time < duration && status != NavigationStatus::goal_reached; time += drive_period) {
+      status = (predicts ? step() : update()).status;
       detours += status == NavigationStatus::detour;
-      velocity = result.command;
-      pose = {pose.x + period * velocity.forward * std::cos(pose.yaw),
-              pose.y + period * velocity.forward * std::sin(pose.yaw), pose.yaw + period * velocity.turn};
       other.move();
       nearest = std::min(nearest, std::hypot(pose.x - other.at.x, pose.y - other.at.y));
     }
@@ -65,11 +51,6 @@ struct Meeting {
   }
 
   Other other;
-  maps::OccupancyGrid grid;
-  Costmap costmap;
-  Navigator navigator;
-  maps::Pose pose{1, 0, 0};
-  Velocity velocity;
   NavigationStatus status = NavigationStatus::following;
   int detours = 0;
 };
@@ -95,11 +76,9 @@ TEST(NavigatorOthers, TheRobotBrakesBeforeWhatIsTooNear) {
   EXPECT_GT(meeting.velocity.forward, 0.4);
   // Ahead of its front, and coming fast: no plan avoids it.
   meeting.other = {{meeting.pose.x + 1.0, meeting.pose.y}, {-2, 0}};
-  const testing::Predicted predicted = meeting.other.predicted();
-  const NavigationResult result = meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap,
-                                                           period, {&predicted.obstacle, 1});
-  EXPECT_EQ(result.status, NavigationStatus::braking);
-  EXPECT_LT(result.command.forward, meeting.velocity.forward);
+  const double before = meeting.velocity.forward;
+  EXPECT_EQ(meeting.step().status, NavigationStatus::braking);
+  EXPECT_LT(meeting.velocity.forward, before);
 }
 
 TEST(NavigatorOthers, TheRobotDoesNotTouchSomebodyWhoStopsBesideIt) {
@@ -107,16 +86,8 @@ TEST(NavigatorOthers, TheRobotDoesNotTouchSomebodyWhoStopsBesideIt) {
   for (const double x : {0.8, 1.1, 1.3}) {
     Meeting meeting({{x, 0.58}, {0, -0.75}});
     for (int i = 0; i < 20; ++i) {
-      const testing::Predicted predicted = meeting.other.predicted();
-      const Velocity v =
-          meeting.navigator
-              .update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted.obstacle, 1})
-              .command;
-      meeting.velocity = v;
-      maps::Pose& at = meeting.pose;
-      at = {at.x + period * v.forward * std::cos(at.yaw), at.y + period * v.forward * std::sin(at.yaw),
-            at.yaw + period * v.turn};
-      const maps::Point seen = maps::inverse_transform(at, meeting.other.at);
+      meeting.step();
+      const maps::Point seen = maps::inverse_transform(meeting.pose, meeting.other.at);
       const double gap =
           std::hypot(std::max(std::abs(seen.x) - 0.35, 0.0), std::max(std::abs(seen.y) - 0.25, 0.0));
       ASSERT_GT(gap, 0.25) << x << ", update " << i;
@@ -129,10 +100,8 @@ TEST(NavigatorOthers, WaitingForThemIsNoDeadEnd) {
   NavigatorOptions options;
   options.stuck_after = 0.5;
   Meeting meeting({{2.3, 0}, {0.01, 0}}, options);
-  meeting.grid = free_grid(0, -3, 10, 6);
-  fill(meeting.grid, 0, 0.5, 10, 3);
-  fill(meeting.grid, 0, -3, 10, -0.5);
-  meeting.costmap.update(meeting.grid);
+  meeting.block(0, 0.5, 10, 3);
+  meeting.block(0, -3, 10, -0.5);
   meeting.drive(4, true);
   EXPECT_EQ(meeting.detours, 0);
   EXPECT_NE(meeting.status, NavigationStatus::blocked);
@@ -144,7 +113,8 @@ TEST(NavigatorOthers, AllocateNothingInAnUpdate) {
   meeting.drive(0.5, true);
   const testing::Predicted predicted = meeting.other.predicted();
   const long before = testing::allocations();
-  meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted.obstacle, 1});
+  meeting.navigator->update(meeting.pose, meeting.velocity, meeting.costmap, drive_period,
+                            {&predicted.obstacle, 1});
   EXPECT_EQ(testing::allocations(), before);
 }
 

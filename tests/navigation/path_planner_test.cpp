@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "navigation/grids.hpp"
+#include "navigation/way.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -70,6 +71,29 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   EXPECT_GT(crossed(chosen, {}), 4);
   const ClosedPlace dead_end[] = {{{4, 4.5}, PathPlanner::dead_end_radius}};
   EXPECT_LT(crossed(chosen, dead_end), 2);
+}
+
+TEST(ClosedPlaces, KeepsTheLastFourOfManyDeadEnds) {
+  detail::ClosedPlaces places;
+  for (int i = 0; i < 7; ++i) {
+    places.add_dead_end({10.0 * i, 0});
+    for (int k = 0; k <= i; ++k) EXPECT_EQ(places.contain({10.0 * k, 0}), k > i - 4) << k << " of " << i;
+  }
+  EXPECT_EQ(places.all().size(), 4u);
+  places.forget_dead_ends();
+  EXPECT_FALSE(places.has_dead_ends());
+  EXPECT_FALSE(places.contain({60, 0}));
+}
+
+TEST(ClosedPlaces, AMeetingIsClosedWhileItLasts) {
+  detail::ClosedPlaces places;
+  for (int i = 0; i < 4; ++i) places.add_dead_end({10.0 * i, 0});
+  places.begin_meeting({{50, 0}, 1});
+  EXPECT_TRUE(places.contain({50.9, 0}));
+  EXPECT_TRUE(places.contain({30, 0}));
+  places.end_meeting();
+  EXPECT_FALSE(places.contain({50, 0}));
+  EXPECT_TRUE(places.contain({30, 0}));
 }
 
 }  // namespace

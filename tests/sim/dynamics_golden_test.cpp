@@ -8,17 +8,14 @@
 namespace slalom::sim {
 namespace {
 
-using slalom::testing::compare_rows;
-using slalom::testing::Comparison;
-using slalom::testing::GoldenRow;
-using slalom::testing::GoldenTable;
+using namespace slalom::testing;
 
 const DynamicsOptions gym_dynamics{.substeps = 1, .gym = true};
 const ActuationOptions gym_actuation{.gym = true};
 
 CarState state_of(const GoldenRow& row) {
   CarState s{row.real("x"), row.real("y"), row.real("delta"), row.real("v"), row.real("psi")};
-  if (row.table.has("psidot")) s.yaw_rate = row.real("psidot"), s.slip = row.real("beta");
+  if (row.has("psidot")) s.yaw_rate = row.real("psidot"), s.slip = row.real("beta");
   return s;
 }
 
@@ -75,9 +72,9 @@ TEST(GymDynamics, Trajectories) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
   const GoldenTable sensitivity(folder / "trajectory_sensitivity.csv");
   std::unordered_map<std::string, int> valid_steps;
-  for (std::size_t row = 0; row < sensitivity.rows(); ++row)
-    valid_steps[sensitivity.text(row, "case") + sensitivity.text(row, "integrator")] =
-        sensitivity.integer(row, "valid_steps");
+  for (std::size_t i = 0; i < sensitivity.rows(); ++i)
+    valid_steps[sensitivity[i].text("case") + sensitivity[i].text("integrator")] =
+        sensitivity[i].integer("valid_steps");
   PlantOptions options{.dynamics = gym_dynamics, .actuation = gym_actuation, .gym = true};
   Plant plant(CarParameters{}, options, 0.01);
   int valid = 0;
@@ -92,15 +89,8 @@ TEST(GymDynamics, Trajectories) {
     }
     if (row.integer("k") > valid) return;
     plant.step({row.real("steer_cmd"), row.real("speed_cmd")});
-    const CarState& s = plant.state();
     EXPECT_EQ(plant.steering_applied(), row.real("steer_applied"));
-    compared.relative(row, {{"x", s.x},
-                            {"y", s.y},
-                            {"delta", s.steer},
-                            {"v", s.speed},
-                            {"psi", s.yaw},
-                            {"psidot", s.yaw_rate},
-                            {"beta", s.slip}});
+    compared.relative(row, columns(plant.state()));
   });
 }
 

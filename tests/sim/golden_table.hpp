@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <initializer_list>
 #include <iostream>
 #include <span>
 #include <stdexcept>
@@ -16,10 +15,13 @@
 #include <vector>
 
 #include "golden.hpp"
+#include "slalom/sim/car.hpp"
 
 namespace slalom::testing {
 
-/// A comma-separated file with a header line; cells are read by the column's name.
+struct GoldenRow;
+
+/// A comma-separated file with a header line.
 class GoldenTable {
  public:
   explicit GoldenTable(const std::filesystem::path& file) {
@@ -33,21 +35,7 @@ class GoldenTable {
   }
 
   std::size_t rows() const { return rows_.size(); }
-  bool has(const std::string& column) const { return columns_.count(column) > 0; }
-  const std::string& text(std::size_t row, const std::string& column) const {
-    return rows_.at(row).at(columns_.at(column));
-  }
-  double real(std::size_t row, const std::string& column) const { return std::stod(text(row, column)); }
-  int integer(std::size_t row, const std::string& column) const { return std::stoi(text(row, column)); }
-
-  /// The columns prefix0, prefix1, ... as far as they go.
-  std::vector<double> series(std::size_t row, const std::string& prefix) const {
-    std::vector<double> values;
-    for (auto it = columns_.find(prefix + "0"); it != columns_.end();
-         it = columns_.find(prefix + std::to_string(values.size())))
-      values.push_back(std::stod(rows_.at(row).at(it->second)));
-    return values;
-  }
+  GoldenRow operator[](std::size_t row) const;
 
  private:
   static std::vector<std::string> split(const std::string& line) {
@@ -61,25 +49,39 @@ class GoldenTable {
     }
   }
 
+  friend GoldenRow;
   std::unordered_map<std::string, std::size_t> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// A row of a table.
+/// A row of a table; cells are read by the column's name.
 struct GoldenRow {
   const GoldenTable& table;
   std::size_t row;
 
-  const std::string& text(const std::string& column) const { return table.text(row, column); }
-  double real(const std::string& column) const { return table.real(row, column); }
-  int integer(const std::string& column) const { return table.integer(row, column); }
-  std::vector<double> series(const std::string& prefix) const { return table.series(row, prefix); }
+  bool has(const std::string& column) const { return table.columns_.count(column) > 0; }
+  const std::string& text(const std::string& column) const {
+    return table.rows_.at(row).at(table.columns_.at(column));
+  }
+  double real(const std::string& column) const { return std::stod(text(column)); }
+  int integer(const std::string& column) const { return std::stoi(text(column)); }
+  /// The columns prefix0, prefix1, ... as far as they go.
+  std::vector<double> series(const std::string& prefix) const {
+    std::vector<double> values;
+    while (has(prefix + std::to_string(values.size())))
+      values.push_back(real(prefix + std::to_string(values.size())));
+    return values;
+  }
 };
+
+inline GoldenRow GoldenTable::operator[](std::size_t row) const {
+  return {*this, row};
+}
 
 /// Counts what was compared and keeps the largest error; reports both when it goes.
 class Comparison {
  public:
-  using Columns = std::initializer_list<std::pair<const char*, double>>;
+  using Columns = std::vector<std::pair<const char*, double>>;
 
   explicit Comparison(std::string name) : name_(std::move(name)) {}
   ~Comparison() {
@@ -93,10 +95,10 @@ class Comparison {
   }
   void absolute(double actual, double expected) { note(std::abs(actual - expected)); }
   /// The same of several columns of a row.
-  void relative(const GoldenRow& row, Columns columns) {
+  void relative(const GoldenRow& row, const Columns& columns) {
     for (const auto& [name, actual] : columns) relative(actual, row.real(name));
   }
-  void absolute(const GoldenRow& row, Columns columns) {
+  void absolute(const GoldenRow& row, const Columns& columns) {
     for (const auto& [name, actual] : columns) absolute(actual, row.real(name));
   }
   void absolute(std::span<const double> actual, const std::vector<double>& expected) {
@@ -119,6 +121,23 @@ class Comparison {
   double worst_ = 0;
 };
 
+/// The columns of a car's state.
+inline Comparison::Columns columns(const sim::CarState& s) {
+  return {{"x", s.x},      {"y", s.y},     {"delta", s.steer},
+          {"v", s.speed},  {"psi", s.yaw}, {"psidot", s.yaw_rate},
+          {"beta", s.slip}};
+}
+
+/// Calls `visit(begin, end)` for the rows of each case of a table.
+template <class Visit>
+void visit_cases(const GoldenTable& table, Visit&& visit) {
+  for (std::size_t begin = 0, end; begin < table.rows(); begin = end) {
+    end = begin;
+    while (end < table.rows() && table[end].text("case") == table[begin].text("case")) ++end;
+    visit(begin, end);
+  }
+}
+
 /// Calls `compare(row, compared)` for each row of the golden table NAME.csv of the simulator; the errors must
 /// not exceed `tolerance`. Skips the test where the golden data are absent.
 template <class Compare>
@@ -128,7 +147,7 @@ void compare_rows(const std::string& name, double tolerance, Compare&& compare) 
   Comparison compared(name);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     compared.next_case();
-    compare(GoldenRow{table, row}, compared);
+    compare(table[row], compared);
     ASSERT_LE(compared.worst(), tolerance) << "row " << row;
   }
   EXPECT_GT(compared.cases(), 0);

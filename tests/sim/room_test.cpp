@@ -2,18 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
+
+#include "slalom/sim/room/crowd.hpp"
 
 namespace slalom::sim {
 namespace {
 
 /// 6 x 4 m with a wall at x = 3 from y = 0 to 2, and a pallet.
-const Room room{6, 4, {{{3, 1, 0}, 0.2, 2}}, {{{4.5, 3, 0}, 0.8, 1.2}}};
+const Room workshop{6, 4, {{{3, 1, 0}, 0.2, 2}}, {{{4.5, 3, 0}, 0.8, 1.2}}};
 
 TEST(Room, TheMapShowsTheWallsAlone) {
-  const maps::OccupancyGrid map = map_of(room, 0.05);
+  const maps::OccupancyGrid map = map_of(workshop, 0.05);
   EXPECT_EQ(map.width, 122);
   EXPECT_EQ(map.height, 82);
   const auto at = [&](double x, double y) {
@@ -27,7 +30,7 @@ TEST(Room, TheMapShowsTheWallsAlone) {
   EXPECT_EQ(at(-0.02, 1), maps::Occupancy::occupied);
   EXPECT_EQ(at(4.5, 3), maps::Occupancy::free);
   EXPECT_THROW(map_of({0.5, 4, {}, {}}, 0.05), std::invalid_argument);
-  EXPECT_THROW(map_of(room, 0), std::invalid_argument);
+  EXPECT_THROW(map_of(workshop, 0), std::invalid_argument);
 }
 
 TEST(Room, TheMapEndsWhereTheFloorEnds) {
@@ -40,7 +43,9 @@ TEST(Room, TheMapEndsWhereTheFloorEnds) {
 }
 
 TEST(Room, BodiesCollideWithWallsObstaclesAndTheEdge) {
-  const auto hits = [](double x, double y, double yaw) { return collides(room, {{x, y, yaw}, 0.7, 0.5}); };
+  const auto hits = [](double x, double y, double yaw) {
+    return collides(workshop, {{x, y, yaw}, 0.7, 0.5});
+  };
   EXPECT_FALSE(hits(1, 1, 0));
   EXPECT_TRUE(hits(2.56, 1, 0));
   EXPECT_FALSE(hits(2.54, 1, 0));
@@ -53,16 +58,105 @@ TEST(Room, BodiesCollideWithWallsObstaclesAndTheEdge) {
 
 TEST(Room, ScansMeasureTheDistances) {
   std::vector<double> ranges(4);
-  scan(room, {1, 1, 0}, 8, ranges);
+  scan(workshop, {1, 1, 0}, 8, ranges);
   EXPECT_NEAR(ranges[0], 1.9, 1e-9);
   EXPECT_NEAR(ranges[1], 3, 1e-9);
   EXPECT_NEAR(ranges[2], 1, 1e-9);
   EXPECT_NEAR(ranges[3], 1, 1e-9);
-  scan(room, {2, 3, 0}, 8, ranges);
+  scan(workshop, {2, 3, 0}, 8, ranges);
   EXPECT_NEAR(ranges[0], 2.1, 1e-9) << "the pallet";
-  scan(room, {1, 1, M_PI_2}, 1.5, ranges);
+  scan(workshop, {1, 1, M_PI_2}, 1.5, ranges);
   EXPECT_EQ(ranges[0], 1.5) << "out of range";
   EXPECT_EQ(ranges[3], 1.5) << "the wall is out of range too";
+}
+
+constexpr double tick = 0.01;            // s
+const Box far_robot{{50, 50, 0}, 1, 1};  // beyond all rooms
+const Room hall{10, 4, {}, {}};
+
+void walk(Crowd& crowd, double duration, const Box& robot = far_robot) {
+  for (int i = 0; i < static_cast<int>(std::lround(duration / tick)); ++i) crowd.step(tick, robot, {});
+}
+
+TEST(Crowd, AWalkerReachesItsSpeedAndStopsAtItsLastPoint) {
+  Crowd crowd(hall, {{{{1, 2}, {5, 2}, {5, 3}}, 1.2, 0.25, 0.5}});
+  walk(crowd, 0.49);
+  EXPECT_EQ(crowd.bodies()[0].middle.x, 1) << "it waits";
+  walk(crowd, 2);
+  EXPECT_NEAR(std::hypot(crowd.velocities()[0].x, crowd.velocities()[0].y), 1.2, 0.05);
+  walk(crowd, 8);
+  EXPECT_NEAR(crowd.bodies()[0].middle.x, 5, 0.25);
+  EXPECT_NEAR(crowd.bodies()[0].middle.y, 3, 0.25);
+  EXPECT_LT(std::hypot(crowd.velocities()[0].x, crowd.velocities()[0].y), 0.05);
+}
+
+TEST(Crowd, TwoWhoMeetPassWithoutTouching) {
+  Crowd crowd(hall, {{{{1, 2}, {9, 2}}, 1.2}, {{{9, 2.1}, {1, 2.1}}, 1.2}});
+  double nearest = 100;
+  for (int i = 0; i < 1200; ++i) {
+    walk(crowd, tick);
+    nearest = std::min(nearest, distance(crowd.bodies()[0].middle, crowd.bodies()[1].middle));
+  }
+  EXPECT_GT(nearest, 0.5) << "twice the radius";
+  EXPECT_GT(crowd.bodies()[0].middle.x, 8.7);
+  EXPECT_LT(crowd.bodies()[1].middle.x, 1.3);
+}
+
+TEST(Crowd, TheFieldOfViewIsTheSameAtTheEndOfAWay) {
+  const double behind = 1.919862177193763;  // rad: 110 degrees from the way, out of view
+  const maps::Point other{5 + 0.7 * std::cos(behind), 2 + 0.7 * std::sin(behind)};
+  const auto pushed_aside = [&](double way) {
+    Crowd crowd(hall, {{{{5, 2}, {5 + way, 2}}, 1.3}, {{other}}});
+    walk(crowd, tick);
+    return crowd.velocities()[0].y;
+  };
+  EXPECT_LT(pushed_aside(3), -0.001);
+  EXPECT_DOUBLE_EQ(pushed_aside(0.3), pushed_aside(3));
+}
+
+TEST(Crowd, WalksRoundAWallThatItsWayTouches) {
+  const Room room{10, 4, {{{5, 1, 0}, 0.4, 2}}, {}};
+  Crowd crowd(room, {{{{1, 2.2}, {9, 2.2}}, 1}});
+  double nearest = 100;
+  for (int i = 0; i < 1500; ++i) {
+    walk(crowd, tick);
+    nearest = std::min(nearest, signed_gap(room.walls[0], crowd.bodies()[0]));
+  }
+  EXPECT_GT(nearest, 0);
+  EXPECT_GT(crowd.bodies()[0].middle.x, 8.7);
+}
+
+TEST(Crowd, OnlyTheInattentiveWalkIntoARobotThatStands) {
+  for (const bool attentive : {true, false})
+    for (const double offset : {0.0, 0.1, -0.3}) {
+      const Box robot{{5, 2 + offset, 0.3}, 0.7, 0.5};
+      Crowd crowd(hall, {{{{1, 2}, {9, 2}}, 1.3, 0.25, 0, attentive}});
+      double nearest = 100;
+      for (int i = 0; i < 1000; ++i) {
+        walk(crowd, tick, robot);
+        nearest = std::min(nearest, signed_gap(robot, crowd.bodies()[0]));
+      }
+      EXPECT_EQ(nearest > 0, attentive) << offset;
+    }
+}
+
+TEST(Crowd, RefusesWalkersWithoutAWayOrRoom) {
+  EXPECT_THROW(Crowd(hall, {{{}}}), std::invalid_argument);
+  EXPECT_THROW(Crowd(hall, {{{{0.1, 2}}}}), std::invalid_argument);
+  EXPECT_THROW(Crowd(hall, {{{{1, 2}}, 4}}), std::invalid_argument);
+  EXPECT_THROW(Crowd(hall, {{{{1, 2}, {NAN, 2}}}}), std::invalid_argument);
+  EXPECT_THROW(Crowd({10, 4, {}, {{{1, 2, 0}, 1, 1}}}, {{{{1.7, 2}}}}), std::invalid_argument);
+}
+
+TEST(Room, PeopleAreSeenAndHit) {
+  Room room = hall;
+  room.people = {{{5, 2}, 0.25}};
+  double range = 0;
+  scan(room, {1, 2, 0}, 8, {&range, 1});
+  EXPECT_NEAR(range, 3.75, 1e-12);
+  EXPECT_TRUE(collides(room, {{4.41, 2, 0}, 0.7, 0.5}));
+  EXPECT_FALSE(collides(room, {{4.39, 2, 0}, 0.7, 0.5}));
+  EXPECT_FALSE(collides(room, {{4.46, 1.56, 0}, 0.7, 0.5})) << "a disc has no corners";
 }
 
 }  // namespace

@@ -4,19 +4,15 @@
 #include <memory>
 #include <vector>
 
+#include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/track.hpp"
 
 namespace slalom::testing {
 
-/// A closed room: walls one cell thick round `width` x `height` cells; the lower left corner of the map at
-/// (0, 0).
+/// A closed room: walls one cell thick round `width` x `height` cells; the corner of the map at (0, 0).
 inline maps::OccupancyGrid room(int width, int height, double resolution = 0.05) {
-  maps::OccupancyGrid grid;
-  grid.width = width;
-  grid.height = height;
-  grid.resolution = resolution;
-  grid.cells.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-                    maps::Occupancy::free);
+  maps::OccupancyGrid grid{width, height, resolution, {}, {}};
+  grid.cells.assign(width * height, maps::Occupancy::free);
   for (int r = 0; r < height; ++r)
     for (int c = 0; c < width; ++c)
       if (r == 0 || c == 0 || r == height - 1 || c == width - 1) grid.at(c, r) = maps::Occupancy::occupied;
@@ -41,6 +37,19 @@ inline std::vector<maps::Point> circle(double radius, int points = 200) {
     path.push_back({10 + radius * std::cos(angle), 10 + radius * std::sin(angle)});
   }
   return path;
+}
+
+/// The middle of the ring road at this speed (m/s), counter-clockwise.
+inline std::vector<sim::PathPoint> ring_path(double speed) {
+  std::vector<sim::PathPoint> path;
+  for (const maps::Point& point : circle(5.5)) path.push_back({point, speed});
+  return path;
+}
+
+/// A pose on the ring road: `angle` (rad) about its middle, at `radius` (m), heading counter-clockwise.
+inline maps::Pose on_ring(double angle, double radius = 5.5) {
+  return {10 + radius * std::cos(angle), 10 + radius * std::sin(angle),
+          maps::wrap_angle(angle + 0.5 * 3.141592653589793)};
 }
 
 inline std::shared_ptr<const sim::Track> ring_track() {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/golden_table.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/laps.hpp"
-#include "slalom/sim/numpy_random.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/shapes.hpp"
@@ -12,10 +12,7 @@
 namespace slalom::sim {
 namespace {
 
-using slalom::testing::compare_rows;
-using slalom::testing::Comparison;
-using slalom::testing::GoldenRow;
-using slalom::testing::GoldenTable;
+using namespace slalom::testing;
 
 /// Columns x, y, half width of a file without header; the width is what f1tenth_gym takes for the speed.
 std::vector<PathPoint> opponent_path(const std::filesystem::path& file) {
@@ -32,7 +29,7 @@ std::vector<PathPoint> opponent_path(const std::filesystem::path& file) {
 
 Box box_of(const GoldenRow& row, const std::string& suffix = "") {
   Box box{{row.real("x" + suffix), row.real("y" + suffix), row.real("yaw" + suffix)}, 0.58, 0.31};
-  if (row.table.has("length")) box.length = row.real("length"), box.width = row.real("width");
+  if (row.has("length")) box.length = row.real("length"), box.width = row.real("width");
   return box;
 }
 
@@ -56,20 +53,17 @@ TEST(GymRules, CollisionsOfMany) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
   const GoldenTable table(folder / "collision_multiple.csv");
   Comparison compared("collision_multiple");
-  for (std::size_t begin = 0, end; begin < table.rows(); begin = end) {
-    end = begin;
-    while (end < table.rows() && table.text(end, "case") == table.text(begin, "case")) ++end;
+  visit_cases(table, [&](std::size_t begin, std::size_t end) {
     compared.next_case();
     for (std::size_t i = begin; i < end; ++i) {
       int partner = -1;
       // The last pair in the order (0,1), (0,2), ..., (1,2), ... that has i in it and collides.
       for (std::size_t j = begin; j < end; ++j)
-        if (j != i && signed_gap(box_of({table, i}), box_of({table, j})) <= 0)
+        if (j != i && signed_gap(box_of(table[i]), box_of(table[j])) <= 0)
           partner = static_cast<int>(j - begin);
-      compared.absolute(partner >= 0, table.integer(i, "collision"));
-      compared.absolute(partner, table.integer(i, "collision_idx"));
+      compared.absolute(table[i], {{"collision", partner >= 0}, {"collision_idx", partner}});
     }
-  }
+  });
   EXPECT_GT(compared.cases(), 0);
   EXPECT_EQ(compared.worst(), 0);
 }
@@ -110,7 +104,7 @@ TEST(GymRules, ScanNoise) {
   for (const char* scan : {"noise_scan1", "noise_scan2"}) {
     compared.next_case();
     for (std::size_t row = 0; row < table.rows(); ++row)
-      compared.absolute(0.01 * random.normal(), table.real(row, scan));
+      compared.absolute(0.01 * random.normal(), table[row].real(scan));
   }
   EXPECT_LE(compared.worst(), 1e-15);
 }
@@ -122,7 +116,7 @@ TEST(GymRules, ParkedCars) {
   compare_rows("obstacles", 1e-12, [&](const GoldenRow& row, Comparison& compared) {
     const int index = row.integer("i");
     const auto cars = place_at_random(path, index + 1, static_cast<std::uint64_t>(row.integer("seed")));
-    const maps::Pose& car = cars.at(static_cast<std::size_t>(index));
+    const maps::Pose& car = cars.at(index);
     compared.absolute(row, {{"x", car.x}, {"y", car.y}, {"yaw", car.yaw}});
   });
 }
@@ -156,7 +150,7 @@ TEST(GymRules, Laps) {
     if (row.integer("k") == 0) {
       if (agent == 0) cars.clear();
       cars.emplace_back();
-      const double heading = row.table.real(row.row - agent, "start_yaw");
+      const double heading = row.table[row.row - agent].real("start_yaw");
       cars[agent].reset({row.real("start_x"), row.real("start_y")}, heading);
     }
     StartZoneLaps& car = cars.at(agent);

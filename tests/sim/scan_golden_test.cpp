@@ -1,16 +1,13 @@
 #include <gtest/gtest.h>
 
 #include "sim/golden_table.hpp"
-#include "sim/gym/gym_distance.hpp"
 #include "sim/gym_world.hpp"
 #include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim {
 namespace {
 
-using slalom::testing::compare_rows;
-using slalom::testing::Comparison;
-using slalom::testing::GoldenRow;
+using namespace slalom::testing;
 
 maps::Pose pose_of(const GoldenRow& row, const std::string& prefix = "") {
   return {row.real(prefix + "x"), row.real(prefix + "y"), row.real(prefix + "yaw")};
@@ -21,8 +18,8 @@ class GymScan : public ::testing::TestWithParam<const char*> {};
 TEST_P(GymScan, Lidar) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
   const std::string map = GetParam();
-  const Track track = testing::gym_track(folder, map);
-  const Lidar lidar(testing::gym_lidar());
+  const Track track = gym_track(folder, map);
+  const Lidar lidar(gym_lidar());
   std::vector<double> ranges(1080);
   compare_rows("lidar_" + map, 1e-9, [&](const GoldenRow& row, Comparison& compared) {
     // The pose of this case lies on a corner of a cell.
@@ -39,19 +36,18 @@ TEST(GymLidar, DistanceLookup) {
   std::unordered_map<std::string, Track> tracks;
   compare_rows("dt_lookup", 1e-9, [&](const GoldenRow& row, Comparison& compared) {
     const std::string map = row.text("map");
-    if (!tracks.count(map)) tracks.emplace(map, testing::gym_track(folder, map));
+    if (!tracks.count(map)) tracks.emplace(map, gym_track(folder, map));
     const Track& track = tracks.at(map);
     const maps::Point point{row.real("x"), row.real("y")}, cell = track.to_cells(point);
-    compared.absolute(row, {{"dt", detail::gym_distance(track, point)}});
-    const bool inside =
-        track.grid().contains(static_cast<int>(std::floor(cell.x)), static_cast<int>(std::floor(cell.y)));
+    compared.absolute(row, {{"dt", track.gym_distance(point)}});
+    const bool inside = track.contains(cell);
     EXPECT_EQ(inside ? static_cast<int>(cell.y) : -1, row.integer("row"));
     EXPECT_EQ(inside ? static_cast<int>(cell.x) : -1, row.integer("col"));
   });
 }
 
 TEST(GymLidar, RayCast) {
-  const Lidar lidar(testing::gym_lidar());
+  const Lidar lidar(gym_lidar());
   std::vector<double> ranges;
   compare_rows("raycast", 1e-9, [&](const GoldenRow& row, Comparison& compared) {
     if (row.text("row") == "base") {

@@ -8,7 +8,6 @@
 #include "sim/lidar/scan.hpp"
 #include "sim/rooms.hpp"
 #include "slalom/sim/lidar.hpp"
-#include "slalom/sim/noise.hpp"
 #include "slalom/sim/shapes.hpp"
 
 namespace slalom::sim {
@@ -52,7 +51,7 @@ TEST(ScanProperty, RangesAreTheWaysToTheFirstWallCell) {
       int off = 0;
       for (std::size_t i = 0; i < lidar.angles().size(); ++i) {
         const double truth = walk(track, sensor, lidar.angles()[i], options.range_max);
-        const double error = static_cast<double>(ranges[i]) - truth;
+        const double error = ranges[i] - truth;
         // A step of the walk may pass over a corner that a beam touches by less; hence a few beams may be
         // nearer, but none may pass a wall.
         ASSERT_LE(error, 1e-3) << "beam " << i;
@@ -76,13 +75,15 @@ TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
       sines[i] = static_cast<float>(std::sin(angle));
     }
     for (std::size_t i = 0; i < cone_cosines.size(); ++i) {
-      const double angle =
-          options.angle_min() + (static_cast<double>(i) * 16 + 7.5) * options.angle_increment();
+      const double angle = options.angle_min() + (i * 16 + 7.5) * options.angle_increment();
       cone_cosines[i] = static_cast<float>(std::cos(angle));
       cone_sines[i] = static_cast<float>(std::sin(angle));
     }
     std::vector<float> first;
-    for (const detail::ScanKernels& kernels : detail::all_scan_kernels()) {
+    for (const simd::Target target :
+         {simd::Target::avx512, simd::Target::avx2, simd::Target::sse4, simd::Target::generic}) {
+      if (!simd::supported(target)) continue;
+      const detail::ScanKernels kernels = detail::scan_kernels(target);
       std::vector<float> ranges(lidar.padded_beams());
       kernels.walls({.clearance = track.clearance().data(),
                      .stride = track.clearance_stride(),
@@ -120,10 +121,10 @@ TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
                      .lost_below = 1u << 28,
                      .count = beams,
                      .ranges = ranges.data()});
-      ranges.resize(static_cast<std::size_t>(beams));
+      ranges.resize(beams);
       if (first.empty()) first = ranges;
       EXPECT_EQ(std::memcmp(first.data(), ranges.data(), ranges.size() * sizeof(float)), 0)
-          << kernels.name << " with " << beams << " beams";
+          << simd::name(target) << " with " << beams << " beams";
     }
   }
 }
@@ -146,17 +147,15 @@ TEST(ScanProperty, TheGymWindowReachesToTheNearestBeamOfEveryCorner) {
       if (angle < -M_PI) angle += 2 * M_PI;
       int nearest = 0;
       for (int i = 1; i < options.beams; ++i)
-        if (std::abs(lidar.angles()[static_cast<std::size_t>(i)] + angle) <
-            std::abs(lidar.angles()[static_cast<std::size_t>(nearest)] + angle))
-          nearest = i;
+        if (std::abs(lidar.angles()[i] + angle) < std::abs(lidar.angles()[nearest] + angle)) nearest = i;
       first = std::min(first, nearest);
       last = std::max(last, nearest);
     }
     std::vector<double> seen(lidar.angles().size(), 30.0), expected(seen);
     lidar.gym_cast(sensor, box, seen);
     for (int i = first; i <= last; ++i) {
-      const double angle = sensor.yaw + lidar.angles()[static_cast<std::size_t>(i)];
-      double& range = expected[static_cast<std::size_t>(i)];
+      const double angle = sensor.yaw + lidar.angles()[i];
+      double& range = expected[i];
       range = std::min(range, ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), box));
     }
     ASSERT_EQ(seen, expected);
@@ -190,15 +189,15 @@ TEST(RangeNoise, IsNormalIndependentAndRepeats) {
     again.add(z, count, 1, 100, 0);
     ASSERT_EQ(x, z);
     for (std::size_t i = 0; i < count; ++i) {
-      const double u = static_cast<double>(x[i]) - 50, v = static_cast<double>(y[i]) - 50;
+      const double u = x[i] - 50.0, v = y[i] - 50.0;
       sum += u;
       squares += u * u;
       fourths += u * u * u * u;
       product += u * v;
-      if (i > 0) lagged += u * (static_cast<double>(x[i - 1]) - 50);
+      if (i > 0) lagged += u * (x[i - 1] - 50.0);
     }
   }
-  const double total = static_cast<double>(count) * scans, deviation = 1 / std::sqrt(total);
+  const double total = count * scans, deviation = 1 / std::sqrt(total);
   EXPECT_NEAR(sum / total, 0, 5 * deviation);
   EXPECT_NEAR(squares / total, 1, 5 * std::sqrt(2.0) * deviation);
   EXPECT_NEAR(fourths / total, 3, 5 * std::sqrt(96.0) * deviation);

@@ -17,7 +17,7 @@ const std::array parked{maps::Pose{4.5, 10, 0.3}, maps::Pose{10, 4.2, 1.3}};
 
 /// Commands that wander, hit things at times, and are the same for the same step.
 std::array<Command, 2> wander(std::int64_t k) {
-  const double t = 0.01 * static_cast<double>(k);
+  const double t = 0.01 * k;
   return {Command{0.17 + 0.2 * std::sin(3 * t), 2 + std::sin(t)}, Command{0.18 * std::cos(0.3 * t), 1.5}};
 }
 
@@ -155,9 +155,7 @@ TEST_P(EveryModel, ACoastingCarGainsNoEnergy) {
       last = energy();
     }
   }
-  if (GetParam() == Model::saturating) {
-    EXPECT_LT(plant.state().speed, 5.9);
-  }
+  EXPECT_TRUE(GetParam() != Model::saturating || plant.state().speed < 5.9);
 }
 
 TEST_P(EveryModel, ReversingIsStable) {
@@ -180,8 +178,7 @@ TEST(WorldProperty, GripCanBeExceeded) {
     plant.step({0.35, plant.state().speed});
     most = std::max(most, std::abs(plant.state().yaw_rate * plant.state().speed));
   }
-  // Sideways acceleration beyond mu g is not to be had for long; the linear tyres would give 8^2 tan(0.35)/L
-  // = 71.
+  // Sideways acceleration beyond mu g is not to be had for long; linear tyres would give 71 m/s^2.
   EXPECT_LT(std::abs(plant.state().yaw_rate * plant.state().speed), 1.3 * 1.0489 * 9.81);
 }
 

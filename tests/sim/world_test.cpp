@@ -1,5 +1,4 @@
 #include "slalom/sim/world.hpp"
-#include "slalom/sim/collision_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,18 +15,17 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-PurePursuit ring_driver(double speed) {
-  std::vector<PathPoint> path;
-  for (const maps::Point& p : testing::circle(5.5)) path.push_back({p, speed});
-  return PurePursuit(std::move(path));
-}
-
 const std::array start{maps::Pose{15.5, 10, 1.5707963}};
+
+/// A room of 20 x 5 m.
+std::shared_ptr<const Track> hall() {
+  return std::make_shared<const Track>(testing::room(400, 100));
+}
 
 TEST(World, DrivesLapsWithTimes) {
   World world({}, testing::ring_track());
   world.reset(1, start);
-  const PurePursuit driver = ring_driver(3);
+  const PurePursuit driver(testing::ring_path(3));
   CollisionLog contacts;
   while (world.laps(0)->laps() < 2 && world.time() < 60) {
     world.step(std::array{driver.command(world.observe(0).pose)});
@@ -42,19 +40,16 @@ TEST(World, DrivesLapsWithTimes) {
 TEST(World, DrivingBackwardsIsNoLap) {
   World world({}, testing::ring_track());
   world.reset(1, std::array{maps::Pose{15.5, 10, -1.5707963}});
-  PurePursuit driver = ring_driver(2);
-  std::vector<PathPoint> reversed;
-  for (const maps::Point& p : testing::circle(5.5)) reversed.insert(reversed.begin(), {p, 2.0});
-  driver = PurePursuit(reversed);
+  std::vector<PathPoint> reversed = testing::ring_path(2);
+  std::reverse(reversed.begin(), reversed.end());
+  const PurePursuit driver(reversed);
   for (int i = 0; i < 3000; ++i) world.step(std::array{driver.command(world.observe(0).pose)});
   EXPECT_EQ(world.laps(0)->laps(), 0);
   EXPECT_LT(world.laps(0)->progress(), -40);
 }
 
 TEST(World, FollowsStatesThatAreKnown) {
-  WorldOptions options;
-  options.time_step = 0.05;
-  World world(options, testing::ring_track());
+  World world({.time_step = 0.05}, testing::ring_track());
   world.reset(1, start);
   const double step = 0.02;  // rad of the ring
   for (int i = 1; i <= 320; ++i) {
@@ -105,9 +100,7 @@ TEST(World, StopsAtWallsAndReversesAway) {
 }
 
 TEST(World, SlidesAlongWalls) {
-  WorldOptions options;
-  options.wall_response = CollisionResponse::slide;
-  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  World world({.wall_response = CollisionResponse::slide}, hall());
   world.reset(1, std::array{maps::Pose{2, 4, 0.5}});
   bool collided = false;
   for (int i = 0; i < 400; ++i) {
@@ -120,9 +113,8 @@ TEST(World, SlidesAlongWalls) {
 }
 
 TEST(World, ReportsWhichBodiesCollide) {
-  WorldOptions options;
-  options.wall_response = options.body_response = CollisionResponse::count_only;
-  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  constexpr CollisionResponse none = CollisionResponse::count_only;
+  World world({.wall_response = none, .body_response = none}, hall());
   const std::array parked{maps::Pose{4, 2.5, 1.2}, maps::Pose{8, 2.6, 0}, maps::Pose{8.3, 2.6, 0}};
   world.reset(1, std::array{maps::Pose{1, 2.5, 0}}, parked);
   const int disc = world.add_disc({{11, 2.5}, 0.2});
@@ -142,9 +134,7 @@ TEST(World, ReportsWhichBodiesCollide) {
 
 /// Two cars in a room, the first of which drives into the second from behind, or the other way round.
 World bump(CollisionResponse response, bool first_is_behind) {
-  WorldOptions options;
-  options.body_response = response;
-  World world(options, std::make_shared<const Track>(testing::room(600, 100)));
+  World world({.body_response = response}, std::make_shared<const Track>(testing::room(600, 100)));
   const maps::Pose behind{2, 2.5, 0}, ahead{3, 2.5, 0};
   world.reset(1, first_is_behind ? std::array{behind, ahead} : std::array{ahead, behind});
   const Command fast{0, 4}, slow{0, 2};
@@ -168,9 +158,7 @@ TEST(World, ACarThatIsStruckKeepsItsMotionWhicheverItIs) {
 }
 
 TEST(World, ACarThatIsTakenAwayIsNoLongerThere) {
-  WorldOptions options;
-  options.lidar.noise = 0;
-  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  World world({.lidar = {.noise = 0}}, hall());
   const std::array cars{maps::Pose{2, 2.5, 0}, maps::Pose{5, 2.5, 0}};
   world.reset(1, cars);
   const std::size_t ahead = 540;
@@ -193,13 +181,11 @@ TEST(World, ACarThatIsTakenAwayIsNoLongerThere) {
 }
 
 TEST(World, SeesBodiesWhereTheyAre) {
-  WorldOptions options;
-  options.lidar.noise = 0;
-  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  World world({.lidar = {.noise = 0}}, hall());
   world.reset(1, std::array{maps::Pose{2, 2.5, 0}, maps::Pose{12, 2.5, 0}},
               std::array{maps::Pose{5, 2.5, 0}});
   const std::size_t ahead = 540;
-  const double sensor = 2 + options.lidar.mount.x;
+  const double sensor = 2 + world.options().lidar.mount.x;
   EXPECT_NEAR(world.observe(0).scan.ranges[ahead], 5 - 0.29 - sensor, 1e-4);
   world.move_body(2, {8, 4, 0});
   world.step(std::array{Command{}, Command{}});
@@ -208,13 +194,11 @@ TEST(World, SeesBodiesWhereTheyAre) {
   world.step(std::array{Command{}, Command{}});
   EXPECT_NEAR(world.observe(0).scan.ranges[ahead], 4 - 0.1 - sensor, 1e-4);
   // The second car looks at the far wall, whose inner face is one cell short of 20 m.
-  EXPECT_NEAR(world.observe(1).scan.ranges[ahead], 19.95 - 12 - options.lidar.mount.x, 1e-3);
+  EXPECT_NEAR(world.observe(1).scan.ranges[ahead], 19.95 - 12 - world.options().lidar.mount.x, 1e-3);
 }
 
 TEST(World, BodiesCanBeRemoved) {
-  WorldOptions options;
-  options.lidar.noise = 0;
-  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  World world({.lidar = {.noise = 0}}, hall());
   world.reset(1, std::array{maps::Pose{2, 2.5, 0}}, std::array{maps::Pose{5, 2.5, 0}, maps::Pose{8, 2.5, 0}});
   const int disc = world.add_disc({{3, 2.5}, 0.1});
   EXPECT_THROW(world.remove_body(0), std::invalid_argument);
@@ -225,13 +209,11 @@ TEST(World, BodiesCanBeRemoved) {
   EXPECT_TRUE(world.disc(2));
   world.remove_body(2);
   world.step(std::array{Command{}});
-  EXPECT_NEAR(world.observe(0).scan.ranges[540], 8 - 0.29 - 2 - options.lidar.mount.x, 1e-4);
+  EXPECT_NEAR(world.observe(0).scan.ranges[540], 8 - 0.29 - 2 - world.options().lidar.mount.x, 1e-4);
 }
 
 TEST(World, LidarRateHoldsScans) {
-  WorldOptions options;
-  options.lidar.rate = 40;
-  World world(options, testing::ring_track());
+  World world({.lidar = {.rate = 40}}, testing::ring_track());
   world.reset(1, start);
   std::vector<double> times;
   for (int i = 0; i < 10; ++i) {
@@ -244,22 +226,16 @@ TEST(World, LidarRateHoldsScans) {
 
 TEST(World, CoastsWithoutACommand) {
   for (const Coast coast : {Coast::roll, Coast::brake, Coast::repeat}) {
-    WorldOptions options;
-    options.plant.coast = coast;
-    World world(options, std::make_shared<const Track>(testing::room(800, 100)));
+    World world({.plant = {.coast = coast}}, std::make_shared<const Track>(testing::room(800, 100)));
     world.reset(1, std::array{maps::Pose{2, 2.5, 0}});
     for (int i = 0; i < 100; ++i) EXPECT_EQ(world.step(std::array{Command{0, 2}}), StepStatus::ok);
     const double before = world.state(0).speed;
     for (int i = 0; i < 50; ++i) EXPECT_EQ(world.step({}), StepStatus::missing_command);
     const double after = world.state(0).speed;
-    if (coast == Coast::roll) {
-      EXPECT_DOUBLE_EQ(after, before);
-    }
-    if (coast == Coast::brake) {
-      EXPECT_DOUBLE_EQ(after, 0);
-    }
     if (coast == Coast::repeat) {
       EXPECT_GT(after, before);
+    } else {
+      EXPECT_DOUBLE_EQ(after, coast == Coast::roll ? before : 0);
     }
     const CarState held = world.state(0);
     EXPECT_EQ(world.step(std::array{Command{nan, 2}}), StepStatus::non_finite_command);
@@ -300,12 +276,8 @@ TEST(World, RejectsInvalidOptions) {
   EXPECT_THROW(World({}, nullptr), std::invalid_argument);
   refuses([](WorldOptions& o) { o.lidar.mount.x = 101; });
   refuses([](WorldOptions& o) { o.lidar.mount.yaw = nan; });
-  refuses([](WorldOptions& o) { o.time_step = 0; });
-  refuses([](WorldOptions& o) { o.time_step = -0.01; });
-  refuses([](WorldOptions& o) { o.time_step = 0.5; });
-  refuses([](WorldOptions& o) { o.time_step = nan; });
-  refuses([](WorldOptions& o) { o.lidar.beams = 0; });
-  refuses([](WorldOptions& o) { o.lidar.beams = 2000000000; });
+  for (const double step : {0.0, -0.01, 0.5, nan}) refuses([&](WorldOptions& o) { o.time_step = step; });
+  for (const int beams : {0, 2000000000}) refuses([&](WorldOptions& o) { o.lidar.beams = beams; });
   refuses([](WorldOptions& o) { o.lidar.field_of_view = 7; });
   refuses([](WorldOptions& o) { o.lidar.range_max = 0; });
   refuses([](WorldOptions& o) { o.lidar.noise = -1; });
@@ -324,8 +296,7 @@ TEST(Track, RejectsInvalidMaps) {
   };
   refuses([](auto& grid) { grid.width = 0; });
   refuses([](auto& grid) { grid.height = -3; });
-  refuses([](auto& grid) { grid.resolution = 0; });
-  refuses([](auto& grid) { grid.resolution = nan; });
+  for (const double resolution : {0.0, nan}) refuses([&](auto& grid) { grid.resolution = resolution; });
   refuses([](auto& grid) { grid.origin.yaw = nan; });
   refuses([](auto& grid) { grid.cells.pop_back(); });
   refuses([](auto& grid) { grid.cells.assign(grid.cells.size(), maps::Occupancy::occupied); });

@@ -13,7 +13,8 @@
 namespace slalom::tracking {
 namespace {
 
-using test::Scene;
+using namespace test;
+using testing::on_ring;
 
 constexpr double radius = 5.5;  // m
 
@@ -29,22 +30,22 @@ TEST(ObjectTracker, FindsACarAheadWithItsMotion) {
   int scans = 0;
   for (int k = 0; k < 240; ++k) {
     const double time = k * Scene::period;
-    const maps::Pose sensor = Scene::on_ring(driven(0, 3, time));
-    const maps::Pose truth = Scene::on_ring(driven(0.5, 3.6, time));
+    const maps::Pose sensor = on_ring(driven(0, 3, time));
+    const maps::Pose truth = on_ring(driven(0.5, 3.6, time));
     const TrackerOutput& out = tracker.update({scene.scan(sensor, {Scene::car(truth)}), sensor, time});
     ASSERT_EQ(out.status, TrackerStatus::ok);
     if (k < 3) continue;
     ASSERT_EQ(out.objects.size(), 1U) << k;
     const TrackedObject& car = out.objects[0];
     EXPECT_EQ(car.id, 1);
-    EXPECT_LT(test::distance(car.pose, truth), 0.15) << k;
+    EXPECT_LT(distance(car.pose, truth), 0.15) << k;
     if (k < 40) continue;
     EXPECT_NEAR(car.speed, 3.6, 0.4) << k;
     EXPECT_NEAR(maps::wrap_angle(car.pose.yaw - truth.yaw), 0, 0.15) << k;
     EXPECT_NEAR(car.yaw_rate, 3.6 / radius, 1.0) << k;
     EXPECT_NEAR(car.length, Scene::length, 0.06) << k;
     EXPECT_NEAR(car.width, Scene::width, 0.06) << k;
-    squares += test::distance(car.pose, truth) * test::distance(car.pose, truth);
+    squares += distance(car.pose, truth) * distance(car.pose, truth);
     ++scans;
   }
   EXPECT_LT(std::sqrt(squares / scans), 0.05);
@@ -59,10 +60,9 @@ TEST(ObjectTracker, ACopyOfTrackerAndPredictorGoesOnWithTheSameBitsAndAllocatesN
     std::size_t compared = 0;
     for (int k = 0; k < 80; ++k) {
       const double time = k * Scene::period;
-      const maps::Pose sensor = Scene::on_ring(driven(0, 3, time));
-      const maps::LaserScanView scan =
-          scene.scan(sensor, {Scene::car(Scene::on_ring(driven(0.5, 3.6, time))),
-                              Scene::car(Scene::on_ring(driven(0.9, 1.5, time), 6.2))});
+      const maps::Pose sensor = on_ring(driven(0, 3, time));
+      const maps::LaserScanView scan = scene.scan(sensor, {Scene::car(on_ring(driven(0.5, 3.6, time))),
+                                                           Scene::car(on_ring(driven(0.9, 1.5, time), 6.2))});
       if (k == 40) copy = state;
       const long before = testing::allocations();
       ASSERT_GT(before, 0) << "nothing is counted";
@@ -89,7 +89,7 @@ TEST(ObjectTracker, ACopyOfTrackerAndPredictorGoesOnWithTheSameBitsAndAllocatesN
     }
     EXPECT_GT(compared, 40u) << has_map;
     const double end = 80 * Scene::period;
-    const TrackerOutput& last = state.first.update({{}, Scene::on_ring(driven(0, 3, end)), end});
+    const TrackerOutput& last = state.first.update({{}, on_ring(driven(0, 3, end)), end});
     EXPECT_EQ(last.status, TrackerStatus::bad_scan);
     EXPECT_FALSE(last.objects.empty());
   }
@@ -101,11 +101,11 @@ TEST(ObjectTracker, FindsAnOncomingCar) {
   int seen = 0;
   for (int k = 0; k < 60; ++k) {
     const double time = k * Scene::period;
-    const maps::Pose sensor = Scene::on_ring(driven(0, 3, time), 5);
-    maps::Pose truth = Scene::on_ring(driven(1.2, -4, time, 6.2), 6.2);
+    const maps::Pose sensor = on_ring(driven(0, 3, time), 5);
+    maps::Pose truth = on_ring(driven(1.2, -4, time, 6.2), 6.2);
     truth.yaw = maps::wrap_angle(truth.yaw + 3.141592653589793);
     const TrackerOutput& out = tracker.update({scene.scan(sensor, {Scene::car(truth)}), sensor, time});
-    const TrackedObject* car = test::nearest(out, truth);
+    const TrackedObject* car = nearest(out, truth);
     if (k < 12 || k > 30) continue;
     ASSERT_TRUE(car) << k;
     EXPECT_NEAR(car->speed, 4, 1) << k;
@@ -124,20 +124,20 @@ TEST(ObjectTracker, TellsCarsSideBySideApart) {
     std::set<int> left, right;
     for (int k = 0; k < 160; ++k) {
       const double time = k * Scene::period;
-      const maps::Pose sensor = Scene::on_ring(driven(0, 3, time));
+      const maps::Pose sensor = on_ring(driven(0, 3, time));
       // The cars come together from 1 m.
       const double offset = std::max(apart, 0.66 - 0.3 * time);
-      const maps::Pose a = Scene::on_ring(driven(0.45, 3, time), radius + offset),
-                       b = Scene::on_ring(driven(0.45, 3, time), radius - offset);
+      const maps::Pose a = on_ring(driven(0.45, 3, time), radius + offset),
+                       b = on_ring(driven(0.45, 3, time), radius - offset);
       const TrackerOutput& out =
           tracker.update({scene.scan(sensor, {Scene::car(a), Scene::car(b)}), sensor, time});
       if (k < 5) continue;
       ASSERT_EQ(out.objects.size(), 2U) << k;
-      ASSERT_TRUE(test::nearest(out, a) && test::nearest(out, b)) << k;
-      left.insert(test::nearest(out, a)->id);
-      right.insert(test::nearest(out, b)->id);
-      EXPECT_LT(test::distance(test::nearest(out, a)->pose, a), 0.2) << k;
-      EXPECT_LT(test::distance(test::nearest(out, b)->pose, b), 0.2) << k;
+      ASSERT_TRUE(nearest(out, a) && nearest(out, b)) << k;
+      left.insert(nearest(out, a)->id);
+      right.insert(nearest(out, b)->id);
+      EXPECT_LT(distance(nearest(out, a)->pose, a), 0.2) << k;
+      EXPECT_LT(distance(nearest(out, b)->pose, b), 0.2) << k;
     }
     EXPECT_EQ(left.size(), 1U);
     EXPECT_EQ(right.size(), 1U);
@@ -151,13 +151,12 @@ TEST(ObjectTracker, KeepsAnObjectThatAnotherHides) {
   for (int k = 0; k < 200; ++k) {
     const double time = k * Scene::period;
     // A car at rest looks across; a slow car near it hides a fast one that passes behind.
-    maps::Pose sensor = Scene::on_ring(0, 4.3);
+    maps::Pose sensor = on_ring(0, 4.3);
     sensor.yaw = 0.6;
-    const maps::Pose far = Scene::on_ring(driven(-0.1, 2.5, time, 6.5), 6.5),
-                     near = Scene::on_ring(0.22, 5.2);
+    const maps::Pose far = on_ring(driven(-0.1, 2.5, time, 6.5), 6.5), near = on_ring(0.22, 5.2);
     const TrackerOutput& out =
         tracker.update({scene.scan(sensor, {Scene::car(far), Scene::car(near)}), sensor, time});
-    const TrackedObject* car = test::nearest(out, far);
+    const TrackedObject* car = nearest(out, far);
     if (time < 0.25 || time > 2.2) continue;
     ASSERT_TRUE(car) << k;
     if (id == 0) id = car->id;
@@ -170,7 +169,7 @@ TEST(ObjectTracker, KeepsAnObjectThatAnotherHides) {
 TEST(ObjectTracker, GivesUpWhatIsGone) {
   Scene scene;
   ObjectTracker tracker(scene.map());
-  const maps::Pose sensor = Scene::on_ring(0), car = Scene::on_ring(0.5);
+  const maps::Pose sensor = on_ring(0), car = on_ring(0.5);
   double time = 0;
   for (int k = 0; k < 20; ++k, time += Scene::period)
     tracker.update({scene.scan(sensor, {Scene::car(car)}), sensor, time});
@@ -183,7 +182,7 @@ TEST(ObjectTracker, AWrongPoseBeginsNoObject) {
   Scene scene;
   ObjectTracker tracker(scene.map());
   for (int k = 0; k < 20; ++k) {
-    const maps::Pose sensor = Scene::on_ring(0);
+    const maps::Pose sensor = on_ring(0);
     const maps::Pose wrong{sensor.x - 1.5, sensor.y, sensor.yaw + 0.8};
     const TrackerOutput& out = tracker.update({scene.scan(sensor, {}), wrong, k * Scene::period, 0.03, 0.02});
     EXPECT_EQ(out.status, TrackerStatus::misfit);
@@ -202,13 +201,11 @@ std::set<int> objects_of_an_empty_ring(ObjectTracker& tracker, double noise, dou
   std::set<int> ids;
   for (int k = 0; k < 400; ++k) {
     const double time = k * Scene::period;
-    const maps::Pose sensor = Scene::on_ring(driven(0, 4, time), radius + 0.8 * std::sin(time));
+    const maps::Pose sensor = on_ring(driven(0, 4, time), radius + 0.8 * std::sin(time));
     // The noise is cut at 0, so it is drawn about 1.
     std::fill(errors.begin(), errors.end(), 1.0F);
     random.add(errors, 3, 1.0 / 8, 2, 0);
-    const auto error = [&](int i) {
-      return 8 * (static_cast<double>(errors[static_cast<std::size_t>(i)]) - 1);
-    };
+    const auto error = [&](int i) { return 8 * (errors[i] - 1.0); };
     const maps::Pose believed{sensor.x + position_error * error(0), sensor.y + position_error * error(1),
                               sensor.yaw + yaw_error * error(2)};
     const TrackerOutput& out =
@@ -234,7 +231,7 @@ TEST(ObjectTrackerProperty, FindsNothingInAStaticWorld) {
 TEST(ObjectTrackerProperty, WithoutAMapParkedCarsAreNoObjects) {
   std::vector<sim::Box> parked;
   for (const double angle : {1.0, 2.0, 3.5, 4.4, 5.5})
-    parked.push_back(Scene::car(Scene::on_ring(angle, 5.5 + 0.3 * std::sin(9 * angle))));
+    parked.push_back(Scene::car(on_ring(angle, 5.5 + 0.3 * std::sin(9 * angle))));
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     ObjectTracker tracker;
     EXPECT_TRUE(objects_of_an_empty_ring(tracker, 0.02, 0.05, 0, 0, seed, parked).empty()) << seed;
@@ -249,16 +246,16 @@ TEST(ObjectTracker, WithoutAMapFindsWhatMoves) {
     int found = 0, scans = 0;
     for (int k = 0; k < 120; ++k) {
       const double time = k * Scene::period;
-      const maps::Pose sensor = Scene::on_ring(driven(0, 3, time), 5);
-      maps::Pose truth = Scene::on_ring(driven(speed < 0 ? 1.0 : 0.5, speed, time, 6), 6);
+      const maps::Pose sensor = on_ring(driven(0, 3, time), 5);
+      maps::Pose truth = on_ring(driven(speed < 0 ? 1.0 : 0.5, speed, time, 6), 6);
       if (speed < 0) truth.yaw = maps::wrap_angle(truth.yaw + 3.141592653589793);
       const double bearing =
           std::abs(maps::wrap_angle(std::atan2(truth.y - sensor.y, truth.x - sensor.x) - sensor.yaw));
       const TrackerOutput& out = tracker.update({scene.scan(sensor, {Scene::car(truth)}), sensor, time});
-      for (const TrackedObject& each : out.objects) EXPECT_LT(test::distance(each.pose, truth), 0.6) << k;
-      if (time < 0.5 || bearing > 2.2 || test::distance(sensor, truth) > 4.5) continue;
+      for (const TrackedObject& each : out.objects) EXPECT_LT(distance(each.pose, truth), 0.6) << k;
+      if (time < 0.5 || bearing > 2.2 || distance(sensor, truth) > 4.5) continue;
       ++scans;
-      const TrackedObject* car = test::nearest(out, truth);
+      const TrackedObject* car = nearest(out, truth);
       if (!car) continue;
       ++found;
       EXPECT_NEAR(car->speed, std::abs(speed), 1.2) << k;

@@ -56,21 +56,25 @@ double weight_near(const maps::PredictedObstacle& predicted, const maps::Pose& p
                    double reach) {
   double sum = 0;
   for (int h = 0; h < predicted.hypotheses; ++h)
-    if (apart(predicted.at(h, time).pose, pose) < reach)
-      sum += predicted.weights[static_cast<std::size_t>(h)];
+    if (apart(predicted.at(h, time).pose, pose) < reach) sum += predicted.weights[h];
   return sum;
 }
 
-/// Shows a predictor an object for 2 s; the pose of the object at a time, and its speed.
+/// Shows a predictor an object in the periods [first, last]; the object at a time. The last prediction.
+maps::PredictedObstacle shown(Predictor& predictor, int first, int last,
+                              const std::function<TrackedObject(double)>& object) {
+  maps::PredictedObstacle predicted;
+  for (int i = first; i <= last; ++i) {
+    const TrackedObject now = object(period * i);
+    predicted = predictor.update({&now, 1}, period * i)[0];
+  }
+  return predicted;
+}
+
+/// The same for 2 s.
 maps::PredictedObstacle after_two_seconds(Predictor& predictor,
                                           const std::function<TrackedObject(double)>& object) {
-  maps::PredictedObstacle last;
-  for (int i = 0; i <= 80; ++i) {
-    const TrackedObject now = object(period * i);
-    const auto predicted = predictor.update({&now, 1}, period * i);
-    if (!predicted.empty()) last = predicted[0];
-  }
-  return last;
+  return shown(predictor, 0, 80, object);
 }
 
 TEST(CourseLine, ProjectsWhatItPlaces) {
@@ -118,16 +122,11 @@ TEST(Predictor, ACarThatReturnsToTheCourseIsExpectedToFollowIt) {
   Way way(motion, Manoeuvre::follow, course, habits, options);
   Predictor predictor(circle(), options);
   double driven = 0;
-  const auto advance = [&](double time) {
+  const auto predicted = shown(predictor, 0, 24, [&](double time) {  // 0.6 s
     way.advance(time - driven);
     driven = time;
     return object_at(way.pose(), std::hypot(way.now().speed, way.now().drift));
-  };
-  maps::PredictedObstacle predicted;
-  for (int i = 0; i <= 24; ++i) {  // 0.6 s
-    const TrackedObject now = advance(period * i);
-    predicted = predictor.update({&now, 1}, period * i)[0];
-  }
+  });
   way.advance(1);
   EXPECT_GT(weight_near(predicted, way.pose(), 1, 0.2), 0.7);
 }
@@ -148,11 +147,10 @@ TEST(Predictor, ACarThatComesRoundAgainIsExpectedToDriveAsBefore) {
   const std::size_t lap = seen.size() / 3;
   std::array<double, 3> error{};  // m, mean over the hypotheses and a lap
   for (std::size_t i = 0; i + ahead < seen.size(); ++i) {
-    const auto predicted = predictor.update({&seen[i], 1}, period * static_cast<double>(i))[0];
+    const auto predicted = predictor.update({&seen[i], 1}, period * i)[0];
     for (int h = 0; h < predicted.hypotheses; ++h)
-      error[std::min<std::size_t>(i / lap, 2)] += predicted.weights[static_cast<std::size_t>(h)] *
-                                                  apart(predicted.at(h, 1.2).pose, seen[i + ahead].pose) /
-                                                  static_cast<double>(lap);
+      error[std::min<std::size_t>(i / lap, 2)] +=
+          predicted.weights[h] * apart(predicted.at(h, 1.2).pose, seen[i + ahead].pose) / lap;
   }
   EXPECT_GT(error[0], 0.3);
   EXPECT_LT(error[2], 0.5 * error[0]);
@@ -164,27 +162,18 @@ TEST(Predictor, ACarThatBrakesIsExpectedToBrake) {
   const auto arc = [](double time) {
     return time < 1 ? 4 * time : 4 + 4 * (time - 1) - 2 * (time - 1) * (time - 1);
   };
-  maps::PredictedObstacle before, after;
-  for (int i = 0; i <= 64; ++i) {  // 1.6 s
-    const double time = period * i;
-    const TrackedObject now = object_at(beside(arc(time), 0), speed(time));
-    (i <= 40 ? before : after) = predictor.update({&now, 1}, time)[0];
-    if (i == 40) {
-      EXPECT_LT(weight_near(before, beside(arc(1.8), 0), 0.8, 0.2), 0.15);
-    }
-  }
-  EXPECT_GT(weight_near(after, beside(arc(2), 0), 0.4, 0.2), 0.5);
+  const auto car = [&](double time) { return object_at(beside(arc(time), 0), speed(time)); };
+  EXPECT_LT(weight_near(shown(predictor, 0, 40, car), beside(arc(1.8), 0), 0.8, 0.2), 0.15);
+  EXPECT_GT(weight_near(shown(predictor, 41, 64, car), beside(arc(2), 0), 0.4, 0.2), 0.5);
 }
 
 TEST(Predictor, ACarThatGetsUpToSpeedIsExpectedToGoOn) {
   constexpr double acceleration = 4, slow = 0.6;  // m/s^2, m/s
   const auto arc = [](double time) { return slow * time + 0.5 * acceleration * time * time; };
   Predictor predictor(circle());
-  maps::PredictedObstacle predicted;
-  for (int i = 0; i <= 20; ++i) {  // 0.5 s, to 2.6 m/s
-    const TrackedObject now = object_at(beside(arc(period * i), 0), slow + acceleration * period * i);
-    predicted = predictor.update({&now, 1}, period * i)[0];
-  }
+  const auto predicted = shown(predictor, 0, 20, [&](double time) {  // 0.5 s, to 2.6 m/s
+    return object_at(beside(arc(time), 0), slow + acceleration * time);
+  });
   EXPECT_GT(weight_near(predicted, beside(arc(0.8), 0), 0.3, 0.12), 0.7);
   // The course's 4 m/s from 0.85 s on.
   EXPECT_GT(weight_near(predicted, beside(arc(0.85) + 4 * 0.65, 0), 1, 0.25), 0.7);
@@ -255,7 +244,7 @@ TEST(Predictor, AllocatesNothingAndKeepsToItsCapacity) {
   const long before = testing::allocations();
   for (int i = 0; i < 40; ++i) {
     EXPECT_EQ(predictor.update(objects, period * i).size(), 32u);
-    objects[static_cast<std::size_t>(i)].id += 100;
+    objects[i].id += 100;
   }
   EXPECT_EQ(testing::allocations(), before);
 }

@@ -8,7 +8,6 @@
 
 #include "sim/rooms.hpp"
 #include "slalom/sim/lidar.hpp"
-#include "slalom/sim/noise.hpp"
 #include "slalom/sim/shapes.hpp"
 #include "slalom/tracking/object_tracker.hpp"
 
@@ -29,11 +28,6 @@ class Scene {
     ranges_.resize(lidar_.padded_beams());
   }
 
-  /// On the ring: `angle` (rad) about its middle, at `radius` (m), heading counter-clockwise.
-  static maps::Pose on_ring(double angle, double radius = 5.5) {
-    return {10 + radius * std::cos(angle), 10 + radius * std::sin(angle),
-            maps::wrap_angle(angle + 0.5 * 3.141592653589793)};
-  }
   static sim::Box car(const maps::Pose& pose) { return {pose, length, width}; }
 
   /// The scan from `sensor`; valid until the next one.

@@ -37,7 +37,7 @@ struct TrackerTally {
 inline void check(std::span<const TrackedObject> objects) {
   for (const TrackedObject& each : objects) {
     double sum = each.pose.x + each.pose.y + each.pose.yaw + each.speed + each.yaw_rate + each.length +
-                 each.width + each.length_deviation + each.width_deviation + each.unseen;
+                 each.width + each.unseen;
     for (const auto& row : each.covariance)
       for (const double value : row) sum += value;
     testing::require(std::isfinite(sum), "objects are finite");
@@ -48,7 +48,7 @@ inline void check(std::span<const TrackedObject> objects) {
 inline void check(std::span<const maps::PredictedObstacle> predictions) {
   for (const maps::PredictedObstacle& each : predictions) {
     double weights = 0;
-    for (int h = 0; h < each.hypotheses; ++h) weights += each.weights[static_cast<std::size_t>(h)];
+    for (int h = 0; h < each.hypotheses; ++h) weights += each.weights[h];
     testing::require(std::abs(weights - 1) < 1e-6, "the weights sum to 1");
     for (const maps::PredictedPose& at : each.poses)
       testing::require(std::isfinite(at.pose.x + at.pose.y + at.pose.yaw) && at.along_deviation >= 0 &&
@@ -59,8 +59,8 @@ inline void check(std::span<const maps::PredictedObstacle> predictions) {
 
 /// A wall 2.5 m to either side with boxes that move through the scan, or any readings.
 inline void draw_scan(testing::Adversary& adversary, std::vector<float>& ranges, int step) {
-  ranges.assign(static_cast<std::size_t>(adversary.once_in(20) ? adversary.below(3000) : 181), 2.5F);
-  const std::size_t from = static_cast<std::size_t>(step) * 3;
+  ranges.assign(adversary.once_in(20) ? adversary.below(3000) : 181, 2.5F);
+  const std::size_t from = 3 * step;
   for (std::size_t i = from; i < std::min(from + 15, ranges.size()); ++i) ranges[i] = 1.2F;
   if (adversary.once_in(5))
     for (float& range : ranges) range = static_cast<float>(adversary.any(-1, 31));
@@ -101,8 +101,8 @@ inline void call_tracker(testing::Adversary& adversary, TrackerTally& tally) {
     limits.check();
     check(predicted);
     ++tally.updates;
-    tally.objects += static_cast<long>(out.objects.size());
-    tally.predictions += static_cast<long>(predicted.size());
+    tally.objects += out.objects.size();
+    tally.predictions += predicted.size();
     ++tally.statuses[static_cast<int>(out.status)];
     if (adversary.once_in(40)) tracker->reset();
     if (adversary.once_in(40)) predictor.reset();

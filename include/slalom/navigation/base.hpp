@@ -28,8 +28,7 @@ struct Velocity {
   double turn = 0;                        ///< rad/s, counter-clockwise
 };
 
-/// Limits of a base.
-/// `visit_options` below describes the fields.
+/// Limits of a base. `visit_options` below describes the fields.
 struct BaseOptions {
   BaseKind kind = BaseKind::differential;
   double max_forward = 0.5;
@@ -57,11 +56,10 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.kind, {"base", "", "how the base moves"});
   visit(o.max_forward, {"max_forward", "m/s", "largest speed forward", 0.01, 20});
   visit(o.max_reverse, {"max_reverse", "m/s", "largest speed backward", 0, 20});
-  visit(o.max_sideways,
-        {"max_sideways", "m/s", "largest speed to either side of an omnidirectional base", 0, 20});
+  visit(o.max_sideways, {"max_sideways", "m/s", "largest speed sideways of an omnidirectional base", 0, 20});
   visit(o.max_turn, {"max_turn", "rad/s", "largest yaw rate; 0: the robot keeps its heading", 0, 20});
   visit(o.max_acceleration,
-        {"max_acceleration", "m/s^2", "largest acceleration forward, and in reverse", 0.01, 100});
+        {"max_acceleration", "m/s^2", "largest acceleration, also in reverse", 0.01, 100});
   visit(o.max_deceleration, {"max_deceleration", "m/s^2", "largest braking; 0: max_acceleration", 0, 100});
   visit(o.max_sideways_acceleration, {"max_sideways_acceleration", "m/s^2",
                                       "largest acceleration to either side; 0: max_acceleration", 0, 100});
@@ -73,15 +71,11 @@ void visit_options(Options& o, Visit&& visit) {
         {"max_turn_acceleration", "rad/s^2", "largest increase of the yaw rate, to either side", 0.01, 100});
   visit(o.max_turn_deceleration,
         {"max_turn_deceleration", "rad/s^2", "largest decrease of it; 0: max_turn_acceleration", 0, 100});
-  visit(o.dead_band_forward,
-        {"dead_band_forward", "m/s", "commands of a speed below which the robot stands", 0, 1});
+  visit(o.dead_band_forward, {"dead_band_forward", "m/s", "speed of commands below which it stands", 0, 1});
   visit(o.dead_band_sideways, {"dead_band_sideways", "m/s", "the same for a speed to either side", 0, 1});
   visit(o.dead_band_turn, {"dead_band_turn", "rad/s", "the same for a yaw rate", 0, 1});
-  visit(o.min_turning_radius,
-        {"min_turning_radius", "m", "smallest radius of a circle that an Ackermann base drives", 0.01, 100});
-  visit(o.delay_forward,
-        {"delay_forward", "s",
-         "time until a speed forward is driven: dead time, and the time constant of a lag", 0, 2});
+  visit(o.min_turning_radius, {"min_turning_radius", "m", "least radius of an Ackermann base", 0.01, 100});
+  visit(o.delay_forward, {"delay_forward", "s", "time until a speed is driven: dead time and lag", 0, 2});
   visit(o.delay_sideways, {"delay_sideways", "s", "the same for a speed to either side", 0, 2});
   visit(o.delay_turn, {"delay_turn", "s", "the same for a yaw rate", 0, 2});
 }
@@ -156,22 +150,15 @@ struct OmnidirectionalBase {
 
 /// The inputs of an Ackermann base: speed (m/s) and yaw rate (rad/s). The smallest turning radius limits the
 /// yaw rate at each speed.
-struct AckermannBase {
-  static constexpr int inputs = 2;  ///< inputs of a step
+struct AckermannBase : DifferentialBase {
   /// Takes the smallest turning radius from the limits.
-  explicit AckermannBase(const BaseOptions& limits) : largest_curvature_(1 / limits.min_turning_radius) {}
+  explicit AckermannBase(const BaseOptions& limits)
+      : DifferentialBase(limits), largest_curvature_(1 / limits.min_turning_radius) {}
   /// The motion of an input.
   template <class T>
   SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, 2>& u) const {
     const T most = abs(u[0]) * T(largest_curvature_);
     return {u[0], T(0), clamp(u[1], T(0) - most, most)};
-  }
-  /// The input of a motion.
-  static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
-  /// Selects the values of the inputs from those of the axes forward, sideways and turning.
-  template <class Value>
-  static std::array<Value, 2> per_input(const Value& forward, const Value&, const Value& turn) {
-    return {forward, turn};
   }
 
  private:

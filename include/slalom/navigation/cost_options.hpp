@@ -33,16 +33,15 @@ requires is_options_of<Options, CostOptions>
 void visit_options(Options& o, Visit&& visit) {
   visit(o.progress, {"progress", "1/(m s)", "weight of the path that is left in the plan's window", 0, 1e6});
   visit(o.final_progress,
-        {"final_progress", "1/m", "weight of the path that is left at the end of the plan", 0, 1e6});
+        {"final_progress", "1/m", "weight of the path left at the end of the plan", 0, 1e6});
   visit(o.path,
-        {"path", "1/(m^2 s)", "weight of the squared distance from the path, of at most path_reach", 0, 1e6});
+        {"path", "1/(m^2 s)", "weight of the squared distance to the path, up to path_reach", 0, 1e6});
   visit(o.path_reach,
-        {"path_reach", "m", "distance from the path above which its cost does not grow", 0.01, 100});
+        {"path_reach", "m", "distance to the path beyond which its cost stays equal", 0.01, 100});
   visit(o.heading, {"heading", "1/s", "weight of 1 - cos(yaw error) to the path", 0, 1e6});
   visit(o.clearance,
-        {"clearance", "1/s", "cost of a body that touches an obstacle; near the goal it falls to 0", 0, 1e6});
-  visit(o.clearance_falloff, {"clearance_falloff", "1/m",
-                              "rate at which the cost `clearance` falls with the distance", 0.01, 1000});
+        {"clearance", "1/s", "cost of touching an obstacle; near the goal it falls to 0", 0, 1e6});
+  visit(o.clearance_falloff, {"clearance_falloff", "1/m", "fall of `clearance` with distance", 0.01, 1000});
   visit(o.reverse, {"reverse", "1/m", "weight of the speed of reversing", 0, 1e6});
   visit(o.sideways, {"sideways", "1/m", "weight of the speed to either side", 0, 1e6});
   visit(o.turning, {"turning", "s/rad^2", "weight of the squared yaw rate", 0, 1e6});
@@ -52,18 +51,11 @@ void visit_options(Options& o, Visit&& visit) {
         {"goal_reach", "m",
          "distance from the goal at which goal_heading begins to count, and clearance to count less", 0.01,
          100});
-  visit(o.collision,
-        {"collision", "1/s", "cost of a body that overlaps an obstacle or a moving object", 0, 1e6});
-  visit(o.others_margin,
-        {"others_margin", "m", "distance from a moving object that counts as a collision", 0, 10});
-  visit(o.others_reach,
-        {"others_reach", "m", "distance beyond others_margin in which nearness has a cost", 0, 10});
-  visit(o.others,
-        {"others", "1/s", "cost at a distance of others_margin from a moving object; falls off as the square",
-         0, 1e6});
-  visit(o.others_probability,
-        {"others_probability", "",
-         "probability of a collision with a moving object above which a state collides", 0, 1});
+  visit(o.collision, {"collision", "1/s", "cost of overlapping an obstacle or a moving object", 0, 1e6});
+  visit(o.others_margin, {"others_margin", "m", "distance to a moving object that is a collision", 0, 10});
+  visit(o.others_reach, {"others_reach", "m", "distance beyond others_margin where nearness costs", 0, 10});
+  visit(o.others, {"others", "1/s", "cost at others_margin from an object; falls as the square", 0, 1e6});
+  visit(o.others_probability, {"others_probability", "", "probability at which a state collides", 0, 1});
 }
 
 }  // namespace slalom::navigation

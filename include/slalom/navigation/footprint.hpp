@@ -33,24 +33,19 @@ class Footprint {
   /// A rectangle: `front` and `rear` (m) are the distances from the origin to its front and rear side.
   static Footprint rectangle(double front, double rear, double width);
 
-  /// The same shape, smaller around the origin so that the half width is less by `rim` (m), but at least a
-  /// fifth of what it was.
+  /// The same shape, smaller around the origin: the half width is less by `rim` (m), at least a fifth of it.
   Footprint without_rim(double rim) const;
-  /// The outline.
-  std::span<const maps::Point> vertices() const noexcept { return vertices_; }
+  std::span<const maps::Point> vertices() const noexcept { return vertices_; }  ///< the outline
   /// The parts, which together cover the body.
   const std::array<Part, part_count>& parts() const noexcept { return parts_; }
-  /// The index of the part that covers a point of the body; where several do, of the one in which it lies
-  /// deepest.
+  /// The index of the part that covers a point of the body, the one in which it lies deepest.
   std::size_t part_at(const maps::Point& point) const noexcept;
   /// The largest distance of a vertex from the origin, m.
   double circumscribed_radius() const noexcept { return circumscribed_; }
-  /// The largest distance of a vertex from the robot's x axis, m: half of the corridor that the body needs
-  /// along a straight path.
+  /// The largest distance of a vertex from the robot's x axis, m: half of its corridor on a straight path.
   double half_width() const noexcept { return half_width_; }
 
-  /// Whether a point of the robot's frame is inside.
-  bool contains(const maps::Point& point) const noexcept;
+  bool contains(const maps::Point& point) const noexcept;  ///< whether a point of the robot's frame is inside
   /// The distance of a point from the outline, m, whether it is inside or not.
   double distance_to_outline(const maps::Point& point) const noexcept;
   /// Points on the outline, with at most `spacing` (m, > 0) between neighbours.

@@ -27,8 +27,7 @@ class BodyCheck {
  public:
   static constexpr std::size_t max_points = 512;  ///< most points of an outline
 
-  /// For costmaps of this resolution (m). Throws std::invalid_argument if the outline is longer than 512
-  /// cells.
+  /// For costmaps of this resolution (m). Throws std::invalid_argument on an outline above 512 cells.
   BodyCheck(const Footprint& footprint, double resolution)
       : unsure_(1.42 * resolution), half_cell_(0.5 * resolution) {
     const std::vector<maps::Point> points = footprint.outline_points(resolution);

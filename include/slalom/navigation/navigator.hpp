@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -8,7 +9,6 @@
 #include "slalom/navigation/base.hpp"
 #include "slalom/navigation/cost_options.hpp"
 #include "slalom/navigation/costmap.hpp"
-#include "slalom/navigation/state_cost.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/solver.hpp"
 #include "slalom/solvers/solver_options.hpp"
@@ -31,8 +31,7 @@ MppiOptions mppi_options(const BaseOptions& base);
 /// lists the names if the method is unknown.
 SolverOptions method_options(std::string_view method, const BaseOptions& base);
 
-/// Options of a Navigator, besides those of its solver.
-/// `visit_options` below describes the fields.
+/// Options of a Navigator, besides those of its solver. `visit_options` below describes the fields.
 struct NavigatorOptions {
   BaseOptions base{};   ///< limits of the base
   CostOptions costs{};  ///< weights of the cost of a plan
@@ -55,14 +54,10 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.goal_distance, {"goal_distance", "m", "distance at which the goal is reached", 0.001, 100});
   visit(o.goal_angle, {"goal_angle", "rad", "yaw error at which the goal is reached", 0.001, 4});
   visit(o.find_detours,
-        {"find_detours", "", "search a way around where the path is blocked, and report if there is none"});
+        {"find_detours", "", "search a way around where the path is blocked; report if none"});
   visit(o.look_ahead, {"look_ahead", "m", "length of path that is checked for obstacles", 0, 100});
-  visit(o.patience,
-        {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
-  visit(o.stuck_after,
-        {"stuck_after", "s",
-         "time without progress after which the robot tries another way; after five of them it is stuck", 0.1,
-         3600});
+  visit(o.patience, {"patience", "s", "time without a way before the robot stops, as blocked", 0, 60});
+  visit(o.stuck_after, {"stuck_after", "s", "time without progress until it tries another way", 0.1, 3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
 }
 
@@ -83,29 +78,10 @@ enum class NavigationStatus {
 };
 /// The name of a status, as it is written in results.
 constexpr const char* name(NavigationStatus status) noexcept {
-  switch (status) {
-    case NavigationStatus::following:
-      return "following";
-    case NavigationStatus::detour:
-      return "detour";
-    case NavigationStatus::braking:
-      return "braking";
-    case NavigationStatus::blocked:
-      return "blocked";
-    case NavigationStatus::goal_occupied:
-      return "goal_occupied";
-    case NavigationStatus::stuck:
-      return "stuck";
-    case NavigationStatus::commands_ignored:
-      return "commands_ignored";
-    case NavigationStatus::goal_reached:
-      return "goal_reached";
-    case NavigationStatus::no_path:
-      return "no_path";
-    case NavigationStatus::bad_input:
-      return "bad_input";
-  }
-  return "unknown";
+  constexpr const char* names[] = {"following",     "detour",   "braking",          "blocked",
+                                   "goal_occupied", "stuck",    "commands_ignored", "goal_reached",
+                                   "no_path",       "bad_input"};
+  return names[static_cast<int>(status)];
 }
 
 /// The answer of a navigator.
@@ -122,6 +98,20 @@ struct NavigationResult {
   std::span<const maps::Pose> plan;
   std::span<const maps::Pose> path;  ///< path that is followed, with the present detour
 };
+
+/// The states of rollouts at one step, an entry for each rollout.
+struct RolloutStates {
+  int step;                         ///< from 0
+  std::span<const double> x, y;     ///< m, map frame
+  std::span<const double> yaw;      ///< rad, not wrapped
+  std::span<const double> forward;  ///< m/s, driven in this step
+  std::span<const double> left;     ///< m/s, driven in this step
+  std::span<const double> turn;     ///< rad/s, driven in this step
+};
+
+/// A term of the cost of plans: adds the cost per second of each state to `costs`, which is an integral over
+/// time like the other terms (CostOptions). It must not throw, and is called from one thread at a time.
+using StateCost = std::function<void(const RolloutStates& states, std::span<double> costs)>;
 
 /// Drives a mobile robot along a path to a goal, between the obstacles of a costmap.
 ///

@@ -26,8 +26,7 @@ class ScanMap {
   /// marks the cells of the map that it crosses.
   void add(const RangeScan& scan) noexcept;
 
-  /// The map with the additions.
-  const maps::OccupancyGrid& grid() const noexcept { return seen_; }
+  const maps::OccupancyGrid& grid() const noexcept { return seen_; }  ///< the map with the additions
 
  private:
   void clear(const maps::Point& from, double cosine, double sine, double range) noexcept;

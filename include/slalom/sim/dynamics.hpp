@@ -45,8 +45,7 @@ inline constexpr double kinematic_below = 0.5;
 /// The steering rate that the actuator allows: none further outwards at its limit.
 double limit_steer_rate(const CarParameters& car, double steer, double steer_rate) noexcept;
 
-/// The acceleration that motor and brakes allow: none beyond the limits of speed, less drive above
-/// switch_speed.
+/// The acceleration that motor and brakes allow: none beyond the limits of speed, less above switch_speed.
 double limit_acceleration(const CarParameters& car, double speed, double acceleration) noexcept;
 
 /// d(state)/dt under the input as limit_steer_rate and limit_acceleration cut it; each field is the

@@ -14,9 +14,8 @@ class LapPath {
   /// are not finite, or no length.
   explicit LapPath(std::vector<maps::Point> points);
 
-  double length() const noexcept { return start_.back(); }  ///< m, once round
-  /// Number of points of the path.
-  std::size_t size() const noexcept { return points_.size(); }
+  double length() const noexcept { return start_.back(); }      ///< m, once round
+  std::size_t size() const noexcept { return points_.size(); }  ///< number of points of the path
   /// Points of the path, m, map frame.
   const std::vector<maps::Point>& points() const noexcept { return points_; }
 
@@ -28,8 +27,7 @@ class LapPath {
     double distance = 0;      ///< m
   };
 
-  /// The nearest place of the whole path.
-  Place project(const maps::Point& point) const noexcept;
+  Place project(const maps::Point& point) const noexcept;  ///< the nearest place of the whole path
 
   /// The nearest place among the segments within `reach` (m) of arc either way of segment `near`,
   /// which must be less than size().
@@ -90,14 +88,11 @@ class StartZoneLaps {
   /// Updates with the position of the car; `time` in s.
   void update(const maps::Point& position, double time) noexcept;
 
-  /// Whether the car is in the start zone.
-  bool near_start() const noexcept { return near_; }
-  int toggles() const noexcept { return toggles_; }  ///< crossings of the zone's border
-  /// Number of finished laps.
-  int laps() const noexcept { return toggles_ / 2; }
-  double time() const noexcept { return time_; }  ///< s
-  /// Whether two laps are finished.
-  bool finished() const noexcept { return toggles_ >= 4; }
+  bool near_start() const noexcept { return near_; }        ///< whether the car is in the start zone
+  int toggles() const noexcept { return toggles_; }         ///< crossings of the zone's border
+  int laps() const noexcept { return toggles_ / 2; }        ///< number of finished laps
+  double time() const noexcept { return time_; }            ///< s
+  bool finished() const noexcept { return toggles_ >= 4; }  ///< whether two laps are finished
 
  private:
   maps::Point start_;

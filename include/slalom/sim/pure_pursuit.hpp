@@ -32,8 +32,7 @@ struct PurePursuitOptions {
 /// lost and drives straight ahead at 0.5 m/s.
 class PurePursuit {
  public:
-  /// Throws std::invalid_argument on fewer than 3 points, points that are not finite, and a lookahead that is
-  /// not above 0.
+  /// Throws std::invalid_argument on fewer than 3 points, values that are not finite, and no lookahead.
   PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& options = {});
 
   /// The nearest position on the path.
@@ -53,13 +52,10 @@ class PurePursuit {
     PathPoint aim;           ///< point to aim at, and its speed
   };
 
-  /// The nearest position on the path.
-  Nearest nearest(const maps::Point& position) const noexcept;
-  /// The point to steer for from a position.
-  Target target(const maps::Point& position) const noexcept;
+  Nearest nearest(const maps::Point& position) const noexcept;  ///< the nearest position on the path
+  Target target(const maps::Point& position) const noexcept;    ///< the point to steer for from a position
 
-  /// Steering and speed for a car at `pose`.
-  Command command(const maps::Pose& pose) const noexcept;
+  Command command(const maps::Pose& pose) const noexcept;  ///< steering and speed for a car at `pose`
 
  private:
   struct Crossing {

@@ -6,8 +6,8 @@
 
 #include "slalom/maps/command.hpp"
 #include "slalom/maps/pose.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/lidar.hpp"
-#include "slalom/sim/numpy_random.hpp"
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/track.hpp"
 
@@ -18,8 +18,7 @@ namespace slalom::sim {
 /// row replaced by the first, which gives start poses.
 class BenchmarkLine {
  public:
-  /// The rows, m. Throws std::invalid_argument on fewer than 4, on values that are not finite, and where two
-  /// neighbours are equal.
+  /// The rows, m. Throws std::invalid_argument on fewer than 4, equal neighbours and values not finite.
   explicit BenchmarkLine(std::vector<maps::Point> rows);
 
   /// m along the rows, without the gap from the last to the first.
@@ -74,26 +73,21 @@ class RacingBenchmark {
   /// program: load its map with MapRule::grey_threshold.
   RacingBenchmark(std::shared_ptr<const Track> track, std::vector<maps::Point> centre_line);
 
-  /// Begins the next lap.
-  void reset();
+  void reset();  ///< begins the next lap
 
   /// Drives one control period with the only command. If it is not finite, wheels and motor stay as they are.
   void step(std::span<const Command> commands);
 
-  /// The driver's present observation.
-  RacingObservation observation() const noexcept;
+  RacingObservation observation() const noexcept;       ///< the driver's present observation
   bool collided() const noexcept { return collided_; }  ///< the lap ended in a collision
   bool complete() const noexcept { return complete_; }  ///< the lap ended otherwise
   double time() const noexcept;                         ///< s since the start of the lap
 
-  /// m/s^2, the acceleration of the centre of gravity, along and across together, in each time step of the
-  /// lap.
+  /// m/s^2, the acceleration of the centre of gravity, along and across together, in each time step.
   std::span<const double> accelerations() const noexcept { return accelerations_; }
 
-  /// The scanner.
-  const LidarOptions& lidar() const noexcept { return lidar_.options(); }
-  /// The car.
-  const CarParameters& car() const noexcept { return plant_.car(); }
+  const LidarOptions& lidar() const noexcept { return lidar_.options(); }  ///< the scanner
+  const CarParameters& car() const noexcept { return plant_.car(); }       ///< the car
 
  private:
   bool corner_in_wall() const noexcept;

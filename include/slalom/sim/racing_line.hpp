@@ -20,8 +20,7 @@ namespace slalom::sim {
 /// programming takes the way round that stays nearest to the path and moves least from side to side, by at
 /// most 0.25 m for each metre. If there is none, it is searched with smaller margins. If there is none
 /// without margins either, the line is the path. Speeds are those of the path, lowered to the limits of the
-/// accelerations, 6 m/s^2 across and 5 m/s^2 along, on the way that was found. All of that is for 1/10-scale
-/// cars.
+/// accelerations, 6 m/s^2 across and 5 m/s^2 along, on the way that was found. All for 1/10-scale cars.
 class RacingLine {
  public:
   /// The line at an arc length of the path.
@@ -38,8 +37,7 @@ class RacingLine {
   };
 
   /// Along a closed path with the speeds to drive, for cars of this size, among bodies that do not move.
-  /// Throws std::invalid_argument on fewer than 3 points, points or speeds that are not finite, and a path
-  /// without length.
+  /// Throws std::invalid_argument on fewer than 3 points, values that are not finite, and no length.
   RacingLine(std::span<const PathPoint> path, const Track& track, const CarParameters& car,
              std::span<const Box> parked = {});
 

@@ -39,8 +39,7 @@ class RacingOpponent {
   RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car, OpponentDriver driver,
                  double speed_share, RandomKey key);
 
-  /// Returns steering and speed for now. Call it a few tens of times a second; between calls the command
-  /// holds.
+  /// Returns steering and speed for now. Call it a few tens of times a second; the command holds meanwhile.
   Command command(const World& world);
 
   /// m left of the racing line, where the car wants to be since the last command.

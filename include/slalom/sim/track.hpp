@@ -21,8 +21,7 @@ class Track {
   /// leaves the map has no return.
   explicit Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path = {}, bool outside_is_wall = true);
 
-  /// The map.
-  const maps::OccupancyGrid& grid() const noexcept { return grid_; }
+  const maps::OccupancyGrid& grid() const noexcept { return grid_; }  ///< the map
   /// Distance to the nearest wall, m.
   const maps::DistanceField& distance() const noexcept { return distance_; }
   /// Path for counting laps, or null.
@@ -34,19 +33,27 @@ class Track {
   /// as wall even where `outside_is_wall` is off.
   bool is_wall(int column, int row) const noexcept { return clearance_at(column, row) < 0; }
 
-  /// Whether a point of the map frame lies in a wall.
-  bool in_wall(const maps::Point& point) const noexcept;
+  bool in_wall(const maps::Point& point) const noexcept;  ///< whether a point of the map frame lies in a wall
 
-  /// Whether a body collides with a wall: an overlap of the rectangle with an obstacle cell, as a square, or
-  /// with the outside.
+  /// Whether a body collides with a wall: whether the rectangle overlaps an obstacle cell or the outside.
   bool collides_with_wall(const Box& box) const noexcept;
 
   /// The distance (m) from a point to the nearest wall, with an error of at most one cell; 0 in a
   /// wall, infinite without any wall. Outside the map it is 0 with `outside_is_wall`, else infinite.
   double distance_to_wall(const maps::Point& point) const noexcept;
 
+  /// The distance (m) that f1tenth_gym takes for that from a point to the nearest wall.
+  double gym_distance(const maps::Point& point) const noexcept;
+
   /// A point in cells of the grid: column and row with fractions.
-  maps::Point to_cells(const maps::Point& point) const noexcept;
+  maps::Point to_cells(const maps::Point& point) const noexcept {
+    const double dx = point.x - grid_.origin.x, dy = point.y - grid_.origin.y;
+    return {(cosine_ * dx + sine_ * dy) / grid_.resolution, (cosine_ * dy - sine_ * dx) / grid_.resolution};
+  }
+  /// Whether a point in cells lies on the map.
+  bool contains(const maps::Point& cell) const noexcept {
+    return cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height;
+  }
 
   /// One entry per cell and a ring of cells round the map, row by row, `clearance_stride` a row: how far
   /// (1/64 cell, at most 500 cells) from any point of this cell there is no wall in any direction; negative

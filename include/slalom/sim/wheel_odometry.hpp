@@ -11,8 +11,7 @@ namespace slalom::sim {
 
 /// Errors of the odometry that the motor controller of a 1/10-scale car reports. It counts the turns of the
 /// wheels and knows the commanded steering. With all errors 0 and `yaw_from_gyro`, the odometry is exact
-/// dead reckoning.
-/// `visit_options` below describes the fields.
+/// dead reckoning. `visit_options` below describes the fields.
 struct WheelOdometryOptions {
   std::uint64_t seed = 0;
   double speed_gain_error = 0.03;
@@ -34,12 +33,10 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.slip_per_acceleration, {"slip_per_acceleration", "s^2/m",
                                   "share by which wheels turn faster per m/s^2 of drive", -0.5, 0.5});
   visit(o.speed_noise, {"speed_noise", "m/s", "standard deviation of each reading of the speed", 0, 10});
-  visit(o.yaw_from_gyro, {"yaw_from_gyro", "",
-                          "the yaw is that of a gyro; otherwise of the steering, by the kinematic bicycle"});
+  visit(o.yaw_from_gyro, {"yaw_from_gyro", "", "the yaw is that of a gyro; else of the steering"});
   visit(o.steer_gain_error, {"steer_gain_error", "",
                              "share by which the assumed steering is larger than the real one", -0.9, 0.9});
-  visit(o.steer_offset, {"steer_offset", "rad",
-                         "angle by which the assumed steering is to the left of the real one", -0.5, 0.5});
+  visit(o.steer_offset, {"steer_offset", "rad", "offset of the assumed steering, to the left", -0.5, 0.5});
   visit(o.gyro_bias, {"gyro_bias", "rad/s", "bias of the yaw rate", -10, 10});
   visit(o.gyro_noise, {"gyro_noise", "rad/s", "standard deviation of each reading of the yaw rate", 0, 10});
 }
@@ -51,8 +48,7 @@ class WheelOdometry {
   /// Throws std::invalid_argument on options out of range.
   explicit WheelOdometry(const CarParameters& car = {}, const WheelOdometryOptions& options = {});
 
-  /// Starts again; the first pose of the odometry is `start`.
-  void reset(const CarState& state, const maps::Pose& start = {}) noexcept;
+  void reset(const CarState& state) noexcept;  ///< starts again at the origin
 
   /// Moves the odometry. Call it after each step of `time_step` (s) with the state reached. A time step that
   /// is not above 0 and a state that is not finite change nothing.

@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "slalom/maps/laser_scan.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/laps.hpp"
 #include "slalom/sim/lidar.hpp"
-#include "slalom/sim/noise.hpp"
-#include "slalom/sim/numpy_random.hpp"
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/shapes.hpp"
-#include "slalom/sim/time_to_collision.hpp"
 #include "slalom/sim/track.hpp"
 
 /// A 2D world of cars with LiDAR on a track:
@@ -48,9 +46,9 @@ inline const char* const* enum_names(CollisionResponse) {
 /// Options of cars, scanners and collisions. `visit_options` below describes the fields.
 struct WorldOptions {
   double time_step = 0.01;
-  CarParameters car;   ///< parameters of all cars
-  PlantOptions plant;  ///< dynamics and actuators of all cars
-  LidarOptions lidar;  ///< scanner of all cars
+  CarParameters car{};   ///< parameters of all cars
+  PlantOptions plant{};  ///< dynamics and actuators of all cars
+  LidarOptions lidar{};  ///< scanner of all cars
   CollisionResponse wall_response = CollisionResponse::stop;
   CollisionResponse body_response = CollisionResponse::stop;
   /// As f1tenth_gym: walls are hit by TimeToCollision instead of by the car's outline; a car that hits one
@@ -63,8 +61,7 @@ struct WorldOptions {
   /// with MapRule::grey_threshold and construct the track without walls outside.
   static WorldOptions gym_compatible();
 
-  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
-  void validate() const;
+  void validate() const;  ///< throws std::invalid_argument naming the field, its value and the rule it breaks
 };
 
 template <class Options, class Visit>
@@ -103,27 +100,23 @@ enum class StepStatus {
   non_finite_command,  ///< a command was not finite; its car coasted
 };
 
-/// Bodies are numbered: driven cars first, then parked cars in their order, then bodies that were placed
-/// later.
+/// Bodies are numbered: driven cars first, then parked cars in their order, then those placed later.
 class World {
  public:
   /// Throws std::invalid_argument on a missing track or options out of range.
   World(const WorldOptions& options, std::shared_ptr<const Track> track);
 
   /// Starts again with driven cars at rest at `cars` and parked ones at `parked`, without other bodies.
-  /// Throws std::invalid_argument on poses that are not finite and on a driven car that starts in a wall or
-  /// in another body.
+  /// Throws std::invalid_argument on poses that are not finite and a driven car that starts in a wall or a
+  /// body.
   void reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked = {});
 
   /// Adds a parked car and returns its index. It may be placed onto a car. Throws std::invalid_argument if
   /// the size of a body is not positive or its pose is not finite; so do `add_box` and `add_disc`.
   int add_parked_car(const maps::Pose& pose);
-  /// Adds a fixed body and returns its index.
-  int add_box(const Box& box);
-  /// Adds a fixed body and returns its index.
-  int add_disc(const Disc& disc);
-  /// Moves a parked car, box or disc. Throws std::invalid_argument on a body that does not exist or that
-  /// drives.
+  int add_box(const Box& box);     ///< adds a fixed body and returns its index
+  int add_disc(const Disc& disc);  ///< adds a fixed body and returns its index
+  /// Moves a parked car, box or disc. Throws std::invalid_argument on a body that drives or does not exist.
   void move_body(int body, const maps::Pose& pose);
   /// Removes a parked car, box or disc. The numbers of later bodies fall by one. Throws as move_body does.
   void remove_body(int body);
@@ -171,23 +164,16 @@ class World {
   /// and in `outline` and `disc`, `body` must be less than `bodies()`.
   int last_partner(std::size_t body) const noexcept { return partners_[body]; }
 
-  double time() const noexcept { return time_; }  ///< s since the reset
-  /// Number of steps since the reset.
-  std::int64_t steps() const noexcept { return steps_; }
-  /// Number of cars that drive.
-  std::size_t cars() const noexcept { return cars_.size(); }
+  double time() const noexcept { return time_; }              ///< s since the reset
+  std::int64_t steps() const noexcept { return steps_; }      ///< number of steps since the reset
+  std::size_t cars() const noexcept { return cars_.size(); }  ///< number of cars that drive
   /// Number of bodies: cars first, then fixed bodies.
   std::size_t bodies() const noexcept { return cars_.size() + fixed_.size(); }
-  /// The outline of a body; a disc as the square about it.
-  Box outline(std::size_t body) const noexcept;
-  /// The disc of a body, if it is one.
-  std::optional<Disc> disc(std::size_t body) const noexcept;
-  /// The options given at construction.
-  const WorldOptions& options() const noexcept { return options_; }
-  /// The track.
-  const Track& track() const noexcept { return *track_; }
-  /// The scanner of all cars.
-  const Lidar& lidar() const noexcept { return lidar_; }
+  Box outline(std::size_t body) const noexcept;  ///< the outline of a body; a disc as the square about it
+  std::optional<Disc> disc(std::size_t body) const noexcept;         ///< the disc of a body, if it is one
+  const WorldOptions& options() const noexcept { return options_; }  ///< the options given at construction
+  const Track& track() const noexcept { return *track_; }            ///< the track
+  const Lidar& lidar() const noexcept { return lidar_; }             ///< the scanner of all cars
 
  private:
   struct Car {
@@ -213,6 +199,8 @@ class World {
     Box box{};
     double disc_radius = 0;  ///< m, above 0 for discs
     int last_partner = -1;   ///< among the fixed ones
+
+    Disc disc() const { return {{box.pose.x, box.pose.y}, disc_radius}; }
   };
 
   int add(const Fixed& body);
@@ -231,9 +219,8 @@ class World {
   void add_noise(Car& car) noexcept;
   void publish(Car& car) noexcept;
   void gym_scan_and_collisions() noexcept;
-  void scan_all() noexcept;
+  void scan_if_due() noexcept;
   void count_laps() noexcept;
-  bool scan_is_due() const noexcept;
 
   WorldOptions options_;
   std::shared_ptr<const Track> track_;
@@ -247,6 +234,29 @@ class World {
   double time_ = 0;
   std::int64_t steps_ = 0;
   std::int64_t scan_every_ = 1;
+};
+
+/// Counts the collisions of a car, for instance over a lap.
+class CollisionLog {
+ public:
+  /// Records the collisions of a step. Call it after each step of the world.
+  void update(const World& world, std::size_t car);
+
+  /// Number of collisions: different bodies that the car collided with, all walls together as one.
+  int collisions() const noexcept { return static_cast<int>(bodies_.size()) + wall_; }
+  bool hit_wall() const noexcept { return wall_; }  ///< whether it collided with a wall
+  std::span<const int> bodies() const noexcept {
+    return bodies_;
+  }  ///< bodies with which it collided, ascending
+  /// Number of different patterns of the fixed bodies' collision flags seen while the car collided, as the
+  /// evaluation of K. Honda et al. (proj-svg_mppi) counts them. A wall alone is the pattern of no flag, two
+  /// bodies at once are a pattern of their own.
+  int flag_patterns() const noexcept { return static_cast<int>(patterns_.size()); }
+
+ private:
+  std::vector<int> bodies_;
+  std::vector<std::vector<std::uint8_t>> patterns_;
+  bool wall_ = false;
 };
 
 }  // namespace slalom::sim

@@ -65,8 +65,6 @@ struct TrackedObject {
   double length = 0;             ///< m
   double width = 0;              ///< m
   double covariance[5][5] = {};  ///< covariance of the state (m, m, rad, m/s, rad/s)
-  double length_deviation = 0;   ///< m
-  double width_deviation = 0;    ///< m
   double unseen = 0;             ///< s since it was last seen; 0 if this scan has readings of it
 };
 
@@ -76,7 +74,6 @@ struct TrackerOutput {
   std::span<const TrackedObject> objects;    ///< confirmed objects, ascending by id
   /// The pose of the LiDAR at the last scan that was used (status `ok` or `misfit`), aligned with the map.
   maps::Pose sensor;
-  int clusters = 0;        ///< clusters of this scan
   double update_time = 0;  ///< s of wall clock
 };
 
@@ -91,19 +88,15 @@ class ObjectTracker {
   /// least one, whose origin is not finite, or whose resolution is not finite and above 0.
   explicit ObjectTracker(const maps::OccupancyGrid& map, const TrackerOptions& options = {});
   ~ObjectTracker();
-  /// Copies the objects and scans; copies share the map.
-  ObjectTracker(const ObjectTracker& other);
+  ObjectTracker(const ObjectTracker& other);  ///< copies the objects and scans; copies share the map
   ObjectTracker& operator=(const ObjectTracker& other);
-  /// Moves; the source can only be destroyed or assigned to.
-  ObjectTracker(ObjectTracker&&) noexcept;
+  ObjectTracker(ObjectTracker&&) noexcept;  ///< moves; the source can only be destroyed or assigned to
   ObjectTracker& operator=(ObjectTracker&&) noexcept;
 
   /// Predicts all objects to `input.stamp` and corrects them with the scan.
   const TrackerOutput& update(const TrackerInput& input) noexcept;
-  /// Forgets all objects and scans.
-  void reset() noexcept;
-  /// The options given at construction.
-  const TrackerOptions& options() const noexcept;
+  void reset() noexcept;                           ///< forgets all objects and scans
+  const TrackerOptions& options() const noexcept;  ///< the options given at construction
 
  private:
   struct Implementation;

@@ -46,8 +46,7 @@ class Predictor {
   /// Copies the memory of objects; the predictions of the last update are the source's alone.
   Predictor(const Predictor& other);
   Predictor& operator=(const Predictor& other);
-  /// Moves; the source can only be destroyed or assigned to.
-  Predictor(Predictor&&) noexcept;
+  Predictor(Predictor&&) noexcept;  ///< moves; the source can only be destroyed or assigned to
   Predictor& operator=(Predictor&&) noexcept;
 
   /// Predictions of the objects that move, as they are at `stamp` (s), in their frame, which is that of the
@@ -56,8 +55,7 @@ class Predictor {
   /// not finite or absurdly large. Valid until the next call.
   std::span<const maps::PredictedObstacle> update(std::span<const TrackedObject> objects,
                                                   double stamp) noexcept;
-  /// Forgets all objects.
-  void reset() noexcept;
+  void reset() noexcept;  ///< forgets all objects
 
  private:
   struct Implementation;

@@ -6,15 +6,14 @@ namespace slalom::tracking {
 
 /// Options of ObjectTracker. The sizes are those of a 1/10-scale racing car. Where `length` and `width` are
 /// the same, objects are round: their outline gives no yaw, and they keep their velocity instead of speed and
-/// turn rate.
-/// `visit_options` below describes the fields.
+/// turn rate. `visit_options` below describes the fields.
 struct TrackerOptions {
   int max_beams = 4000;
   int max_objects = 32;
   double max_range = 15;
   double range_deviation = 0.02;
 
-  double wall_distance = 0.06;
+  double wall_distance = 0.06;  ///< besides three range deviations
   double wall_angle = 0.008;
 
   double min_incidence = 0.26;
@@ -39,32 +38,23 @@ struct TrackerOptions {
 
   double free_margin = 0.15;
   double min_speed = 0.5;
-
-  /// Throws std::invalid_argument naming the option, its value and the rule.
-  void validate() const { validate_options(*this, "tracker"); }
 };
 
 template <class Options, class Visit>
 requires is_options_of<Options, TrackerOptions>
 void visit_options(Options& o, Visit&& visit) {
   visit(o.max_beams, {"max_beams", "", "readings of a scan; longer scans are rejected", 8, 1e5});
-  visit(o.max_objects,
-        {"max_objects", "", "objects followed at a time, with those not yet confirmed", 1, 256});
+  visit(o.max_objects, {"max_objects", "", "objects at a time, with those not yet confirmed", 1, 256});
   visit(o.max_range, {"max_range", "m", "farther readings are not used", 0.5, 1000});
   visit(o.range_deviation, {"range_deviation", "m", "standard deviation of a reading", 1e-3, 1, "sigma_r"});
-  visit(o.wall_distance,
-        {"wall_distance", "m",
-         "readings within this distance plus 3 range deviations of an obstacle of the map belong to it", 0,
-         10});
+  visit(o.wall_distance, {"wall_distance", "m", "nearer readings belong to an obstacle of the map", 0, 10});
   visit(o.wall_angle,
-        {"wall_angle", "rad", "error of the yaw; times the range, it is added to wall_distance", 0, 1});
-  visit(o.min_incidence, {"min_incidence", "rad", "least angle of a beam to a surface that is one cluster",
-                          0.01, 1.5, "lambda"});
+        {"wall_angle", "rad", "error of the yaw; times the range, adds to wall_distance", 0, 1});
+  visit(o.min_incidence, {"min_incidence", "rad", "least angle of beam and surface", 0.01, 1.5, "lambda"});
   visit(o.min_points, {"min_points", "", "readings of a new object", 2, 1000});
   visit(o.length, {"length", "m", "expected length of objects", 0.01, 100});
   visit(o.width, {"width", "m", "expected width of objects", 0.01, 100});
-  visit(o.size_deviation,
-        {"size_deviation", "m", "standard deviation of length and width among objects", 1e-3, 10});
+  visit(o.size_deviation, {"size_deviation", "m", "standard deviation of the sizes of objects", 1e-3, 10});
   visit(o.max_speed, {"max_speed", "m/s", "largest speed of objects", 0.1, 100});
   visit(o.acceleration_deviation,
         {"acceleration_deviation", "m/s^2", "standard deviation of the acceleration", 1e-3, 100, "sigma_a"});
@@ -74,12 +64,10 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.gate, {"gate", "", "standard deviations from the predicted outline to readings", 1, 10});
   visit(o.confirming_scans, {"confirming_scans", "", "scans with an object before it is reported", 1, 100});
   visit(o.max_misses,
-        {"max_misses", "", "scans that may see through an object's place before it is dropped", 0, 1000});
+        {"max_misses", "", "scans that may see through an object before it is dropped", 0, 1000});
   visit(o.max_unseen_time, {"max_unseen_time", "s", "time out of view before an object is dropped", 0, 100});
-  visit(o.free_margin,
-        {"free_margin", "m", "without a map: least motion into or out of free space", 0.01, 10});
-  visit(o.min_speed,
-        {"min_speed", "m/s", "without a map: least speed of an object when it is confirmed", 0, 100});
+  visit(o.free_margin, {"free_margin", "m", "without a map: least motion in or out of free space", 0.01, 10});
+  visit(o.min_speed, {"min_speed", "m/s", "without a map: least speed of an object to confirm", 0, 100});
 }
 
 }  // namespace slalom::tracking

@@ -1,33 +1,23 @@
 #include "slalom/sim/racing_benchmark.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/gym/gym_distance.hpp"
 #include "slalom/sim/shapes.hpp"
+#include "slalom/sim/world.hpp"
 
 namespace slalom::sim {
 namespace {
 
 constexpr std::uint64_t seed = 12345;
-constexpr double steering_delay = 0.02;                // s
 constexpr double lap_end = 0.995, past_start = 0.999;  // shares of a lap
 constexpr double min_time = 5;                         // s, of a lap
 
 PlantOptions plant_options() {
-  PlantOptions options;
+  PlantOptions options = WorldOptions::gym_compatible().plant;
   options.dynamics.integrator = Integrator::euler;
-  options.dynamics.substeps = 1;
-  options.dynamics.gym = options.actuation.gym = options.gym = true;
-  options.steering_dead_time = steering_delay;
-  return options;
-}
-
-LidarOptions lidar_options() {
-  LidarOptions options;
-  options.mount = {};
-  options.gym = true;
   return options;
 }
 
@@ -41,17 +31,16 @@ RacingBenchmark::RacingBenchmark(std::shared_ptr<const Track> track, std::vector
     : track_(std::move(track)),
       line_(std::move(centre_line)),
       plant_(CarParameters{}, plant_options(), time_step),
-      lidar_(lidar_options()),
+      lidar_(WorldOptions::gym_compatible().lidar),
       starts_(seed),
       noise_(seed),
-      scan_(static_cast<std::size_t>(lidar_options().beams)) {
+      scan_(lidar_.angles().size()) {
   if (!track_) throw std::invalid_argument("track: must not be null");
   look();
 }
 
 void RacingBenchmark::look() {
-  const CarState& state = plant_.state();
-  lidar_.gym_scan(*track_, {state.x, state.y, state.yaw}, scan_);
+  lidar_.gym_scan(*track_, plant_.state().pose(), scan_);
   for (double& range : scan_) range += lidar_.options().noise * noise_.normal();
 }
 
@@ -91,17 +80,10 @@ void RacingBenchmark::step(std::span<const Command> commands) {
 }
 
 bool RacingBenchmark::corner_in_wall() const noexcept {
-  const CarState& state = plant_.state();
-  const maps::OccupancyGrid& grid = track_->grid();
-  for (const maps::Point& corner :
-       corners(Box{{state.x, state.y, state.yaw}, plant_.car().length, plant_.car().width})) {
-    const maps::Point at = maps::inverse_transform(grid.origin, corner);
-    if (!(at.x >= 0 && at.y >= 0 && at.x < grid.width * grid.resolution &&
-          at.y < grid.height * grid.resolution))
-      return true;
-    if (detail::gym_distance(*track_, corner) < collision_limit) return true;
-  }
-  return false;
+  const auto all = corners(Box{plant_.state().pose(), plant_.car().length, plant_.car().width});
+  return std::any_of(all.begin(), all.end(), [&](const maps::Point& corner) {
+    return !track_->contains(track_->to_cells(corner)) || track_->gym_distance(corner) < collision_limit;
+  });
 }
 
 double RacingBenchmark::time() const noexcept {

@@ -13,27 +13,25 @@ double sign(double value) {
   return value < 0 ? -1.0 : 1.0;
 }
 
+/// The rates of a car that moves in a direction (rad), without those of yaw, yaw rate and slip.
+CarState rates(const CarState& s, double direction, const DriveInput& u) {
+  return {s.speed * std::cos(direction), s.speed * std::sin(direction), u.steer_rate, u.acceleration};
+}
+
 CarState kinematic(const CarParameters& car, const CarState& s, const DriveInput& u) {
   const double slope = std::tan(s.steer) / car.wheelbase();
   const double slip = std::atan(car.rear_length * slope);
-  return {s.speed * std::cos(s.yaw + slip),
-          s.speed * std::sin(s.yaw + slip),
-          u.steer_rate,
-          u.acceleration,
-          s.speed * std::cos(slip) * slope,
-          0,
-          0};
+  CarState d = rates(s, s.yaw + slip, u);
+  d.yaw = s.speed * std::cos(slip) * slope;
+  return d;
 }
 
 CarState gym_kinematic(const CarParameters& car, const CarState& s, const DriveInput& u) {
   const double tangent = std::tan(s.steer), cosine = std::cos(s.steer), length = car.wheelbase();
-  return {s.speed * std::cos(s.yaw),
-          s.speed * std::sin(s.yaw),
-          u.steer_rate,
-          u.acceleration,
-          s.speed / length * tangent,
-          u.acceleration / length * tangent + s.speed / (length * cosine * cosine) * u.steer_rate,
-          0};
+  CarState d = rates(s, s.yaw, u);
+  d.yaw = s.speed / length * tangent;
+  d.yaw_rate = u.acceleration / length * tangent + s.speed / (length * cosine * cosine) * u.steer_rate;
+  return d;
 }
 
 /// Axle loads over the mass, times the wheelbase: m^2/s^2.
@@ -54,15 +52,13 @@ CarState single_track(const CarParameters& car, const CarState& s, const DriveIn
   const double way = gym_reverse ? 1.0 : sign(s.speed);
   const double torque = way * car.friction * car.mass / (car.inertia * length);
   const double force = way * car.friction / (s.speed * length);
-  return {s.speed * std::cos(s.slip + s.yaw),
-          s.speed * std::sin(s.slip + s.yaw),
-          u.steer_rate,
-          u.acceleration,
-          s.yaw_rate,
-          torque * (-(lf * lf * front + lr * lr * rear) / s.speed * s.yaw_rate +
-                    (lr * rear - lf * front) * s.slip + lf * front * s.steer),
-          (force / s.speed * (rear * lr - front * lf) - 1) * s.yaw_rate - force * (rear + front) * s.slip +
-              force * front * s.steer};
+  CarState d = rates(s, s.slip + s.yaw, u);
+  d.yaw = s.yaw_rate;
+  d.yaw_rate = torque * (-(lf * lf * front + lr * lr * rear) / s.speed * s.yaw_rate +
+                         (lr * rear - lf * front) * s.slip + lf * front * s.steer);
+  d.slip = (force / s.speed * (rear * lr - front * lf) - 1) * s.yaw_rate - force * (rear + front) * s.slip +
+           force * front * s.steer;
+  return d;
 }
 
 /// Sideways force over mu F_z of a tyre of stiffness `cornering` at slip angle `alpha`.
@@ -84,14 +80,13 @@ CarState saturating(const CarParameters& car, const CarState& s, const DriveInpu
   const double front = grip * std::max(0.0, load_front) * magic_formula(car.cornering_front, alpha_front);
   const double rear = grip * std::max(0.0, load_rear) * magic_formula(car.cornering_rear, alpha_rear);
   const double sine = std::sin(s.slip), cosine = std::cos(s.slip);
-  return {
-      s.speed * std::cos(s.slip + s.yaw),
-      s.speed * std::sin(s.slip + s.yaw),
-      u.steer_rate,
-      u.acceleration * cosine - front * std::sin(s.steer - s.slip) + rear * sine,
-      s.yaw_rate,
-      car.mass / car.inertia * (lf * front * std::cos(s.steer) - lr * rear),
-      (-u.acceleration * sine + front * std::cos(s.steer - s.slip) + rear * cosine) / s.speed - s.yaw_rate};
+  CarState d = rates(s, s.slip + s.yaw, u);
+  d.speed = u.acceleration * cosine - front * std::sin(s.steer - s.slip) + rear * sine;
+  d.yaw = s.yaw_rate;
+  d.yaw_rate = car.mass / car.inertia * (lf * front * std::cos(s.steer) - lr * rear);
+  d.slip =
+      (-u.acceleration * sine + front * std::cos(s.steer - s.slip) + rear * cosine) / s.speed - s.yaw_rate;
+  return d;
 }
 
 bool is_kinematic(const DynamicsOptions& options, double speed) {
@@ -115,6 +110,25 @@ CarState integrate(const CarParameters& car, const DynamicsOptions& options, con
 }
 
 }  // namespace
+
+CarParameters CarParameters::full_scale() {
+  CarParameters car;
+  car.cornering_front = car.cornering_rear = 20.898083706740398;
+  car.front_length = 1.1561957064;
+  car.rear_length = 1.4227170936;
+  car.gravity_height = 0.61373004;
+  car.mass = 1093.2952334674046;
+  car.inertia = 1791.5995300122856;
+  car.steer_min = -1.066;
+  car.steer_max = 1.066;
+  car.steer_rate_max = 0.4;
+  car.acceleration_max = 11.5;
+  car.speed_min = -13.6;
+  car.speed_max = 50.8;
+  car.length = 4.508;
+  car.width = 1.610;
+  return car;
+}
 
 double limit_steer_rate(const CarParameters& car, double steer, double rate) noexcept {
   if ((steer <= car.steer_min && rate <= 0) || (steer >= car.steer_max && rate >= 0)) return 0;
@@ -147,8 +161,7 @@ CarState advance(const CarParameters& car, const DynamicsOptions& options, const
     // The actuator's stop is hard, and its last move may have been longer than the way to it.
     if (!options.gym) s.steer = std::clamp(s.steer, car.steer_min, car.steer_max);
     if (!options.gym && is_kinematic(options, s.speed)) {
-      const CarState rates = kinematic(car, s, {});
-      s.yaw_rate = rates.yaw;
+      s.yaw_rate = kinematic(car, s, {}).yaw;
       s.slip = std::atan(car.rear_length * std::tan(s.steer) / car.wheelbase());
     }
   }
@@ -158,8 +171,7 @@ CarState advance(const CarParameters& car, const DynamicsOptions& options, const
 int substeps(const CarParameters& car, const DynamicsOptions& options, double time_step) noexcept {
   if (options.substeps > 0) return options.substeps;
   if (options.model == Model::kinematic) return 1;
-  // The faster of the decays of yaw rate and slip where they are fastest, at the lowest speed of the tyre
-  // model.
+  // The faster of the decays of yaw rate and slip at the lowest speed of the tyre model.
   const double lf = car.front_length, lr = car.rear_length, length = car.wheelbase();
   const double front = car.cornering_front * gravity * lr, rear = car.cornering_rear * gravity * lf;
   const double scale = car.friction / (kinematic_below * length);

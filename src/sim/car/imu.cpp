@@ -19,9 +19,7 @@ void Imu::reset(const CarState& state) noexcept {
 }
 
 void Imu::update(const CarState& state, double time_step) noexcept {
-  const bool usable = time_step > 0 && std::isfinite(time_step) && std::isfinite(state.speed) &&
-                      std::isfinite(state.yaw) && std::isfinite(state.yaw_rate) && std::isfinite(state.slip);
-  if (!usable) return;
+  if (!(time_step > 0) || !std::isfinite(time_step) || !state.is_finite()) return;
   // The change of the velocity over the step, seen from the body in the middle of it.
   const double yaw = before_.yaw + 0.5 * std::remainder(state.yaw - before_.yaw, 2 * 3.141592653589793);
   const double from = before_.yaw + before_.slip - yaw, to = state.yaw + state.slip - yaw;

@@ -10,18 +10,15 @@ WheelOdometry::WheelOdometry(const CarParameters& car, const WheelOdometryOption
   validate_options(options_, "wheel_odometry");
 }
 
-void WheelOdometry::reset(const CarState& state, const maps::Pose& start) noexcept {
+void WheelOdometry::reset(const CarState& state) noexcept {
   random_ = RandomStream({options_.seed, 0});
-  pose_ = start;
+  pose_ = {};
   speed_ = true_speed_ = state.speed;
   yaw_rate_ = 0;
 }
 
 void WheelOdometry::update(const CarState& state, double time_step) noexcept {
-  const bool usable = time_step > 0 && std::isfinite(time_step) && std::isfinite(state.speed) &&
-                      std::isfinite(state.steer) && std::isfinite(state.yaw_rate) &&
-                      std::isfinite(state.slip);
-  if (!usable) return;
+  if (!(time_step > 0) || !std::isfinite(time_step) || !state.is_finite()) return;
   const double acceleration = (state.speed - true_speed_) / time_step;
   true_speed_ = state.speed;
   // The speed along the body is that of the rear wheels; sideways slip turns no wheel.

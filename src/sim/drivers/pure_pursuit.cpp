@@ -8,7 +8,6 @@
 #include "slalom/core/options.hpp"
 
 namespace slalom::sim {
-
 namespace {
 
 constexpr double wheelbase = 0.3302;                // m
@@ -21,7 +20,7 @@ PurePursuit::PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& 
     : path_(std::move(path)), options_(options) {
   using slalom::detail::check;
   check("pure pursuit", {"lookahead", "m", "", 1e-9, 1e9}, options.lookahead);
-  check("pure pursuit", {"points", "", "", 3}, static_cast<double>(path_.size()));
+  check("pure pursuit", {"points", "", "", 3}, path_.size());
   for (const PathPoint& p : path_)
     for (const double value : {p.point.x, p.point.y, p.speed})
       check("pure pursuit", {"path", "", "", -1e9, 1e9}, value);
@@ -45,8 +44,8 @@ PurePursuit::Nearest PurePursuit::nearest(const maps::Point& p) const noexcept {
 std::optional<double> PurePursuit::cross_segment(const maps::Point& middle, int row,
                                                  double least) const noexcept {
   const int count = static_cast<int>(path_.size());
-  const maps::Point a = path_[static_cast<std::size_t>((row + count) % count)].point;
-  maps::Point b = path_[static_cast<std::size_t>((row + 1 + count) % count)].point;
+  const maps::Point a = path_[(row + count) % count].point;
+  maps::Point b = path_[(row + 1 + count) % count].point;
   if (options_.gym) b.x += 1e-6, b.y += 1e-6;
   const double vx = b.x - a.x, vy = b.y - a.y;
   const double qa = vx * vx + vy * vy;
@@ -79,7 +78,7 @@ PurePursuit::Target PurePursuit::target(const maps::Point& position) const noexc
   const std::size_t count = path_.size(), segment = target.nearest.segment;
   if (target.nearest.distance < options_.lookahead) {
     // The sum may carry to the next row, as a start at (row + 1, 0).
-    const double start = static_cast<double>(segment) + target.nearest.along;
+    const double start = segment + target.nearest.along;
     const auto row = std::min(saturate_cast<std::size_t>(start), count - 1);
     const auto crossing = cross_circle(position, row, start - std::floor(start));
     if (!crossing) return target;

@@ -34,7 +34,7 @@ std::vector<maps::Point> resampled(const LapPath& path) {
   const auto count = std::max<std::size_t>(8, saturate_cast<std::size_t>(path.length() / usual_spacing));
   std::vector<maps::Point> points;
   for (std::size_t i = 0; i < count; ++i) {
-    const maps::Pose pose = path.at(path.length() * static_cast<double>(i) / static_cast<double>(count));
+    const maps::Pose pose = path.at(path.length() * i / count);
     points.push_back({pose.x, pose.y});
   }
   return points;
@@ -61,9 +61,9 @@ RacingLine::RacingLine(std::span<const PathPoint> path, const Track& track, cons
     : path_(resampled(LapPath(points_of(path)))) {
   const LapPath given(points_of(path));
   const std::size_t count = path_.size();
-  spacing_ = path_.length() / static_cast<double>(count);
+  spacing_ = path_.length() / count;
   for (std::size_t i = 0; i < count; ++i) {
-    const double arc = spacing_ * static_cast<double>(i);
+    const double arc = spacing_ * i;
     const maps::Pose before = path_.at(arc - spacing_), after = path_.at(arc + spacing_);
     const maps::Point here = path_.points()[i];
     points_.push_back({.point = here,
@@ -102,7 +102,7 @@ std::vector<std::uint8_t> RacingLine::free_cells(const Track& track, const CarPa
       for (int lane = lanes_aside; lane >= 0 && lane < lanes; lane += side) {
         const maps::Point middle = at.beside(lane_step * (lane - lanes_aside));
         if (track.in_wall(middle)) break;
-        free[i * lanes + static_cast<std::size_t>(lane)] = is_free(middle);
+        free[i * lanes + lane] = is_free(middle);
       }
   }
   return free;
@@ -121,14 +121,13 @@ bool RacingLine::find_way(std::span<const std::uint8_t> free) {
       int move = 0;
       for (const int from : {0, -1, 1}) {
         if (lane + from < 0 || lane + from >= lanes) continue;
-        const double cost =
-            costs[static_cast<std::size_t>(lane + from)] + change_cost * std::abs(from) * lane_step;
+        const double cost = costs[lane + from] + change_cost * std::abs(from) * lane_step;
         if (cost < best) best = cost, move = from;
       }
       const double offset = lane_step * (lane - lanes_aside);
-      const auto cell = (row % count) * lanes + static_cast<std::size_t>(lane);
-      next[static_cast<std::size_t>(lane)] = free[cell] ? best + offset_cost * offset * offset : closed;
-      moves[row * lanes + static_cast<std::size_t>(lane)] = static_cast<std::int8_t>(move);
+      const auto cell = (row % count) * lanes + lane;
+      next[lane] = free[cell] ? best + offset_cost * offset * offset : closed;
+      moves[row * lanes + lane] = static_cast<std::int8_t>(move);
     }
     costs.swap(next);
   }
@@ -137,7 +136,7 @@ bool RacingLine::find_way(std::span<const std::uint8_t> free) {
   int lane = static_cast<int>(end - costs.begin());
   for (std::size_t row = rows; row-- > count;) {
     if (row < 2 * count) points_[row % count].offset = lane_step * (lane - lanes_aside);
-    lane += moves[row * lanes + static_cast<std::size_t>(lane)];
+    lane += moves[row * lanes + lane];
   }
   return true;
 }
@@ -148,8 +147,8 @@ void RacingLine::find_room(std::span<const std::uint8_t> free) {
   for (std::size_t i = 0; i < count; ++i) {
     const int lane = saturate_cast<int>(std::round(points_[i].offset / lane_step)) + lanes_aside;
     int first = lane, last = lane;
-    while (first > 0 && free[i * lanes + static_cast<std::size_t>(first - 1)]) --first;
-    while (last + 1 < lanes && free[i * lanes + static_cast<std::size_t>(last + 1)]) ++last;
+    while (first > 0 && free[i * lanes + first - 1]) --first;
+    while (last + 1 < lanes && free[i * lanes + last + 1]) ++last;
     points_[i].least = lane_step * (first - lanes_aside);
     points_[i].most = lane_step * (last - lanes_aside);
   }
@@ -170,8 +169,7 @@ void RacingLine::smooth() {
   const std::size_t count = points_.size();
   for (std::size_t i = 0; i < count; ++i) {
     double sum = 0;
-    for (int k = -smoothing; k <= smoothing; ++k)
-      sum += before[(i + count + static_cast<std::size_t>(k + smoothing) - smoothing) % count].offset;
+    for (int k = -smoothing; k <= smoothing; ++k) sum += before[(i + count + k) % count].offset;
     points_[i].offset = std::clamp(sum / (2 * smoothing + 1), points_[i].least, points_[i].most);
   }
 }
@@ -214,7 +212,7 @@ maps::Point RacingLine::Point::beside(double left) const noexcept {
 
 RacingLine::Point RacingLine::at(double arc) const noexcept {
   const double turns = arc / path_.length();
-  const double place = (turns - std::floor(turns)) * static_cast<double>(points_.size());
+  const double place = (turns - std::floor(turns)) * points_.size();
   const auto first = std::min(saturate_cast<std::size_t>(place), points_.size() - 1);
   const double share = std::clamp(place - static_cast<double>(first), 0.0, 1.0);
   const Point &a = points_[first], &b = points_[(first + 1) % points_.size()];

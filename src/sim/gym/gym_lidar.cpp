@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/gym/gym_distance.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/sim/lidar.hpp"
 
@@ -20,52 +19,30 @@ struct Table {
   std::array<double, table_size> cosine, sine;
   Table() {
     for (std::size_t i = 0; i < table_size; ++i) {
-      const double angle = static_cast<double>(i) * (2 * pi / (table_size - 1));
+      const double angle = i * (2 * pi / (table_size - 1));
       cosine[i] = std::cos(angle);
       sine[i] = std::sin(angle);
     }
   }
 };
 
-/// The distance field as it is looked up.
-struct Field {
-  explicit Field(const Track& track)
-      : distance(track.distance().distance.data()),
-        width(track.grid().width),
-        height(track.grid().height),
-        resolution(track.grid().resolution),
-        origin(track.grid().origin),
-        cosine(std::cos(origin.yaw)),
-        sine(std::sin(origin.yaw)) {}
-
-  double at(double x, double y) const {
-    const double dx = x - origin.x, dy = y - origin.y;
-    const double gx = dx * cosine + dy * sine, gy = -dx * sine + dy * cosine;
-    if (gx < 0 || gy < 0 || !(gx < width * resolution) || !(gy < height * resolution))
-      return distance[static_cast<std::size_t>(width) * static_cast<std::size_t>(height) - 1];
-    const int column = saturate_cast<int>(gx / resolution), row = saturate_cast<int>(gy / resolution);
-    return distance[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                    static_cast<std::size_t>(column)];
-  }
-
-  const double* distance;
-  int width, height;
-  double resolution;
-  maps::Pose origin;
-  double cosine, sine;
-};
+/// As Track::gym_distance, which the compiler does not inline.
+double distance_at(const Track& track, const maps::Point& point) {
+  const maps::Point cell = track.to_cells(point);
+  if (!track.contains(cell)) return track.distance().distance.back();
+  return track.distance().at(saturate_cast<int>(cell.x), saturate_cast<int>(cell.y));
+}
 
 }  // namespace
 
-double detail::gym_distance(const Track& track, const maps::Point& point) {
-  return Field(track).at(point.x, point.y);
+double Track::gym_distance(const maps::Point& point) const noexcept {
+  return distance_at(*this, point);
 }
 
 void Lidar::gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept {
   static const Table table;
   constexpr double close_enough = 1e-4;  // m, to a wall
-  const Field field(track);
-  const double from_start = field.at(sensor.x, sensor.y);
+  const double from_start = distance_at(track, {sensor.x, sensor.y});
   const double increment = table_size * options_.angle_increment() / (2 * pi);
   double index = std::fmod(table_size * (sensor.yaw + options_.angle_min()) / (2 * pi), table_size);
   while (index < 0) index += table_size;
@@ -76,7 +53,7 @@ void Lidar::gym_scan(const Track& track, const maps::Pose& sensor, std::span<dou
     while (step > close_enough && total <= options_.range_max) {
       x += step * table.cosine[entry];
       y += step * table.sine[entry];
-      step = field.at(x, y);
+      step = distance_at(track, {x, y});
       total += step;
     }
     range = std::min(total, options_.range_max);
@@ -96,7 +73,7 @@ Lidar::Window Lidar::gym_window(const maps::Pose& sensor, const Box& box) const 
     if (angle < -pi) angle += 2 * pi;
     const auto nearer = [&](double a, double b) { return std::abs(a + angle) < std::abs(b + angle); };
     // The beams stand evenly, so the nearest is one of the few about where it should be.
-    const double increment = options_.angle_increment(), last = static_cast<double>(options_.beams - 1);
+    const double increment = options_.angle_increment(), last = options_.beams - 1;
     const double about = increment > 0 ? (-angle - angles_.front()) / increment : 0;
     const auto begin = angles_.begin() + saturate_cast<std::ptrdiff_t>(std::clamp(about - 2, 0.0, last)),
                end = angles_.begin() + saturate_cast<std::ptrdiff_t>(std::clamp(about + 3, 0.0, last)) + 1;
@@ -112,10 +89,9 @@ template <class Body>
 void Lidar::gym_shorten(const maps::Pose& sensor, const Body& body, Window beams,
                         std::span<double> ranges) const noexcept {
   for (int i = beams.first; i <= beams.last; ++i) {
-    const auto beam = static_cast<std::size_t>(i);
-    const double angle = sensor.yaw + angles_[beam];
-    ranges[beam] =
-        std::min(ranges[beam], ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), body));
+    const double angle = sensor.yaw + angles_[i];
+    ranges[i] =
+        std::min(ranges[i], ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), body));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/lidar/scan.hpp"
+#include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::sim {
 namespace {
@@ -12,8 +13,14 @@ namespace {
 using std::numbers::pi;
 
 std::size_t padded(int count) {
-  return static_cast<std::size_t>((count + detail::scan_padding - 1) / detail::scan_padding *
-                                  detail::scan_padding);
+  return (count + detail::scan_padding - 1) / detail::scan_padding * detail::scan_padding;
+}
+
+/// The finaliser of SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
+std::uint64_t scramble(std::uint64_t x) {
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebull;
+  return x ^ x >> 31;
 }
 
 }  // namespace
@@ -28,7 +35,8 @@ LidarOptions LidarOptions::hokuyo_utm_30lx() {
   return options;
 }
 
-Lidar::Lidar(const LidarOptions& options) : options_(options), kernels_(&detail::scan_kernels()) {
+Lidar::Lidar(const LidarOptions& options) : options_(options) {
+  detail::scan_kernels();  // which may throw
   validate_options(options, "lidar");
   for (const auto& [name, value] : {std::pair("mount.x", options.mount.x), {"mount.y", options.mount.y}})
     slalom::detail::check("lidar", {name, "m", "", -100, 100}, value);
@@ -60,12 +68,12 @@ void Lidar::scan(const Track& track, const maps::Pose& sensor, std::span<float> 
   const maps::Point cell = track.to_cells({sensor.x, sensor.y});
   const maps::OccupancyGrid& grid = track.grid();
   const auto range_max = static_cast<float>(options_.range_max);
-  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid.width && cell.y < grid.height)) {
+  if (!track.contains(cell)) {
     std::fill(ranges.begin(), ranges.end(), track.outside_is_wall() ? 0.0f : range_max);
     return;
   }
   const double yaw = sensor.yaw - grid.origin.yaw;
-  kernels_->walls(
+  detail::scan_kernels().walls(
       {.clearance = track.clearance().data(),
        .stride = track.clearance_stride(),
        .x = static_cast<float>(cell.x + 1),
@@ -83,6 +91,24 @@ void Lidar::scan(const Track& track, const maps::Pose& sensor, std::span<float> 
        .resolution = static_cast<float>(grid.resolution),
        .range_max = range_max,
        .ranges = ranges.data()});
+}
+
+void NormalNoise::reset(std::uint64_t seed, std::uint64_t car) noexcept {
+  key_ = scramble(scramble(seed + 0x9e3779b97f4a7c15ull) + car);
+  count_ = 0;
+}
+
+void NormalNoise::add(std::span<float> ranges, int count, double deviation, double most, double dropout) {
+  const std::uint64_t now = scramble(key_ + 0x9e3779b97f4a7c15ull * ++count_);
+  const detail::NoiseTask task{
+      .key0 = static_cast<std::uint32_t>(now),
+      .key1 = static_cast<std::uint32_t>(now >> 32),
+      .deviation = static_cast<float>(deviation),
+      .most = static_cast<float>(most),
+      .lost_below = saturate_cast<std::uint32_t>(std::min(dropout * 0x1p32, 0x1p32 - 1)),
+      .count = count,
+      .ranges = ranges.data()};
+  detail::scan_kernels().noise(task);
 }
 
 }  // namespace slalom::sim

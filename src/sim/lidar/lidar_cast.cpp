@@ -36,39 +36,32 @@ Lidar::Window Lidar::window(const maps::Pose& sensor, const maps::Point& middle,
 
 void Lidar::cast(const maps::Pose& sensor, const Box& box, std::span<float> ranges) const noexcept {
   const double radius = std::sqrt(box.length * box.length + box.width * box.width) / 2;
-  const Window beams = window(sensor, {box.pose.x, box.pose.y}, radius);
-  if (beams.first > beams.last) return;
   const maps::Point at = maps::inverse_transform(box.pose, {sensor.x, sensor.y});
-  const double yaw = sensor.yaw - box.pose.yaw;
-  kernels_->cast({.x = static_cast<float>(at.x),
-                  .y = static_cast<float>(at.y),
-                  .cosine = static_cast<float>(std::cos(yaw)),
-                  .sine = static_cast<float>(std::sin(yaw)),
-                  .cosines = cosines_.data(),
-                  .sines = sines_.data(),
-                  .half_length = static_cast<float>(box.length / 2),
-                  .half_width = static_cast<float>(box.width / 2),
-                  .radius = 0,
-                  .first = beams.first,
-                  .last = beams.last,
-                  .ranges = ranges.data()});
+  cast_body({at.x, at.y, sensor.yaw - box.pose.yaw}, box.length / 2, box.width / 2, 0,
+            window(sensor, {box.pose.x, box.pose.y}, radius), ranges);
 }
 
 void Lidar::cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ranges) const noexcept {
-  const Window beams = window(sensor, disc.middle, disc.radius);
+  cast_body({sensor.x - disc.middle.x, sensor.y - disc.middle.y, sensor.yaw}, 0, 0, disc.radius,
+            window(sensor, disc.middle, disc.radius), ranges);
+}
+
+/// Shortens ranges to a body, seen from a sensor in the frame of the body.
+void Lidar::cast_body(const maps::Pose& sensor, double half_length, double half_width, double radius,
+                      Window beams, std::span<float> ranges) const noexcept {
   if (beams.first > beams.last) return;
-  kernels_->cast({.x = static_cast<float>(sensor.x - disc.middle.x),
-                  .y = static_cast<float>(sensor.y - disc.middle.y),
-                  .cosine = static_cast<float>(std::cos(sensor.yaw)),
-                  .sine = static_cast<float>(std::sin(sensor.yaw)),
-                  .cosines = cosines_.data(),
-                  .sines = sines_.data(),
-                  .half_length = 0,
-                  .half_width = 0,
-                  .radius = static_cast<float>(disc.radius),
-                  .first = beams.first,
-                  .last = beams.last,
-                  .ranges = ranges.data()});
+  detail::scan_kernels().cast({.x = static_cast<float>(sensor.x),
+                               .y = static_cast<float>(sensor.y),
+                               .cosine = static_cast<float>(std::cos(sensor.yaw)),
+                               .sine = static_cast<float>(std::sin(sensor.yaw)),
+                               .cosines = cosines_.data(),
+                               .sines = sines_.data(),
+                               .half_length = static_cast<float>(half_length),
+                               .half_width = static_cast<float>(half_width),
+                               .radius = static_cast<float>(radius),
+                               .first = beams.first,
+                               .last = beams.last,
+                               .ranges = ranges.data()});
 }
 
 }  // namespace slalom::sim

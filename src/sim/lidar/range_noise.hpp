@@ -1,11 +1,10 @@
 #pragma once
 
 #include "sim/lidar/scan.hpp"
-#include "slalom/core/dispatch.hpp"
 #include "slalom/core/math.hpp"
 
-/// Noise of a scan, one beam per lane. Products are never fused with sums, so that every instruction set
-/// gives the same bits.
+/// Noise of a scan, one beam per lane. No product is fused with a sum: all instruction sets give the same
+/// bits.
 namespace slalom::sim::detail {
 
 /// A hash of 32 bits; `U` is a vector of unsigned integers.
@@ -70,8 +69,7 @@ struct AddRangeNoise {
     const I lost_below(static_cast<int>(task.lost_below ^ sign));
     U lane{};
     for (int i = 0; i < F::lanes; ++i) lane[i] = static_cast<std::uint32_t>(i);
-    // One draw of two normal values serves a beam and the one 16 further on, so that packs of any width
-    // agree.
+    // One draw of two normal values serves a beam and the one 16 further on, for packs of any width.
     for (int first = 0; first < task.count; first += 32)
       for (int part = 0; part < 16; part += F::lanes) {
         const int at = first + part;

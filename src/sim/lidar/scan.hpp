@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+
+#include "slalom/core/dispatch.hpp"
 
 namespace slalom::sim::detail {
 
@@ -55,13 +56,11 @@ struct ScanKernels {
   void (*walls)(const ScanTask&);
   void (*cast)(const CastTask&);
   void (*noise)(const NoiseTask&);
-  const char* name;  ///< name of the instruction set
 };
 
-/// Returns the kernels of simd::active_target(). Throws as that does.
+/// Returns the kernels for an instruction set, which the processor must support.
+ScanKernels scan_kernels(simd::Target target);
+/// Returns the kernels for simd::active_target(). Throws as that does.
 const ScanKernels& scan_kernels();
-
-/// All that this processor runs, the widest first.
-std::span<const ScanKernels> all_scan_kernels();
 
 }  // namespace slalom::sim::detail

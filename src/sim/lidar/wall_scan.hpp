@@ -3,11 +3,10 @@
 #include <utility>
 
 #include "sim/lidar/scan.hpp"
-#include "slalom/core/dispatch.hpp"
 #include "slalom/core/math.hpp"
 
-/// Distances to walls, one beam per lane. Products are never fused with sums, so that every instruction set
-/// gives the same bits.
+/// Distances to walls, one beam per lane. No product is fused with a sum: all instruction sets give the same
+/// bits.
 namespace slalom::sim::detail {
 
 /// A pack of rays on its way through the grid.
@@ -52,8 +51,7 @@ SLALOM_INLINE_CALLS bool step_cones(const ScanTask& task, Rays<F>& rays) {
   return any(goes_on);
 }
 
-/// Fills `reach` for all cones, four packs at a time so that the look-ups of one hide behind the arithmetic
-/// of the others.
+/// Fills `reach` for all cones, four packs at a time so that look-ups hide behind arithmetic.
 template <class F>
 SLALOM_INLINE_CALLS void walk_cones(const ScanTask& task, int begin, int count, float* reach) {
   constexpr int at_once = 4;
@@ -118,8 +116,7 @@ SLALOM_INLINE void arrive(const ScanTask& task, const Rays<F>& rays,
 }
 
 /// Walks all beams of a block of cones. As many packs as `k` has entries are on their way at once, so that
-/// look-ups hide behind arithmetic; one that has arrived makes room for the next, so that none waits for the
-/// slowest.
+/// look-ups hide behind arithmetic; one that has arrived makes room for the next.
 template <class F, std::size_t... k>
 SLALOM_INLINE_CALLS void walk_beams(const ScanTask& task, int begin, int end, const float* reach,
                                     std::index_sequence<k...>) {

@@ -9,7 +9,6 @@
 #include "slalom/core/options.hpp"
 
 namespace slalom::sim {
-
 namespace {
 
 using maps::Point;

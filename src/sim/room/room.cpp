@@ -9,7 +9,6 @@
 #include "slalom/maps/laser_scan.hpp"
 
 namespace slalom::sim {
-
 namespace {
 
 /// The cells that cover a length. One that is a multiple of the resolution but for rounding takes no more.
@@ -36,8 +35,7 @@ maps::OccupancyGrid map_of(const Room& room, double resolution) {
   grid.width = cells_of(room.length, resolution) + 2;
   grid.height = cells_of(room.width, resolution) + 2;
   grid.origin = {-resolution, -resolution, 0};
-  grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
-                    maps::Occupancy::free);
+  grid.cells.assign(static_cast<std::size_t>(grid.width) * grid.height, maps::Occupancy::free);
   for (int row = 0; row < grid.height; ++row)
     for (int column = 0; column < grid.width; ++column) {
       const bool rim = row == 0 || column == 0 || row == grid.height - 1 || column == grid.width - 1;
@@ -57,10 +55,8 @@ bool collides(const Room& room, const Box& body) noexcept {
   for (const maps::Point& corner : corners(body))
     if (!(corner.x >= 0 && corner.x <= room.length && corner.y >= 0 && corner.y <= room.width)) return true;
   const auto hits = [&](const auto& other) { return signed_gap(body, other) <= 0; };
-  return std::any_of(room.walls.begin(), room.walls.end(), hits) ||
-         std::any_of(room.obstacles.begin(), room.obstacles.end(), hits) ||
-         std::any_of(room.people.begin(), room.people.end(), hits) ||
-         std::any_of(room.posts.begin(), room.posts.end(), hits);
+  const auto any_hits = [&](const auto& bodies) { return std::any_of(bodies.begin(), bodies.end(), hits); };
+  return any_hits(room.walls) || any_hits(room.obstacles) || any_hits(room.people) || any_hits(room.posts);
 }
 
 void scan(const Room& room, const maps::Pose& scanner, double max_range, std::span<double> ranges) noexcept {
@@ -70,11 +66,13 @@ void scan(const Room& room, const maps::Pose& scanner, double max_range, std::sp
     const double cosine = std::cos(angle), sine = std::sin(angle);
     double range =
         std::min({max_range, way_out(from.x, cosine, room.length), way_out(from.y, sine, room.width)});
-    for (const Box& wall : room.walls) range = std::min(range, ray_distance(from, cosine, sine, wall));
-    for (const Box& obstacle : room.obstacles)
-      range = std::min(range, ray_distance(from, cosine, sine, obstacle));
-    for (const Disc& person : room.people) range = std::min(range, ray_distance(from, cosine, sine, person));
-    for (const Disc& post : room.posts) range = std::min(range, ray_distance(from, cosine, sine, post));
+    const auto shorten = [&](const auto& bodies) {
+      for (const auto& body : bodies) range = std::min(range, ray_distance(from, cosine, sine, body));
+    };
+    shorten(room.walls);
+    shorten(room.obstacles);
+    shorten(room.people);
+    shorten(room.posts);
     ranges[i] = range;
   }
 }

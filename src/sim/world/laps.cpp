@@ -9,7 +9,7 @@ namespace slalom::sim {
 
 LapPath::LapPath(std::vector<maps::Point> points) : points_(std::move(points)) {
   using slalom::detail::check;
-  check("lap path", {"points", "", "", 3}, static_cast<double>(points_.size()));
+  check("lap path", {"points", "", "", 3}, points_.size());
   double arc = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     check("lap path", {"x", "m", "", -1e9, 1e9}, points_[i].x);
@@ -44,17 +44,13 @@ LapPath::Place LapPath::project(const maps::Point& p) const noexcept {
 LapPath::Place LapPath::project_near(const maps::Point& p, std::size_t near, double reach) const noexcept {
   const std::size_t count = points_.size();
   Place best = place(p, near);
-  double way = 0;
-  for (std::size_t k = 1, i = near; k < count && way < reach; ++k) {
-    i = i + 1 == count ? 0 : i + 1;
-    if (const Place here = place(p, i); here.distance < best.distance) best = here;
-    way += start_[i + 1] - start_[i];
-  }
-  way = 0;
-  for (std::size_t k = 1, i = near; k < count && way < reach; ++k) {
-    i = i == 0 ? count - 1 : i - 1;
-    if (const Place here = place(p, i); here.distance < best.distance) best = here;
-    way += start_[i + 1] - start_[i];
+  for (const std::size_t onwards : {std::size_t{1}, count - 1}) {
+    double way = 0;
+    for (std::size_t k = 1, i = near; k < count && way < reach; ++k) {
+      i = (i + onwards) % count;
+      if (const Place here = place(p, i); here.distance < best.distance) best = here;
+      way += start_[i + 1] - start_[i];
+    }
   }
   return best;
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "slalom/core/options.hpp"
-#include "slalom/sim/numpy_random.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/shapes.hpp"
 
 namespace slalom::sim {

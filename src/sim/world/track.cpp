@@ -34,8 +34,7 @@ void Track::make_clearance() {
   grown.width = width;
   grown.height = height;
   grown.resolution = 1;
-  grown.cells.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-                     maps::Occupancy::free);
+  grown.cells.assign(static_cast<std::size_t>(width) * height, maps::Occupancy::free);
   const auto outside = [&](int c, int r) { return c < 0 || r < 0 || c >= grid_.width || r >= grid_.height; };
   const auto stops = [&](int c, int r) {
     return outside(c, r) || grid_.at(c, r) == maps::Occupancy::occupied;
@@ -52,8 +51,7 @@ void Track::make_clearance() {
   clearance_.resize(field.distance.size() + 1);
   for (int r = -1; r <= grid_.height; ++r)
     for (int c = -1; c <= grid_.width; ++c) {
-      const auto i =
-          static_cast<std::size_t>(r + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c + 1);
+      const auto i = static_cast<std::size_t>(r + 1) * width + c + 1;
       const double cells = std::min(field.distance[i], 500.0);
       clearance_[i] = saturate_cast<std::int16_t>(cells * clearance_scale);
       if (outside(c, r) && !outside_is_wall_)
@@ -63,21 +61,15 @@ void Track::make_clearance() {
     }
 }
 
-maps::Point Track::to_cells(const maps::Point& point) const noexcept {
-  const double dx = point.x - grid_.origin.x, dy = point.y - grid_.origin.y;
-  return {(cosine_ * dx + sine_ * dy) / grid_.resolution, (cosine_ * dy - sine_ * dx) / grid_.resolution};
-}
-
 bool Track::in_wall(const maps::Point& point) const noexcept {
   const maps::Point cell = to_cells(point);
-  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height)) return outside_is_wall_;
+  if (!contains(cell)) return outside_is_wall_;
   return clearance_at(saturate_cast<int>(cell.x), saturate_cast<int>(cell.y)) == wall;
 }
 
 double Track::distance_to_wall(const maps::Point& point) const noexcept {
   const maps::Point cell = to_cells(point);
-  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height))
-    return outside_is_wall_ ? 0 : std::numeric_limits<double>::infinity();
+  if (!contains(cell)) return outside_is_wall_ ? 0 : std::numeric_limits<double>::infinity();
   double nearest = distance_.at(saturate_cast<int>(cell.x), saturate_cast<int>(cell.y));
   if (outside_is_wall_)
     nearest = std::min(nearest, grid_.resolution * std::min(std::min(cell.x, grid_.width - cell.x),
@@ -88,8 +80,7 @@ double Track::distance_to_wall(const maps::Point& point) const noexcept {
 bool Track::collides_with_wall(const Box& box) const noexcept {
   const maps::Point middle = to_cells({box.pose.x, box.pose.y});
   const double l = box.length / 2 / grid_.resolution, w = box.width / 2 / grid_.resolution;
-  const bool inside = middle.x >= 0 && middle.y >= 0 && middle.x < grid_.width && middle.y < grid_.height;
-  if (inside) {
+  if (contains(middle)) {
     const int free = clearance_at(saturate_cast<int>(middle.x), saturate_cast<int>(middle.y));
     if (free > 0 && static_cast<double>(free) / clearance_scale > std::hypot(l, w)) return false;
   }
@@ -102,8 +93,7 @@ bool Track::collides_with_wall(const Box& box) const noexcept {
   const int right = saturate_cast<int>(std::min(grid_.width - 1.0, std::floor(middle.x + reach_x)));
   const int bottom = saturate_cast<int>(std::max(0.0, std::floor(middle.y - reach_y)));
   const int top = saturate_cast<int>(std::min(grid_.height - 1.0, std::floor(middle.y + reach_y)));
-  // The cells' own axes are settled by the loops' limits; left are the box's axes, along which a cell reaches
-  // `half`.
+  // The cells' own axes are settled by the loops' limits; a cell reaches `half` along the box's axes.
   const double half = (std::abs(c) + std::abs(s)) / 2;
   for (int row = bottom; row <= top; ++row)
     for (int column = left; column <= right; ++column) {

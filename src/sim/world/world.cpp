@@ -10,25 +10,10 @@
 namespace slalom::sim {
 namespace {
 
-maps::Pose pose_of(const CarState& state) {
-  return {state.x, state.y, state.yaw};
-}
-
 void require_plausible(const CarState& state) {
-  maps::check_pose("state", pose_of(state));
-  for (const double value : {state.steer, state.speed, state.yaw_rate, state.slip})
-    if (!std::isfinite(value))
-      throw std::invalid_argument("state: steer, speed, yaw_rate and slip must be finite");
-}
-
-std::shared_ptr<const Track> present(std::shared_ptr<const Track> track) {
-  if (!track) throw std::invalid_argument("track: must not be null");
-  return track;
-}
-
-const WorldOptions& validated(const WorldOptions& options) {
-  options.validate();
-  return options;
+  maps::check_pose("state", state.pose());
+  if (!state.is_finite())
+    throw std::invalid_argument("state: steer, speed, yaw_rate and slip must be finite");
 }
 
 }  // namespace
@@ -53,10 +38,11 @@ void WorldOptions::validate() const {
 }
 
 World::World(const WorldOptions& options, std::shared_ptr<const Track> track)
-    : options_(validated(options)),
-      track_(present(std::move(track))),
+    : options_((options.validate(), options)),
+      track_(std::move(track)),
       lidar_(options.lidar),
       time_to_collision_(options.lidar, options.car) {
+  if (!track_) throw std::invalid_argument("track: must not be null");
   if (options.lidar.rate > 0)
     scan_every_ = std::max<std::int64_t>(1, std::lround(1 / (options.lidar.rate * options.time_step)));
 }
@@ -84,7 +70,7 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
   }
   for (std::size_t i = 0; i < cars_.size(); ++i) check_start(i);
   find_collisions();
-  scan_all();
+  scan_if_due();
 }
 
 /// Puts a driven car at its start, where its laps begin; `heading` (rad) is the yaw of the first car.
@@ -145,7 +131,7 @@ World::Fixed& World::fixed(int body) {
   const auto driven = static_cast<int>(cars_.size());
   if (body < driven || body >= static_cast<int>(bodies()))
     throw std::invalid_argument("body = " + std::to_string(body) + ": must be a parked car, a box or a disc");
-  return fixed_[static_cast<std::size_t>(body - driven)];
+  return fixed_[body - driven];
 }
 
 void World::move_body(int body, const maps::Pose& pose) {
@@ -170,7 +156,7 @@ void World::set_state(std::size_t car, const CarState& state) {
   require_plausible(state);
   cars_.at(car).plant.set_state(state);
   cars_[car].before = state;
-  boxes_[car].pose = pose_of(state);
+  boxes_[car].pose = state.pose();
   if (cars_[car].timer) cars_[car].timer->relocate(*track_->lap_path(), {state.x, state.y});
 }
 
@@ -195,7 +181,7 @@ void World::set_scanning(std::size_t car, bool scans) {
 Observation World::observe(std::size_t index) const noexcept {
   const Car& car = cars_[index];
   const CarState& s = car.plant.state();
-  return {.pose = pose_of(s),
+  return {.pose = s.pose(),
           .sensor = car.sensor,
           .speed = s.speed,
           .steer = s.steer,
@@ -203,7 +189,7 @@ Observation World::observe(std::size_t index) const noexcept {
           .slip = s.slip,
           .time = time_,
           .scan_time = car.scan_time,
-          .scan = {.ranges = std::span(car.ranges).first(static_cast<std::size_t>(options_.lidar.beams)),
+          .scan = {.ranges = std::span(car.ranges).first(options_.lidar.beams),
                    .angle_min = options_.lidar.angle_min(),
                    .angle_increment = options_.lidar.angle_increment(),
                    .range_min = 0,
@@ -215,13 +201,12 @@ Observation World::observe(std::size_t index) const noexcept {
 
 Box World::outline(std::size_t body) const noexcept {
   if (body >= cars_.size()) return fixed_[body - cars_.size()].box;
-  return {pose_of(cars_[body].plant.state()), options_.car.length, options_.car.width};
+  return {cars_[body].plant.state().pose(), options_.car.length, options_.car.width};
 }
 
 std::optional<Disc> World::disc(std::size_t body) const noexcept {
   if (body < cars_.size() || fixed_[body - cars_.size()].disc_radius <= 0) return {};
-  const Fixed& fixed = fixed_[body - cars_.size()];
-  return Disc{{fixed.box.pose.x, fixed.box.pose.y}, fixed.disc_radius};
+  return fixed_[body - cars_.size()].disc();
 }
 
 StepStatus World::step(std::span<const Command> commands) noexcept {
@@ -237,7 +222,7 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
         status = StepStatus::non_finite_command;
       car.plant.step(commands[i]);
     }
-    boxes_[i].pose = pose_of(car.plant.state());
+    boxes_[i].pose = car.plant.state().pose();
   }
   ++steps_;
   // The time is a sum, as in f1tenth_gym, whose lap times are sums.
@@ -250,7 +235,7 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
       for (std::size_t i = 0; i < cars_.size(); ++i) cars_[i].struck = was_struck(i);
     for (std::size_t i = 0; i < cars_.size(); ++i)
       if (cars_[i].wall || !cars_[i].colliding.empty()) respond(i);
-    if (scan_is_due()) scan_all();
+    scan_if_due();
   }
   count_laps();
   return status;
@@ -273,17 +258,13 @@ void World::follow(std::span<const CarState> states) {
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     cars_[i].before = states[i];
     cars_[i].plant.set_state(states[i]);
-    boxes_[i].pose = pose_of(states[i]);
+    boxes_[i].pose = states[i].pose();
   }
   ++steps_;
   time_ += options_.time_step;
   find_collisions();
-  if (scan_is_due()) scan_all();
+  scan_if_due();
   count_laps();
-}
-
-bool World::scan_is_due() const noexcept {
-  return steps_ % scan_every_ == 0;
 }
 
 }  // namespace slalom::sim

@@ -19,9 +19,7 @@ bool far_apart(const Box& a, const Box& b) {
 
 bool World::collides(const Box& car, const Fixed& body) const noexcept {
   if (far_apart(car, body.box)) return false;
-  if (body.disc_radius > 0)
-    return signed_gap(car, Disc{{body.box.pose.x, body.box.pose.y}, body.disc_radius}) <= 0;
-  return signed_gap(car, body.box) <= 0;
+  return (body.disc_radius > 0 ? signed_gap(car, body.disc()) : signed_gap(car, body.box)) <= 0;
 }
 
 void World::find_fixed_partners() noexcept {
@@ -82,7 +80,7 @@ void World::respond(std::size_t index) noexcept {
   if (zeroes) state.yaw = 0;
   if (!zeroes && response != CollisionResponse::stop) slide(index, tried, state);
   car.plant.set_state(state);
-  boxes_[index].pose = {state.x, state.y, state.yaw};
+  boxes_[index].pose = state.pose();
 }
 
 /// Whether other cars drove into this car: it touches only driven cars, and their motion alone makes the
@@ -90,8 +88,7 @@ void World::respond(std::size_t index) noexcept {
 /// before they moved. Call it before any car responds.
 bool World::was_struck(std::size_t index) const noexcept {
   const auto before = [&](std::size_t car) {
-    const CarState& state = cars_[car].before;
-    return Box{{state.x, state.y, state.yaw}, boxes_[car].length, boxes_[car].width};
+    return Box{cars_[car].before.pose(), boxes_[car].length, boxes_[car].width};
   };
   const std::vector<int>& touched = cars_[index].colliding;
   return !cars_[index].wall && std::all_of(touched.begin(), touched.end(), [&](int body) {
@@ -129,6 +126,22 @@ void World::slide(std::size_t car, const CarState& tried, CarState& state) const
         state.speed = c * tried.speed;
         return;
       }
+}
+
+void CollisionLog::update(const World& world, std::size_t car) {
+  const Observation seen = world.observe(car);
+  if (!seen.collides()) return;
+  wall_ = wall_ || seen.wall;
+  for (const int body : seen.colliding) {
+    const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+    if (at == bodies_.end() || *at != body) bodies_.insert(at, body);
+  }
+  const auto flags = world.flags().subspan(world.cars());
+  const auto same = [&](const std::vector<std::uint8_t>& pattern) {
+    return std::equal(pattern.begin(), pattern.end(), flags.begin(), flags.end());
+  };
+  if (std::none_of(patterns_.begin(), patterns_.end(), same))
+    patterns_.emplace_back(flags.begin(), flags.end());
 }
 
 }  // namespace slalom::sim

@@ -5,8 +5,7 @@
 namespace slalom::sim {
 
 void World::scan_walls(Car& car) noexcept {
-  const CarState& s = car.plant.state();
-  car.sensor = lidar_.sensor_pose({s.x, s.y, s.yaw});
+  car.sensor = lidar_.sensor_pose(car.plant.state().pose());
   car.scan_time = time_;
   if (options_.gym)
     lidar_.gym_scan(*track_, car.sensor, car.gym_ranges);
@@ -26,7 +25,7 @@ void World::cast_bodies(std::size_t index) noexcept {
     if (i != index && !cars_[i].away) cast(boxes_[i]);
   for (const Fixed& body : fixed_) {
     if (body.disc_radius > 0)
-      cast(Disc{{body.box.pose.x, body.box.pose.y}, body.disc_radius});
+      cast(body.disc());
     else
       cast(body.box);
   }
@@ -46,7 +45,8 @@ void World::publish(Car& car) noexcept {
                  [](double range) { return static_cast<float>(range); });
 }
 
-void World::scan_all() noexcept {
+void World::scan_if_due() noexcept {
+  if (steps_ % scan_every_ != 0) return;
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     if (!cars_[i].scans || cars_[i].away) continue;
     scan_walls(cars_[i]);
@@ -74,8 +74,7 @@ void World::gym_scan_and_collisions() noexcept {
     const Box moved = boxes_[i];
     respond(i);
     boxes_[i] = moved;
-    const CarState& s = cars_[i].plant.state();
-    cars_[i].sensor = lidar_.sensor_pose({s.x, s.y, s.yaw});
+    cars_[i].sensor = lidar_.sensor_pose(cars_[i].plant.state().pose());
   };
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     Car& car = cars_[i];

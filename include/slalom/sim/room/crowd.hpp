@@ -7,8 +7,7 @@
 
 namespace slalom::sim {
 
-/// Somebody who walks through a room: a disc that goes from point to point and stops within 0.1 m of the last
-/// one.
+/// Somebody who walks through a room: a disc that goes from point to point and stops 0.1 m before the last.
 struct Walker {
   std::vector<maps::Point> way;  ///< m; at least one point, the first is the start
   double speed = 1;              ///< m/s, desired speed
@@ -48,8 +47,7 @@ class Crowd {
 
   /// The bodies, in the order of the walkers.
   std::span<const Disc> bodies() const noexcept { return bodies_; }
-  /// Their velocities, m/s.
-  std::span<const maps::Point> velocities() const noexcept { return velocities_; }
+  std::span<const maps::Point> velocities() const noexcept { return velocities_; }  ///< their velocities, m/s
 
  private:
   maps::Point force_on(std::size_t i, const Box& robot, const maps::Point& robot_velocity) const noexcept;

@@ -1,5 +1,6 @@
-#include "slalom/sim/numpy_random.hpp"
+#include "slalom/sim/gym.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
@@ -48,10 +49,10 @@ struct Ziggurat {
     height[layers - 1] = density(tail);
     for (int i = layers - 2; i >= 1; --i) {
       const double edge = std::sqrt(-2 * std::log(area / right + density(right)));
-      inside[static_cast<std::size_t>(i) + 1] = saturate_cast<std::uint64_t>(edge / right * scale);
+      inside[i + 1] = saturate_cast<std::uint64_t>(edge / right * scale);
       right = edge;
-      height[static_cast<std::size_t>(i)] = density(right);
-      width[static_cast<std::size_t>(i)] = right / scale;
+      height[i] = density(right);
+      width[i] = right / scale;
     }
   }
   static double density(double x) { return std::exp(-0.5 * x * x); }
@@ -136,7 +137,7 @@ double NumpyRandom::normal() noexcept {
     drawn >>= 8;
     const bool negative = drawn & 1;
     const std::uint64_t along = (drawn >> 1) & 0x000fffffffffffffull;
-    const double x = static_cast<double>(along) * table.width[layer] * (negative ? -1 : 1);
+    const double x = along * table.width[layer] * (negative ? -1 : 1);
     if (along < table.inside[layer]) return x;
     if (layer == 0) {
       while (true) {
@@ -152,6 +153,28 @@ double NumpyRandom::normal() noexcept {
         std::exp(-0.5 * x * x))
       return x;
   }
+}
+
+TimeToCollision::TimeToCollision(const LidarOptions& lidar, const CarParameters& car) {
+  constexpr double quarter = 1.5707963267948966;
+  const double side = car.width / 2, front = (car.front_length + car.rear_length) / 2;
+  for (int i = 0; i < lidar.beams; ++i) {
+    const double angle = lidar.angle_min() + i * lidar.angle_increment(), turn = std::abs(angle);
+    cosines_.push_back(std::cos(angle));
+    sides_.push_back(turn < quarter
+                         ? std::min(side / std::sin(turn), front / std::cos(turn))
+                         : std::min(side / std::cos(turn - quarter), front / std::sin(turn - quarter)));
+  }
+}
+
+int TimeToCollision::first_hit(std::span<const double> ranges, double speed) const noexcept {
+  constexpr double soon = 0.005;  // s
+  if (speed == 0) return -1;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const double time = (ranges[i] - sides_[i]) / (speed * cosines_[i]);
+    if (time < soon && time >= 0) return static_cast<int>(i);
+  }
+  return -1;
 }
 
 }  // namespace slalom::sim
