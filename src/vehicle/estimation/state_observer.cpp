@@ -10,7 +10,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-enum Index { x, y, yaw, speed, yaw_rate, lateral, bias, wheel_error };
+enum Index { x, y, yaw, speed, yaw_rate, lateral, bias };
 
 // Standard deviations of measurements: a speed, and the means over a control period of gyro and
 // accelerometers (with their bias).
@@ -23,11 +23,13 @@ constexpr double reset_distance = 0.5;  // m or rad; a pose further from the pre
 constexpr double slow = 0.5;            // m/s, below it tyres do not slip
 constexpr double max_slip = 1.2;        // rad
 constexpr double max_variance = 1e6;    // m^2 and rad^2, of a pose
-constexpr double bias_spread = 0.02, bias_drift = 1e-4;    // rad/s, at the start and in a period
-constexpr double wheel_spread = 0.03, wheel_drift = 1e-4;  // shares, at the start and in a period
-constexpr double wheel_slip = 0.01;  // s^2/m, share by which wheels slip for each m/s^2 along the car
-constexpr double max_wheel_error = 0.2;
-constexpr double max_bias = 0.5;  // rad/s, largest bias of a working gyro; more comes from a wrong reading
+constexpr double bias_spread = 0.02, bias_drift = 1e-4;     // rad/s, at the start and in a period
+constexpr double wheel_spread = 0.03, wheel_drift = 0.001;  // shares, at the start and in a stretch
+constexpr double stretch = 2;                               // m, over which wheels and poses are compared
+constexpr double largest_wheel_error = 0.2;
+constexpr double steady = 1;         // m/s^2, up to which the wheels hardly slip
+constexpr double wheel_slip = 0.01;  // s^2/m, share by which they slip for each m/s^2
+constexpr double max_bias = 0.5;     // rad/s, largest bias of a working gyro; more comes from a wrong reading
 
 /// The product of two matrices. Its sums have a fixed order on every machine.
 template <class Matrix>
@@ -76,6 +78,8 @@ void StateObserver::reset() noexcept {
   now_ = {};
   known_ = false;
   sent_since_ = 0;
+  wheel_error_ = 0;
+  wheel_variance_ = square(wheel_spread);
 }
 
 void StateObserver::send(const Command& command) noexcept {
@@ -111,23 +115,20 @@ StateObserver::Vector StateObserver::moved(const DynamicVehicleModel& model, con
                    slip_from(from[lateral], from[speed])};
   move(model, car, -period_, 0);
   steer = car.steer;
-  return Vector{car.pose.x, car.pose.y,       car.pose.yaw,
-                car.speed,  car.yaw_rate,     car.speed * std::sin(car.slip),
-                from[bias], from[wheel_error]};
+  return Vector{car.pose.x, car.pose.y, car.pose.yaw, car.speed, car.yaw_rate, car.speed * std::sin(car.slip),
+                from[bias]};
 }
 
 /// Restarts the filter, with the state of a car whose tyres do not slip.
 void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput& input) noexcept {
   const VehicleTraits traits = model.traits();
   const double slope = std::tan(now_.steer) / traits.wheelbase;
-  const double gyro = known_ ? state_[bias] : 0, wheels = known_ ? state_[wheel_error] : 0;
-  const double driven = input.speed / (1 + wheels);
-  now_ = {input.pose, driven, now_.steer, driven * slope, std::atan(traits.rear_length * slope)};
+  const double gyro = known_ ? state_[bias] : 0;
+  now_ = {input.pose, input.speed, now_.steer, input.speed * slope, std::atan(traits.rear_length * slope)};
   state_ = Vector{now_.pose.x, now_.pose.y,   now_.pose.yaw,
                   now_.speed,  now_.yaw_rate, now_.speed * std::sin(now_.slip),
-                  gyro,        wheels};
+                  gyro};
   const double bias_variance = known_ ? covariance_(bias, bias) : square(bias_spread);
-  const double wheel_variance = known_ ? covariance_(wheel_error, wheel_error) : square(wheel_spread);
   covariance_.setZero();
   const PoseCovariance pose = with_noise(input.covariance, position_noise_, heading_noise_);
   for (std::size_t i = 0; i < pose.size(); ++i)
@@ -137,7 +138,6 @@ void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput&
   covariance_(yaw_rate, yaw_rate) = square(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
   covariance_(lateral, lateral) = square(0.05 * std::abs(input.speed) + 0.01);
   covariance_(bias, bias) = bias_variance;
-  covariance_(wheel_error, wheel_error) = wheel_variance;
 }
 
 /// Predicts state and covariance one period ahead: F P F' + Q.
@@ -152,8 +152,7 @@ void StateObserver::predict(const DynamicVehicleModel& model, const std::optiona
                square(acceleration_noise * dt),
                square(yaw_acceleration_noise * dt),
                square(sideways_noise * dt),
-               square(bias_drift),
-               square(wheel_drift)};
+               square(bias_drift)};
   if (imu) use_accelerometers(*imu, before, slope, noise);
   covariance_ = product<Matrix>(product<Matrix>(slope, covariance_), slope.transpose());
   covariance_.diagonal() += noise;
@@ -228,36 +227,65 @@ void StateObserver::correct_pose(const ObserverInput& input) noexcept {
   }
 }
 
-/// Takes the measured speed (m/s) of a car that accelerates (m/s^2): wheels slip along the way, too.
-void StateObserver::correct_speed(double measured, double acceleration) noexcept {
-  const double share = 1 + state_[wheel_error];
-  Vector row = share * Vector::Unit(speed);
-  row[wheel_error] = state_[speed];
-  correct(row, measured - share * state_[speed],
-          square(speed_noise) + square(wheel_slip * acceleration * state_[speed]));
-  state_[wheel_error] = std::clamp(state_[wheel_error], -max_wheel_error, max_wheel_error);
+/// Compares the way that the wheels measure with that between the poses, at the end of each stretch of steady
+/// driving. Neither the model nor the commands take part, so their errors do not count as those of the
+/// wheels.
+void StateObserver::learn_wheels(const ObserverInput& input) noexcept {
+  const double heading = last_.pose.yaw + 0.5 * maps::wrap_angle(input.pose.yaw - last_.pose.yaw);
+  const double c = std::cos(heading), s = std::sin(heading);
+  poses_way_ += c * (input.pose.x - last_.pose.x) + s * (input.pose.y - last_.pose.y);
+  wheels_way_ += 0.5 * (last_.speed + input.speed) * period_;
+  stretch_time_ += period_;
+  last_ = input;
+  if (wheels_way_ < stretch) return;
+  const auto variance_along = [&](PoseCovariance pose) {
+    pose = with_noise(pose, position_noise_, heading_noise_);
+    return c * c * pose[0][0] + 2 * c * s * pose[0][1] + s * s * pose[1][1];
+  };
+  const double variance =
+      (variance_along(stretch_begin_.covariance) + variance_along(input.covariance)) / square(wheels_way_);
+  const double error = wheels_way_ / poses_way_ - 1;
+  wheel_variance_ += square(wheel_drift);
+  if (std::abs(input.speed - stretch_begin_.speed) < steady * stretch_time_ &&
+      std::abs(error) < largest_wheel_error) {
+    const double share = wheel_variance_ / (wheel_variance_ + variance);
+    wheel_error_ += share * (error - wheel_error_);
+    wheel_variance_ *= 1 - share;
+  }
+  begin_stretch(input);
 }
 
-void StateObserver::update(const DynamicVehicleModel& model, const ObserverInput& input,
+void StateObserver::begin_stretch(const ObserverInput& input) noexcept {
+  stretch_begin_ = last_ = input;
+  poses_way_ = wheels_way_ = stretch_time_ = 0;
+}
+
+void StateObserver::update(const DynamicVehicleModel& model, const ObserverInput& measured,
                            double friction) noexcept {
   friction_ = friction;
+  ObserverInput input = measured;
+  input.speed /= 1 + wheel_error_;
   const bool missed = sent_since_ > 1;
   sent_since_ = 0;
   if (!known_ || missed || std::abs(input.speed) < slow) {
     if (known_) move(model, now_, -period_, 0);
     begin(model, input);
+    begin_stretch(measured);
     known_ = true;
     return;
   }
   const double before = state_[speed];
   predict(model, input.imu);
-  const double acceleration = (state_[speed] - before) / period_;
+  const double slip = wheel_slip * (state_[speed] - before) / period_ * state_[speed];
   const double turned = maps::wrap_angle(input.pose.yaw - state_[yaw]);
   if (!(std::hypot(input.pose.x - state_[x], input.pose.y - state_[y]) < reset_distance &&
-        std::abs(turned) < reset_distance))
+        std::abs(turned) < reset_distance)) {
+    begin_stretch(measured);
     return begin(model, input);
+  }
   correct_pose(input);
-  correct_speed(input.speed, acceleration);
+  correct(Vector::Unit(speed), input.speed - state_[speed], square(speed_noise) + square(slip));
+  learn_wheels(measured);
   if (input.imu)
     correct(Vector::Unit(yaw_rate) + Vector::Unit(bias),
             input.imu->yaw_rate - state_[yaw_rate] - state_[bias], square(gyro_noise));

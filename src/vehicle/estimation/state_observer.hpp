@@ -19,11 +19,11 @@ struct ObserverInput {
 };
 
 /// Estimates the state of a car whose tyres slip, from pose, speed and, if there is one, an inertial
-/// measurement unit. It is an extended Kalman filter over pose, speed, yaw rate, sideways velocity, the
-/// gyro's bias, and the share by which the assumed wheels are larger than the real ones (S. Thrun, W.
-/// Burgard, D. Fox, "Probabilistic Robotics" (2005), Table 3.3). The vehicle model and the commands sent
-/// predict the state, and accelerometers share in the prediction of speed and sideways velocity by the
-/// inverse of their variances. Derivatives are differences.
+/// measurement unit. It is an extended Kalman filter over pose, speed, yaw rate, sideways velocity and the
+/// gyro's bias (S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), Table 3.3). The vehicle model
+/// and the commands sent predict the state, and accelerometers share in the prediction of speed and sideways
+/// velocity by the inverse of their variances. Derivatives are differences. Measured speeds are corrected by
+/// the error of the wheels' size, which the way between poses shows.
 ///
 /// Commands are sent once per control period; a speed takes effect after `latency`, a steering angle
 /// `dead_time` later. Below 0.5 m/s, after a missed period and after a jump of the pose by more than 0.5 m or
@@ -37,7 +37,7 @@ class StateObserver {
   void reset() noexcept;
 
   /// Takes the measurements one control period after the last ones. Predictions assume this friction.
-  void update(const DynamicVehicleModel& model, const ObserverInput& input, double friction) noexcept;
+  void update(const DynamicVehicleModel& model, const ObserverInput& measured, double friction) noexcept;
 
   /// Records the command that is sent now. The next updates use it.
   void send(const Command& command) noexcept;
@@ -54,8 +54,7 @@ class StateObserver {
   double speed_ahead(const DynamicVehicleModel& model) const noexcept;
 
  private:
-  /// x, y, yaw, speed, yaw rate, sideways velocity, bias of the gyro, error of the wheels' size
-  static constexpr int size = 8;
+  static constexpr int size = 7;  ///< x, y, yaw, speed, yaw rate, sideways velocity, bias of the gyro
   using Vector = Eigen::Matrix<double, size, 1>;
   using Matrix = Eigen::Matrix<double, size, size>;
 
@@ -65,7 +64,8 @@ class StateObserver {
   void use_accelerometers(const ImuReading& imu, const Vector& before, Matrix& slope, Vector& noise) noexcept;
   void correct(const Vector& row, double difference, double variance) noexcept;
   void correct_pose(const ObserverInput& input) noexcept;
-  void correct_speed(double measured, double acceleration) noexcept;
+  void learn_wheels(const ObserverInput& input) noexcept;
+  void begin_stretch(const ObserverInput& input) noexcept;
   void move(const DynamicVehicleModel& model, VehicleStart& car, double begin, double end) const noexcept;
   Vector moved(const DynamicVehicleModel& model, const Vector& from, double& steer) const noexcept;
   const Command& acting(double time, double delay) const noexcept;
@@ -77,7 +77,10 @@ class StateObserver {
   VehicleStart now_;
   Vector state_ = Vector::Zero();
   Matrix covariance_ = Matrix::Zero();
-  int sent_since_ = 0;  ///< commands since the last update
+  double wheel_error_ = 0, wheel_variance_ = 0;  ///< share by which the wheels measure too much speed
+  ObserverInput stretch_begin_, last_;           ///< of the stretch that `learn_wheels` compares
+  double poses_way_ = 0, wheels_way_ = 0, stretch_time_ = 0;  ///< m, m, s of this stretch
+  int sent_since_ = 0;                                        ///< commands since the last update
   bool known_ = false;
 };
 
