@@ -78,8 +78,8 @@ void ObstacleCost::set_map(const GridView<1>& obstacles, const maps::Pose& robot
   }
 }
 
-/// The way (m) that the body can go from a pose in the map frame without a collision; below 0 in a collision.
-double ObstacleCost::room(double x, double y, double yaw) const noexcept {
+double ObstacleCost::room(const maps::Pose& pose) const noexcept {
+  const auto [x, y, yaw] = pose;
   if (!discs_) return in_map_frame(x, y, yaw) < 100 ? 0 : -1;
   const double c = std::cos(yaw), s = std::sin(yaw);
   const double clearance = min_clearance(
@@ -99,7 +99,7 @@ bool ObstacleCost::collides_before(const maps::Pose& from, const maps::Pose& to)
   double at = 0;  // m
   do {
     const double share = way > 0 ? at / way : 0,
-                 left = room(from.x + share * x, from.y + share * y, from.yaw + share * turn);
+                 left = room({from.x + share * x, from.y + share * y, from.yaw + share * turn});
     if (!(left >= 0)) return true;
     at += std::max(left, least);
   } while (at < way);

@@ -13,6 +13,9 @@ namespace {
 /// Deceleration while braking in curves, and acceleration, as shares of the largest deceleration.
 constexpr double braking_share = 0.8, accelerating_share = 0.4;
 
+/// m, by which a body that begins in a collision may go deeper.
+constexpr double deeper = 0.03;
+
 /// m, between a wall and the nearest of many noisy readings of it.
 constexpr double reading_error = 0.02;
 
@@ -79,13 +82,16 @@ bool SequenceChoice::collides(const PredictedCost& cost,
   return body_collides(states) || (cost.collided && others_collide(states));
 }
 
-/// Whether the body collides after the first free state (see VehicleModel::predict) or between two states.
+/// Whether the body collides after the first free state (see VehicleModel::predict) or between two states, or
+/// goes deeper into what it touches before: it would come out on the other side of a wall.
 bool SequenceChoice::body_collides(std::span<const PredictedState> states) const noexcept {
   const auto touches = [&](std::size_t k, std::size_t next) {
     return body_.collides_before(states[k].pose, states[next].pose);
   };
+  const double least_room = std::min(body_.room(states[0].pose), 0.0) - deeper;
   std::size_t k = 0;
-  while (k < states.size() && touches(k, k)) ++k;
+  for (; k < states.size() && touches(k, k); ++k)
+    if (body_.room(states[k].pose) < least_room) return true;
   for (; k + 1 < states.size(); ++k)
     if (touches(k, k + 1)) return true;
   return k == states.size() || touches(k, k);

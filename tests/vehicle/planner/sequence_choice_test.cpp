@@ -184,6 +184,12 @@ TEST_F(PathSpeeds, SeeWhatTheBodyTouchesBetweenTwoPoses) {
   expect_post_is_seen();
 }
 
+TEST_F(PathSpeeds, ACarWithItsNoseAtAWallDoesNotDriveThroughIt) {
+  see_wall({0.5, -1}, {0.5, 1});
+  drive(0);
+  EXPECT_TRUE(begin(sequence(0, 5, 0)).cost.collided);
+}
+
 TEST_F(PlanNearAWall, BrakesBeforeAWallAcrossTheWay) {
   see_wall({2.8, -3}, {2.8, 3});
   const auto solution = held(0.2f, 0);

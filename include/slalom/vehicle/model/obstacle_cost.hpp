@@ -77,8 +77,10 @@ class ObstacleCost {
   /// turns evenly, the shorter way round, but for its end.
   bool collides_before(const maps::Pose& from, const maps::Pose& to) const noexcept;
 
+  /// The way (m) that the body can go from a pose in the map frame without a collision; below 0 in a collision.
+  double room(const maps::Pose& pose) const noexcept;
+
  private:
-  double room(double x, double y, double yaw) const noexcept;
   /// The least clearance of the discs' centres, m.
   template <class T>
   SLALOM_INLINE T min_clearance(const T& x, const T& y, const T& heading_x, const T& heading_y) const {
