@@ -1,6 +1,7 @@
 #include "slalom/core/dispatch.hpp"
 
 #include <cstdlib>
+#include <iterator>
 #include <string>
 
 namespace slalom::simd {
@@ -12,6 +13,7 @@ const char* name(Target target) noexcept {
   constexpr const char* baseline = "generic";
 #endif
   constexpr const char* names[] = {baseline, "sse4", "avx2", "avx512"};
+  static_assert(std::size(names) == static_cast<int>(Target::avx512) + 1);
   return names[static_cast<int>(target)];
 }
 

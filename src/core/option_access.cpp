@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -122,6 +123,7 @@ std::vector<double> numbers_of(std::string_view text) {
 
 const char* type_name(const OptionEntry& entry) {
   constexpr const char* names[] = {"flag", "integer", "integer", "number", "numbers", "choice"};
+  static_assert(std::size(names) == std::variant_size_v<OptionValue>);
   return names[entry.value.index()];
 }
 

@@ -216,7 +216,9 @@ Predictor::Predictor(std::span<const maps::ReferencePoint> course, const Predict
     : implementation_(std::make_unique<Implementation>(options, CourseLine(course))) {}
 Predictor::~Predictor() = default;
 Predictor::Predictor(const Predictor& other)
-    : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
+    : implementation_(std::make_unique<Implementation>(*other.implementation_)) {
+  implementation_->predicted.clear();  // they refer to the poses of `other`
+}
 Predictor& Predictor::operator=(const Predictor& other) {
   return *this = Predictor(other);
 }

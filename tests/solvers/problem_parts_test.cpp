@@ -53,6 +53,11 @@ TEST(InputBounds, TheNarrowerOfProblemAndOptionsApplies) {
   expect_within(Bounded{}, MppiOptions{.input_min = {-0.125}, .input_max = 3}, -0.125, 0.75);
 }
 
+TEST(InputBounds, DisjointBoundsAreRejected) {
+  EXPECT_THROW(Mppi(Bounded{}, {.input_min = 1, .input_max = 2}), std::invalid_argument);
+  EXPECT_THROW(Mppi(Bounded{}, {.input_min = {-1, -1}}), std::invalid_argument);
+}
+
 struct Slow : DoubleIntegrator {
   double input_rate_max = 2;  // a step of 0.1 s: 0.2
 };

@@ -110,6 +110,7 @@ TEST_F(EvalCommand, ReportsInvalidArgumentsBeforeTheFirstLap) {
                  {"--set: 'svg_mppi.samples' must be an option of a method"}, 2);
   expect_refused(course + "--methods mppi --set temperature=2,3 --set mppi.temperature=1 --out x",
                  {"--set", "given twice"}, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "x"));
   expect_refused(course + "--out /proc/nothing/here", {"/proc/nothing/here"});
   write("file", "not a folder");
   expect_refused(course + "--out file", {"file"});

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <iterator>
+
 namespace slalom {
 
 /// Outcome of a solve. Whatever the status, the result holds finite inputs within their bounds.
@@ -18,6 +20,7 @@ enum class Status {
 constexpr const char* name(Status status) noexcept {
   constexpr const char* names[] = {"ok",         "deadline",         "all_collided",
                                    "degenerate", "non_finite_state", "invalid_time"};
+  static_assert(std::size(names) == static_cast<int>(Status::invalid_time) + 1);
   return names[static_cast<int>(status)];
 }
 

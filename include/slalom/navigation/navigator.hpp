@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <iterator>
 #include <span>
 #include <string_view>
 
@@ -81,6 +82,7 @@ constexpr const char* name(NavigationStatus status) noexcept {
   constexpr const char* names[] = {"following",     "detour",   "braking",          "blocked",
                                    "goal_occupied", "stuck",    "commands_ignored", "goal_reached",
                                    "no_path",       "bad_input"};
+  static_assert(std::size(names) == static_cast<int>(NavigationStatus::bad_input) + 1);
   return names[static_cast<int>(status)];
 }
 

@@ -227,9 +227,9 @@ void StateObserver::correct_pose(const ObserverInput& input) noexcept {
   }
 }
 
-/// Compares the way that the wheels measure with that between the poses, at the end of each stretch of steady
-/// driving. Neither the model nor the commands take part, so their errors do not count as those of the
-/// wheels.
+/// Compares the way that the wheels measure with that between the poses, at the end of each stretch whose
+/// speed ends about as it began: then the wheels have slipped as much to either side. Neither the model nor
+/// the commands take part, so their errors do not count as those of the wheels.
 void StateObserver::learn_wheels(const ObserverInput& input) noexcept {
   const double heading = last_.pose.yaw + 0.5 * maps::wrap_angle(input.pose.yaw - last_.pose.yaw);
   const double c = std::cos(heading), s = std::sin(heading);
@@ -238,12 +238,15 @@ void StateObserver::learn_wheels(const ObserverInput& input) noexcept {
   stretch_time_ += period_;
   last_ = input;
   if (wheels_way_ < stretch) return;
-  const auto variance_along = [&](PoseCovariance pose) {
-    pose = with_noise(pose, position_noise_, heading_noise_);
-    return c * c * pose[0][0] + 2 * c * s * pose[0][1] + s * s * pose[1][1];
+  // The lower bound holds for every positive semidefinite matrix. It protects against others.
+  const auto variance_along = [&](const ObserverInput& at) {
+    const PoseCovariance pose = with_noise(at.covariance, position_noise_, heading_noise_);
+    const double along = std::cos(at.pose.yaw), across = std::sin(at.pose.yaw);
+    return std::max(
+        along * along * pose[0][0] + 2 * along * across * pose[0][1] + across * across * pose[1][1],
+        square(position_noise_) + 1e-6);
   };
-  const double variance =
-      (variance_along(stretch_begin_.covariance) + variance_along(input.covariance)) / square(wheels_way_);
+  const double variance = (variance_along(stretch_begin_) + variance_along(input)) / square(wheels_way_);
   const double error = wheels_way_ / poses_way_ - 1;
   wheel_variance_ += square(wheel_drift);
   if (std::abs(input.speed - stretch_begin_.speed) < steady * stretch_time_ &&

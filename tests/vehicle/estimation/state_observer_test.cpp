@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include "slalom/core/random.hpp"
 #include "slalom/sim/imu.hpp"
@@ -169,13 +170,16 @@ TEST(StateObserver, ToleratesAnInvalidCovariance) {
   const PoseCovariance hostile[] = {{{{1, 9, 9}, {9, 1, 9}, {9, 9, 1}}},
                                     {{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}},
                                     {{{none, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                                    {{{2.4e5, -2.4e5 - 0.0018, 0}, {-2.4e5 - 0.0018, 2.4e5, 0}, {0, 0, 0}}},
                                     {{{huge, -huge, huge}, {huge, huge, huge}, {huge, huge, huge}}}};
   for (const PoseCovariance& covariance : hostile) {
     StateObserver observer({}, period, 0, 0.02);
-    for (int i = 0; i < 40; ++i) {
-      observer.update(*model, {{0.1 * i, 0, 0}, 4, covariance}, 1);
+    for (int i = 0; i < 200; ++i) {
+      const double way = 0.1 * i * std::sqrt(0.5);
+      observer.update(*model, {{way, way, 0.25 * std::numbers::pi}, 4, covariance}, 1);
       observer.send({0, 4});
       const VehicleStart& now = observer.now();
+      ASSERT_NEAR(now.speed, 4, 2);
       ASSERT_TRUE(
           std::isfinite(now.pose.x + now.pose.y + now.pose.yaw + now.speed + now.yaw_rate + now.slip));
     }
