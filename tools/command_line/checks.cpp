@@ -66,16 +66,10 @@ void check_output(const std::string& name, const std::string& file) {
 
 void check_files(const std::vector<GivenOption>& options) {
   std::map<std::string, std::string> taken;  // options by the paths of their files
-  const auto take = [&](const std::string& option, const std::string& file) {
-    const std::string path = canonical_path(file);
-    if (path.empty()) return;
-    const auto [other, is_new] = taken.emplace(path, option);
-    if (!is_new) throw CommandLineError(other->second + ", " + option, "both name the file " + file);
-  };
   for (const GivenOption& option : options)
     for (const std::string& value : option.values) {
       const bool input = option.positional || option.name == "--config" || option.name == "--compare";
-      if (input && fs::is_regular_file(value)) take(option.name, value);
+      if (input && fs::is_regular_file(value)) taken.emplace(canonical_path(value), option.name);
     }
   for (const char* name : outputs)
     for (const GivenOption& option : options) {
@@ -83,7 +77,10 @@ void check_files(const std::vector<GivenOption>& options) {
       const std::string& file = option.values.back();
       if (file == "-" && option.name == "--json") continue;
       check_output(option.name, file);
-      take(option.name, file);
+      const std::string path = canonical_path(file);
+      if (path.empty()) continue;
+      const auto [other, is_new] = taken.emplace(path, option.name);
+      if (!is_new) throw CommandLineError(other->second + ", " + option.name, "both name the file " + file);
     }
 }
 

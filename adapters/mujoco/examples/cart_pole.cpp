@@ -38,7 +38,9 @@ int main(int argc, char** argv) {
   const auto stands = [](const mjData& data) {
     return data.time <= 4 || (std::cos(data.qpos[1]) < -0.95 && std::abs(data.qpos[0]) < 1);
   };
-  return drive(slalom::mujoco::Model(argv[1]), SwingUp{}, options, 2, 5, seeds_of(argc, argv, "10"), hang,
-               stands)
+  constexpr int physics_steps = 2;
+  constexpr double duration = 5;  // s
+  return drive(slalom::mujoco::Model(argv[1]), SwingUp{}, options, physics_steps, duration,
+               seeds_of(argc, argv, "10"), hang, stands)
       .report("the pole stands");
 }

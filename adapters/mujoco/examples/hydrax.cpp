@@ -121,7 +121,8 @@ void solve(const std::string& clone, std::uint64_t seeds) {
     cost += Task{}.stage_cost(model.get(), data) / static_cast<double>(seeds);
     return data.time <= 4 || Task{}.good(data);
   };
-  const Summary summary = drive(model, Task{}, options, Task::physics_steps, 5, seeds, begin, is_good);
+  constexpr double duration = 5;  // s
+  const Summary summary = drive(model, Task{}, options, Task::physics_steps, duration, seeds, begin, is_good);
   std::printf("%-16s %-9s %d of %d runs, mean cost %.2f, %.2f of real time\n", Task::folder, Options::method,
               summary.succeeded, summary.runs, cost, summary.simulated / summary.processor_time);
   std::fflush(stdout);

@@ -60,7 +60,9 @@ int main(int argc, char** argv) {
   const auto stands = [](const mjData& data) {
     return data.time <= 2.5 || (height(data) > 0.25 && uprightness(data) > 0.85);
   };
-  return drive(slalom::mujoco::Model(argv[1]), StandUp{}, options, 2, 3, seeds_of(argc, argv, "5"), lay_down,
-               stands)
+  constexpr int physics_steps = 2;
+  constexpr double duration = 3;  // s
+  return drive(slalom::mujoco::Model(argv[1]), StandUp{}, options, physics_steps, duration,
+               seeds_of(argc, argv, "5"), lay_down, stands)
       .report("the quadruped stands");
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "controller.hpp"
 #include "slalom/maps/field.hpp"
@@ -32,11 +33,17 @@ maps::Pose to_pose(const std::vector<double>& origin) {
   return {origin[0], origin[1], origin.size() == 3 ? origin[2] : 0};
 }
 
+int extent(py::ssize_t count, const char* what) {
+  if (count > std::numeric_limits<int>::max())
+    throw py::value_error(std::string(what) + ": must be at most 2^31 - 1");
+  return static_cast<int>(count);
+}
+
 Field make_field(const Numbers& samples, double resolution, const std::vector<double>& origin) {
   if (samples.ndim() != 2)
     throw py::value_error("Field.samples: has " + std::to_string(samples.ndim()) +
                           " dimensions, must have 2: [row, column]");
-  const int height = static_cast<int>(samples.shape(0)), width = static_cast<int>(samples.shape(1));
+  const int height = extent(samples.shape(0), "rows"), width = extent(samples.shape(1), "columns");
   return Field({width, height, resolution, to_pose(origin)},
                std::span(samples.data(), static_cast<std::size_t>(samples.size())));
 }
@@ -109,7 +116,7 @@ OccupancyGrid make_grid(const py::object& given, double resolution, const std::v
     throw py::value_error("OccupancyGrid.cells: has " + std::to_string(values.ndim()) +
                           " dimensions, must have 2: [row, column]");
   OccupancyGrid grid{
-      static_cast<int>(values.shape(1)), static_cast<int>(values.shape(0)), resolution, to_pose(origin), {}};
+      extent(values.shape(1), "columns"), extent(values.shape(0), "rows"), resolution, to_pose(origin), {}};
   grid.cells.reserve(static_cast<std::size_t>(values.size()));
   for (py::ssize_t i = 0; i < values.size(); ++i) {
     const int cell = values.data()[i];

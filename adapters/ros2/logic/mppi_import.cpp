@@ -24,10 +24,23 @@ namespace {
 constexpr const char* mppi = "nav2_mppi_controller::MPPIController";
 
 /// The parameters that mean the same here, under the same name.
-constexpr const char* taken[] = {"time_steps", "model_dt",  "batch_size", "vx_max",
-                                 "vx_min",     "vy_max",    "ax_max",     "ay_max",
-                                 "wz_max",     "az_max",    "vx_std",     "vy_std",
-                                 "wz_std",     "open_loop", "visualize",  "transform_tolerance"};
+constexpr const char* taken[] = {"time_steps",
+                                 "model_dt",
+                                 "batch_size",
+                                 "vx_max",
+                                 "vx_min",
+                                 "vy_max",
+                                 "ax_max",
+                                 "ay_max",
+                                 "wz_max",
+                                 "az_max",
+                                 "vx_std",
+                                 "vy_std",
+                                 "wz_std",
+                                 "open_loop",
+                                 "visualize",
+                                 "transform_tolerance",
+                                 "AckermannConstraints.min_turning_r"};
 
 /// A name in nav2, and the name here.
 struct Name {
@@ -39,8 +52,7 @@ constexpr Name models[] = {{"mppi::DiffDriveMotionModel", "DiffDrive"},
                            {"mppi::OmniMotionModel", "Omni"},
                            {"mppi::AckermannMotionModel", "Ackermann"}};
 
-constexpr Name renamed[] = {{"AckermannConstraints.min_turning_r", "AckermannConstraints.min_turning_r"},
-                            {"GoalAngleCritic.threshold_to_consider", "costs.goal_reach"},
+constexpr Name renamed[] = {{"GoalAngleCritic.threshold_to_consider", "costs.goal_reach"},
                             {"model_delay_vx", "delay_forward"},
                             {"model_delay_vy", "delay_sideways"},
                             {"model_delay_wz", "delay_turn"}};
@@ -99,7 +111,7 @@ const char* other_name(std::span<const Name> table, const std::string& key) {
 /// The fate of a key that is not taken.
 std::string fate_of(const std::string& key) {
   std::vector<std::string> names(std::begin(taken), std::end(taken));
-  names.insert(names.end(), {"AckermannConstraints.min_turning_r", "temperature", "plugin"});
+  names.insert(names.end(), {"temperature", "plugin"});
   for (const Dropped& each : dropped) {
     std::string name = each.key;
     const bool is_section = name.back() == '.';

@@ -75,7 +75,9 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.dead_band_sideways, {"dead_band_sideways", "m/s", "the same for a speed to either side", 0, 1});
   visit(o.dead_band_turn, {"dead_band_turn", "rad/s", "the same for a yaw rate", 0, 1});
   visit(o.min_turning_radius, {"min_turning_radius", "m", "least radius of an Ackermann base", 0.01, 100});
-  visit(o.delay_forward, {"delay_forward", "s", "time until a speed is driven: dead time and lag", 0, 2});
+  visit(o.delay_forward,
+        {"delay_forward", "s",
+         "time until a speed forward is driven: dead time, and the time constant of a lag", 0, 2});
   visit(o.delay_sideways, {"delay_sideways", "s", "the same for a speed to either side", 0, 2});
   visit(o.delay_turn, {"delay_turn", "s", "the same for a yaw rate", 0, 2});
 }

@@ -55,7 +55,9 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.others_margin, {"others_margin", "m", "distance to a moving object that is a collision", 0, 10});
   visit(o.others_reach, {"others_reach", "m", "distance beyond others_margin where nearness costs", 0, 10});
   visit(o.others, {"others", "1/s", "cost at others_margin from an object; falls as the square", 0, 1e6});
-  visit(o.others_probability, {"others_probability", "", "probability at which a state collides", 0, 1});
+  visit(o.others_probability,
+        {"others_probability", "",
+         "probability of a collision with a moving object above which a state collides", 0, 1});
 }
 
 }  // namespace slalom::navigation

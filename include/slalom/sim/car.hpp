@@ -53,7 +53,8 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.steer_max, {"steer_max", "rad", "largest steering angle to the left", 0, 1.5});
   visit(o.steer_rate_max, {"steer_rate_max", "rad/s", "largest rate of steering, either way", least, most});
   visit(o.switch_speed, {"switch_speed", "m/s", "speed above which power limits acceleration", least, most});
-  visit(o.acceleration_max, {"acceleration_max", "m/s^2", "largest one, of motor and brakes", least, most});
+  visit(o.acceleration_max,
+        {"acceleration_max", "m/s^2", "largest acceleration of motor and brakes", least, most});
   visit(o.speed_min, {"speed_min", "m/s", "highest speed in reverse, negative", -1000, 0});
   visit(o.speed_max, {"speed_max", "m/s", "highest speed of a car", least, most});
   visit(o.length, {"length", "m", "length of a car; its middle is the centre of gravity", least, most});

@@ -64,7 +64,7 @@ class Lidar {
   /// values. From outside the map they are 0 if the outside of the track is wall, else range_max.
   void scan(const Track& track, const maps::Pose& sensor, std::span<float> ranges) const noexcept;
 
-  /// Shortens ranges to a body where it is nearer. Looks only at beams that can hit it.
+  /// Shortens ranges (padded_beams() values) to a body where it is nearer. Looks only at beams that may hit.
   void cast(const maps::Pose& sensor, const Box& box, std::span<float> ranges) const noexcept;
   /// Shortens ranges (m) to a disc where it is nearer.
   void cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ranges) const noexcept;

@@ -55,7 +55,8 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.steering_dead_time,
         {"steering_dead_time", "s", "time until a steering command takes effect", 0, 1});
   visit(o.actuation.speed_gain, {"speed_gain", "1/s", "acceleration per error of speed", 1e-9, 1e9});
-  visit(o.actuation.brake_gain, {"brake_gain", "1/s", "the same when braking", 1e-9, 1e9});
+  visit(o.actuation.brake_gain,
+        {"brake_gain", "1/s", "acceleration per error of speed when braking", 1e-9, 1e9});
   visit(o.coast, {"coast", "", "behaviour of a car without a usable command"});
 }
 

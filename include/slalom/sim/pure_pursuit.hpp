@@ -32,7 +32,7 @@ struct PurePursuitOptions {
 /// lost and drives straight ahead at 0.5 m/s.
 class PurePursuit {
  public:
-  /// Throws std::invalid_argument on fewer than 3 points, values that are not finite, and no lookahead.
+  /// Throws std::invalid_argument on fewer than 3 points, values not finite, and a lookahead not above 0.
   PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& options = {});
 
   /// The nearest position on the path.

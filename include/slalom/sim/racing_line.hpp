@@ -37,7 +37,7 @@ class RacingLine {
   };
 
   /// Along a closed path with the speeds to drive, for cars of this size, among bodies that do not move.
-  /// Throws std::invalid_argument on fewer than 3 points, values that are not finite, and no length.
+  /// Throws std::invalid_argument on fewer than 3 points, values not finite, and a path without length.
   RacingLine(std::span<const PathPoint> path, const Track& track, const CarParameters& car,
              std::span<const Box> parked = {});
 

@@ -13,7 +13,7 @@ struct TrackerOptions {
   double max_range = 15;
   double range_deviation = 0.02;
 
-  double wall_distance = 0.06;  ///< besides three range deviations
+  double wall_distance = 0.06;
   double wall_angle = 0.008;
 
   double min_incidence = 0.26;
@@ -47,10 +47,14 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.max_objects, {"max_objects", "", "objects at a time, with those not yet confirmed", 1, 256});
   visit(o.max_range, {"max_range", "m", "farther readings are not used", 0.5, 1000});
   visit(o.range_deviation, {"range_deviation", "m", "standard deviation of a reading", 1e-3, 1, "sigma_r"});
-  visit(o.wall_distance, {"wall_distance", "m", "nearer readings belong to an obstacle of the map", 0, 10});
+  visit(o.wall_distance,
+        {"wall_distance", "m",
+         "readings within this distance plus 3 range deviations of an obstacle of the map belong to it", 0,
+         10});
   visit(o.wall_angle,
         {"wall_angle", "rad", "error of the yaw; times the range, adds to wall_distance", 0, 1});
-  visit(o.min_incidence, {"min_incidence", "rad", "least angle of beam and surface", 0.01, 1.5, "lambda"});
+  visit(o.min_incidence, {"min_incidence", "rad", "least angle of a beam to a surface that is one cluster",
+                          0.01, 1.5, "lambda"});
   visit(o.min_points, {"min_points", "", "readings of a new object", 2, 1000});
   visit(o.length, {"length", "m", "expected length of objects", 0.01, 100});
   visit(o.width, {"width", "m", "expected width of objects", 0.01, 100});

@@ -144,8 +144,10 @@ class RoomRun {
     const double optimal = scenario_.optimal_time;
     if (drive_.success && optimal > 0)
       drive_.metric = optimal / std::clamp(drive_.time, 2 * optimal, 8 * optimal);
-    drive_.update_p50 = percentile(robot().update_times, 0.5);
-    drive_.update_max = percentile(robot().update_times, 1);
+    if (const auto& times = robot().update_times; !times.empty()) {
+      drive_.update_p50 = percentile(times, 0.5);
+      drive_.update_max = percentile(times, 1);
+    }
     return drive_;
   }
 

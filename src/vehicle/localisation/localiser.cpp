@@ -126,7 +126,7 @@ struct Localiser::Implementation {
   bool settled = false;                ///< the place was given, or a search ended with it
   bool lost = false;                   ///< no place is known, and no scan was used since
   double search_until = -1;            ///< s, stamp
-  double place_log_fit = 0;            ///< log fit of the particles' place, averaged as of hypotheses
+  double place_log_fit = 0;            ///< log fit of the particles' place, averaged as for a hypothesis
 };
 
 /// Moves the particles by what the odometry says since the last update.

@@ -50,7 +50,7 @@ class CarsBehind {
   static constexpr double along_own_way = 1;    ///< rad, largest difference of the cars' directions
   static constexpr double furthest = 1e7;       ///< m and rad, largest magnitude of a pose
 
-  /// Whether the other car drives the same way as a car at `own`, its front axle behind that rear axle.
+  /// Whether the other car drives the same way as one at `own`, its front axle behind that one's rear axle.
   bool is_behind(const maps::PredictedObstacle& other, const maps::Pose& own) const noexcept {
     const bool usable = other.hypotheses > 0 && other.hypotheses <= static_cast<int>(most) &&
                         other.interval > 0 && !other.poses.empty() && other.times() <= max_times &&

@@ -163,7 +163,7 @@ int PlannerBase::check_command(const Odometry& odometry, double wheels) noexcept
 
 /// The last step before an output leaves the planner. Checks the command again and sets estimates that are
 /// not finite to 0. If a cost or an input is not finite, the output has no prediction, and a status that
-/// claims a plan becomes `solver_degenerate`. Such a cost becomes the largest double; such inputs go.
+/// claims a plan becomes `solver_degenerate`. Such costs become the largest double, such inputs are left out.
 void PlannerBase::check_output(const Odometry& odometry) noexcept {
   constexpr double most = std::numeric_limits<double>::max();
   PlannerOutput& out = output_;

@@ -174,7 +174,8 @@ void SequenceChoice::stop(bool reversing) noexcept {
   brake(reversing ? max_deceleration_ : -max_deceleration_);
 }
 
-/// Calls `use` with each that exists: `last` (of the sequence sent last), the nominal sequence, the guides.
+/// Calls `use` with `last`, the nominal sequence and each guide, as far as they exist. `last` is the sequence
+/// sent last, as it was or moved to the present; empty, it is left out.
 template <class Use>
 void SequenceChoice::for_each_known(std::span<const float> last, Use&& use) const {
   const std::size_t size = candidate_.size();

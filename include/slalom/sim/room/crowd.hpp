@@ -7,7 +7,7 @@
 
 namespace slalom::sim {
 
-/// Somebody who walks through a room: a disc that goes from point to point and stops 0.1 m before the last.
+/// A walker through a room: a disc that goes from point to point and stops within 0.1 m of the last.
 struct Walker {
   std::vector<maps::Point> way;  ///< m; at least one point, the first is the start
   double speed = 1;              ///< m/s, desired speed

@@ -26,7 +26,7 @@ struct Waypoint {
 /// two formats:
 ///  - a header `opt_x,opt_y,...,ref_v` and comma-separated rows; the columns opt_x, opt_y and ref_v are read;
 ///  - leading lines that begin with `#`, then rows `s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2`;
-///    x, y and vx are read.
+///    x_m, y_m and vx_mps are read.
 /// The yaw is computed from the points, since files differ in the axis from which they measure it.
 /// `opp_ref_path.csv`, if present, has no header; its columns 0 and 1 are the points where obstacles may
 /// stand. `course.yaml`, if present, may give `name`, `description`, `command`, `start` {x, y, yaw},

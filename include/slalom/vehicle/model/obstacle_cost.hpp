@@ -77,7 +77,7 @@ class ObstacleCost {
   /// turns evenly, the shorter way round, but for its end.
   bool collides_before(const maps::Pose& from, const maps::Pose& to) const noexcept;
 
-  /// The way (m) that the body can go from a pose in the map frame without a collision; below 0 in a collision.
+  /// The way (m) that the body can go from a pose in the map frame without a collision; below 0 in one.
   double room(const maps::Pose& pose) const noexcept;
 
  private:
