@@ -57,8 +57,12 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.find_detours,
         {"find_detours", "", "search a way around where the path is blocked; report if none"});
   visit(o.look_ahead, {"look_ahead", "m", "length of path that is checked for obstacles", 0, 100});
-  visit(o.patience, {"patience", "s", "time without a way before the robot stops, as blocked", 0, 60});
-  visit(o.stuck_after, {"stuck_after", "s", "time without progress until it tries another way", 0.1, 3600});
+  visit(o.patience,
+        {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
+  visit(o.stuck_after,
+        {"stuck_after", "s",
+         "time without progress after which the robot tries another way; after five of them it is stuck", 0.1,
+         3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
 }
 

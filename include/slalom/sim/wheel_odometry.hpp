@@ -33,10 +33,12 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.slip_per_acceleration, {"slip_per_acceleration", "s^2/m",
                                   "share by which wheels turn faster per m/s^2 of drive", -0.5, 0.5});
   visit(o.speed_noise, {"speed_noise", "m/s", "standard deviation of each reading of the speed", 0, 10});
-  visit(o.yaw_from_gyro, {"yaw_from_gyro", "", "the yaw is that of a gyro; else of the steering"});
+  visit(o.yaw_from_gyro, {"yaw_from_gyro", "",
+                          "the yaw is that of a gyro; otherwise of the steering, by the kinematic bicycle"});
   visit(o.steer_gain_error, {"steer_gain_error", "",
                              "share by which the assumed steering is larger than the real one", -0.9, 0.9});
-  visit(o.steer_offset, {"steer_offset", "rad", "offset of the assumed steering, to the left", -0.5, 0.5});
+  visit(o.steer_offset, {"steer_offset", "rad",
+                         "angle by which the assumed steering is to the left of the real one", -0.5, 0.5});
   visit(o.gyro_bias, {"gyro_bias", "rad/s", "bias of the yaw rate", -10, 10});
   visit(o.gyro_noise, {"gyro_noise", "rad/s", "standard deviation of each reading of the yaw rate", 0, 10});
 }

@@ -31,12 +31,14 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.braking, {"braking", "m/s^2", "deceleration of an object that brakes", 0.1, 100});
   visit(o.side_step, {"side_step", "m", "lateral distance of an object's sideways move", 0, 100});
   visit(o.reaction, {"reaction", "s", "time constant of ways across the course", 0.01, 10});
-  visit(o.max_offset, {"max_offset", "m", "distance from the course up to which it is used", 0, 1000});
+  visit(o.max_offset, {"max_offset", "m",
+                       "distance from the course beyond which objects are predicted without it", 0, 1000});
   visit(o.acceleration_deviation, {"acceleration_deviation", "m/s^2",
                                    "standard deviation of the acceleration along the motion", 0, 100});
   visit(o.drift_deviation, {"drift_deviation", "m/s", "standard deviation of the sideways drift", 0, 100});
   visit(o.memory, {"memory", "s", "time after which hypotheses are compared with the object", 0.05, 10});
-  visit(o.forgetting, {"forgetting", "", "share of the weights that is forgotten each time", 0, 1});
+  visit(o.forgetting, {"forgetting", "",
+                       "share of the weights that returns, each time, to those of an unknown object", 0, 1});
 }
 
 }  // namespace slalom::tracking

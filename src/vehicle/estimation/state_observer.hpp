@@ -78,7 +78,7 @@ class StateObserver {
   Vector state_ = Vector::Zero();
   Matrix covariance_ = Matrix::Zero();
   double wheel_error_ = 0, wheel_variance_ = 0;  ///< share by which the wheels measure too much speed
-  ObserverInput stretch_begin_, last_;           ///< of the stretch that `learn_wheels` compares
+  ObserverInput stretch_begin_, last_;           ///< ends of the stretch that `learn_wheels` compares
   double poses_way_ = 0, wheels_way_ = 0, stretch_time_ = 0;  ///< m, m, s of this stretch
   int sent_since_ = 0;                                        ///< commands since the last update
   bool known_ = false;
