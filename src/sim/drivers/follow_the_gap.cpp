@@ -11,15 +11,15 @@ namespace {
 using std::numbers::pi;
 
 // The values of f1tenth_benchmarks.
-constexpr int smoothing = 3;          // beams, of the mean over neighbours
-constexpr std::size_t skipped = 135;  // beams at each end of the scan that are not used
-constexpr double range_max = 10;      // m, longer ranges count as this
-constexpr int bubble = 160;           // beams to each side of the nearest return that count as blocked
-constexpr int min_gap = 5;            // beams; a gap must have more
-constexpr int target_width = 80;      // beams, of the mean whose maximum is steered for
-constexpr double steer_max = 0.4;     // rad
-constexpr double slow_above = 0.174;  // rad, of steering
-constexpr double fast = 5, slow = 3;  // m/s
+constexpr int smoothing = 3;           // beams, of the mean over neighbours
+constexpr std::size_t skipped = 135;   // beams at each end of the scan that are not used
+constexpr double range_max = 10;       // m, longer ranges count as this
+constexpr int bubble = 160;            // beams to each side of the nearest return that count as blocked
+constexpr int min_gap = 5;             // beams; a gap must have more
+constexpr int target_width = 80;       // beams, of the mean whose maximum is steered for
+constexpr double largest_steer = 0.4;  // rad
+constexpr double slow_above = 0.174;   // rad, of steering
+constexpr double fast = 5, slow = 3;   // m/s
 
 /// The mean over a window of `width` values; beyond the ends they are 0. As numpy.convolve in the mode `same`
 /// with `width` ones: as many values as the longer of both, the window of an even width begins half of it
@@ -60,7 +60,7 @@ Command FollowTheGap::command(std::span<const double> scan) {
   const auto means = moving_mean(gap, target_width);
   const auto best = static_cast<int>(std::max_element(means.begin(), means.end()) - means.begin()) + begin;
   const double angle = (best - 0.5 * n) * (2 * pi / scan.size());
-  const double steer = std::clamp(0.5 * angle, -steer_max, steer_max);
+  const double steer = std::clamp(0.5 * angle, -largest_steer, largest_steer);
   return {steer, std::abs(steer) > slow_above ? slow : fast};
 }
 
