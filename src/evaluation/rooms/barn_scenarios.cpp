@@ -14,7 +14,7 @@ namespace {
 
 constexpr maps::Point corner{-8, -1};                                // m, of the floor in the world's frame
 constexpr double floor_length = 12, floor_width = 17;                // m
-constexpr maps::Pose start{-2.25, 3, 1.57};                          // m, m, rad, in the world's frame
+constexpr maps::Pose first_pose{-2.25, 3, 1.57};                     // m, m, rad, in the world's frame
 constexpr double way = 10;                                           // m along y to the goal
 constexpr double cell = 0.15;                                        // m, of the paths
 constexpr double first_x = -0.075 - 30 * cell, first_y = 0.075 + 5;  // m, of cell (0, 0)
@@ -57,7 +57,7 @@ double path_length(const std::string& bytes, const std::string& file) {
     throw IoError(file, 0, "must be an array of numpy of 64-bit integers");
   const std::size_t header =
       static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
-  maps::Point before{start.x, start.y};
+  maps::Point before{first_pose.x, first_pose.y};
   double length = 0;
   const auto go = [&](const maps::Point& to) {
     length += std::hypot(to.x - before.x, to.y - before.y);
@@ -68,7 +68,7 @@ double path_length(const std::string& bytes, const std::string& file) {
     std::memcpy(cells, bytes.data() + at, sizeof cells);
     go({first_x + cell * static_cast<double>(cells[0]), first_y + cell * static_cast<double>(cells[1])});
   }
-  go({start.x, start.y + way});
+  go({first_pose.x, first_pose.y + way});
   return length;
 }
 
@@ -86,7 +86,7 @@ std::vector<RoomScenario> barn_scenarios(const std::filesystem::path& folder, in
     made.room.length = floor_length;
     made.room.width = floor_width;
     made.room.posts = posts_of(read_file(world, most_bytes), world.string());
-    made.start = {start.x - corner.x, start.y - corner.y, start.yaw};
+    made.start = {first_pose.x - corner.x, first_pose.y - corner.y, first_pose.yaw};
     made.goal = {made.start.x, made.start.y + way, 0.5 * std::numbers::pi};
     made.base.max_forward = 2;
     made.base.delay_forward = made.base.delay_turn = made.lag = 0.15;
