@@ -80,12 +80,12 @@ int view(const ViewArguments& arguments) {
 /// Serves the page of a problem that is not a car, or of a navigator in a room.
 int view_problem(const ViewArguments& arguments) {
   const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
-  const auto& [problem, room] = std::tie(arguments.problem, arguments.room);
-  view::View view(
-      room.empty()
-          ? problem_subject(problem, arguments.method, arguments.seed)
-          : for_option("--room", [&] { return room_subject(room, arguments.method, arguments.seed); }),
-      {.host = options.host, .port = options.port, .token = options.token});
+  const auto subject = [&] {
+    return arguments.room.empty() ? problem_subject(arguments.problem, arguments.method, arguments.seed)
+                                  : room_subject(arguments.room, arguments.method, arguments.seed);
+  };
+  view::View view(arguments.room.empty() ? subject() : for_option("--room", subject),
+                  {.host = options.host, .port = options.port, .token = options.token});
   const InterruptFlag interrupt;
   print_address(view.address());
   while (!interrupt.raised()) view.turn(std::chrono::milliseconds(50));
