@@ -120,9 +120,11 @@ export class Tab {
     await this.until(isThere, tick + ticks);
   }
 
-  /** Clicks a button that saves a file, and returns the file. */
+  /** Clicks a button that saves a file, and returns the file. The first download sometimes has no event. */
   async saved(id) {
-    const [file] = await Promise.all([this.page.waitForEvent("download"), this.page.click(id)]);
+    const click = () =>
+      Promise.all([this.page.waitForEvent("download", { timeout: 30_000 }), this.page.click(id)]);
+    const [file] = await click().catch(click);
     return file;
   }
   /** The rows and cells of what "Save as CSV" saves. */
