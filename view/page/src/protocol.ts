@@ -160,8 +160,8 @@ const blocks = {
 };
 /** The names of the blocks by their kinds; "-" where there is none. */
 const kinds =
-  "- scalars scan costMap candidates guides nominal plan bodies covariance ghost - others figure polygons - " +
-  "stepCosts inputs effectiveSamples lines grid path past - - - - - - - file";
+  "- scalars scan costMap candidates guides nominal plan bodies covariance ghost - others figure " +
+  "polygons - stepCosts inputs effectiveSamples lines grid path past - - - - - - - file";
 const names = kinds.split(" ") as (keyof typeof blocks)[];
 type Blocks = { [Name in keyof typeof blocks]: ReturnType<(typeof blocks)[Name]> };
 
