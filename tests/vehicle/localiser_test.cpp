@@ -15,7 +15,7 @@ namespace {
 
 using test::Drive;
 using test::error_of;
-using test::Place;
+using test::PreparedCourse;
 using test::wren;
 
 /// A room with a notch, so that no two poses look alike.
@@ -113,11 +113,11 @@ TEST(Localiser, FindsAStandingCarInARotatedMap) {
 TEST(Localiser, SearchesBeforeItIsSureOfAnUnknownStart) {
   int wrong = 0;
   for (const char* name : {"fox", "wren"}) {
-    const Place place(name);
-    Localiser localiser(place.course.map);
+    const PreparedCourse prepared(name);
+    Localiser localiser(prepared.course.map);
     for (const double share : {0.0, 0.3, 0.6}) {
       localiser.start_everywhere();
-      const Drive standing(place, place.at(share), 1);
+      const Drive standing(prepared, prepared.at(share), 1);
       LocaliserInput input = standing.input();
       bool sure = false, sure_elsewhere = false;
       for (int i = 1; i <= 110; ++i) {

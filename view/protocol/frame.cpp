@@ -116,7 +116,7 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   to.put({1e3 * times.update, 1e3 * times.total, 1e3 * facts.deadline});
   const int lap = laps.laps();
   to.put({static_cast<double>(lap), tick.time - laps.lap_start_time()});
-  to.put({laps.progress() / world.track().lap_path()->length() - lap, laps.lateral(), clearance_of(world)});
+  to.put({laps.progress() / world.track().lap_path()->length() - lap, laps.offset(), clearance_of(world)});
   to.put({tick.seen.collides() ? 1.0 : 0.0, static_cast<double>(tick.collisions), tick.cost.total()});
   to.put({facts.prediction_step, static_cast<double>(facts.method)});
   if (estimate.friction > 0) {

@@ -54,8 +54,8 @@ class FreeCells {
   double resolution_;
 };
 
-/// The motion of the car between two updates, in its frame at the first one, and its uncertainty.
-struct Motion {
+/// The displacement of the car between two updates, in its frame at the first one, and its uncertainty.
+struct Displacement {
   maps::Pose step;    ///< m, rad
   double along = 0;   ///< m, standard deviations
   double across = 0;  ///< m
@@ -94,13 +94,13 @@ class Particles {
     make_uniform(options_.max_particles);
   }
 
-  void move(const Motion& motion, RandomKey key) noexcept {
+  void move(const Displacement& moved, RandomKey key) noexcept {
     fill_normal(noise_, 0, padded(count_), key);
-    const float along = static_cast<float>(motion.step.x), across = static_cast<float>(motion.step.y);
-    const float turn = static_cast<float>(motion.step.yaw);
-    const float along_deviation = static_cast<float>(motion.along);
-    const float across_deviation = static_cast<float>(motion.across);
-    const float turn_deviation = static_cast<float>(motion.turn);
+    const float along = static_cast<float>(moved.step.x), across = static_cast<float>(moved.step.y);
+    const float turn = static_cast<float>(moved.step.yaw);
+    const float along_deviation = static_cast<float>(moved.along);
+    const float across_deviation = static_cast<float>(moved.across);
+    const float turn_deviation = static_cast<float>(moved.turn);
     float *x = now_.row(0, 0), *y = now_.row(0, 1), *yaw = now_.row(0, 2);
     const float *a = noise_.row(0, 0), *b = noise_.row(0, 1), *c = noise_.row(0, 2);
     for (int i = 0; i < count_; ++i) {

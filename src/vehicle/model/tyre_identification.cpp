@@ -40,7 +40,7 @@ constexpr std::array<detail::FitParameter, At::count> tyre_parameters{{{0.1, 2.5
                                                                        {2e-3, 1, 1e-4}}};
 
 /// The drive from one sample to the next.
-struct Step {
+struct SampleInterval {
   std::size_t sample = 0;            ///< index of the first of the two
   double begin = 0, end = 0;         ///< s
   double speed = 0, next_speed = 0;  ///< m/s
@@ -50,7 +50,7 @@ struct Step {
 
 /// A stretch that is compared with the poses.
 struct Window {
-  std::size_t begin = 0, end = 0;   ///< steps, `end` the one after the last
+  std::size_t begin = 0, end = 0;   ///< intervals, `end` the one after the last
   double turned = 0;                ///< rad, as measured
   double sideways = 0;              ///< m, as measured, in the frame of the pose at the begin
   double lateral_acceleration = 0;  ///< m/s^2
@@ -73,8 +73,8 @@ double acceleration_at(std::span<const DrivenSample> samples, std::size_t i) {
   return std::clamp(slope, -largest_acceleration, largest_acceleration);
 }
 
-std::vector<Step> steps_of(std::span<const DrivenSample> samples, double min_speed) {
-  std::vector<Step> steps;
+std::vector<SampleInterval> intervals_of(std::span<const DrivenSample> samples, double min_speed) {
+  std::vector<SampleInterval> intervals;
   bool first = true;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const DrivenSample &a = samples[i], &b = samples[i + 1];
@@ -84,24 +84,25 @@ std::vector<Step> steps_of(std::span<const DrivenSample> samples, double min_spe
       first = true;
       continue;
     }
-    steps.push_back({i, a.time, b.time, a.speed, b.speed, acceleration_at(samples, i), first});
+    intervals.push_back({i, a.time, b.time, a.speed, b.speed, acceleration_at(samples, i), first});
     first = false;
   }
-  return steps;
+  return intervals;
 }
 
-std::vector<Window> windows_of(std::span<const DrivenSample> samples, const std::vector<Step>& steps) {
+std::vector<Window> windows_of(std::span<const DrivenSample> samples,
+                               const std::vector<SampleInterval>& intervals) {
   std::vector<Window> windows;
   double segment_begin = 0;
-  for (std::size_t i = 0; i < steps.size();) {
-    if (steps[i].first) segment_begin = steps[i].begin;
+  for (std::size_t i = 0; i < intervals.size();) {
+    if (intervals[i].first) segment_begin = intervals[i].begin;
     std::size_t end = i + 1;
-    while (end < steps.size() && !steps[end].first &&
-           steps[end - 1].end - steps[i].begin < window_length - 1e-9)
+    while (end < intervals.size() && !intervals[end].first &&
+           intervals[end - 1].end - intervals[i].begin < window_length - 1e-9)
       ++end;
-    const double duration = steps[end - 1].end - steps[i].begin;
-    if (duration >= window_length - 1e-9 && steps[i].begin - segment_begin >= settling_time) {
-      const DrivenSample &a = samples[steps[i].sample], &b = samples[steps[end - 1].sample + 1];
+    const double duration = intervals[end - 1].end - intervals[i].begin;
+    if (duration >= window_length - 1e-9 && intervals[i].begin - segment_begin >= settling_time) {
+      const DrivenSample &a = samples[intervals[i].sample], &b = samples[intervals[end - 1].sample + 1];
       const double turned = maps::wrap_angle(b.yaw - a.yaw);
       windows.push_back({i, end, turned, maps::inverse_transform({a.x, a.y, a.yaw}, {b.x, b.y}).y,
                          0.5 * (a.speed + b.speed) * turned / duration});
@@ -119,8 +120,8 @@ class Drive {
       : samples_(samples),
         car_(car),
         own_(own),
-        steps_(steps_of(samples, min_speed)),
-        windows_(windows_of(samples, steps_)) {}
+        intervals_(intervals_of(samples, min_speed)),
+        windows_(windows_of(samples, intervals_)) {}
 
   std::vector<Window>& windows() { return windows_; }
 
@@ -137,19 +138,19 @@ class Drive {
     maps::Pose begin;
     std::size_t acting = 0, next = 0;
     double drag = 0;
-    for (std::size_t i = 0; i < steps_.size() && next < windows_.size(); ++i) {
-      const Step& step = steps_[i];
-      if (step.first) {
-        acting = step.sample;
+    for (std::size_t i = 0; i < intervals_.size() && next < windows_.size(); ++i) {
+      const SampleInterval& interval = intervals_[i];
+      if (interval.first) {
+        acting = interval.sample;
         s = {};
         drag = 0;
         s.steer = p[At::gain] * samples_[acting].steer_command + p[At::offset];
-        s.yaw_rate = step.speed * std::tan(s.steer) / car_.wheelbase();
+        s.yaw_rate = interval.speed * std::tan(s.steer) / car_.wheelbase();
         s.lateral = s.yaw_rate * car_.rear_length;
       }
       const Window& compared = windows_[next];
       if (i == compared.begin) begin = {s.x, s.y, s.yaw};
-      advance(s, step, p, dynamics, acting, drag);
+      advance(s, interval, p, dynamics, acting, drag);
       if (i + 1 < compared.end) continue;
       const double sideways = maps::inverse_transform(begin, {s.x, s.y}).y;
       out.push_back((s.yaw - begin.yaw - compared.turned) / yaw_deviation);
@@ -160,17 +161,17 @@ class Drive {
 
  private:
   /// Moves the car from one sample to the next. `drag` is the acceleration (m/s^2) by tyres that slip.
-  void advance(SingleTrackState<double>& s, const Step& step, std::span<const double> p,
+  void advance(SingleTrackState<double>& s, const SampleInterval& interval, std::span<const double> p,
                const SingleTrackDynamics& dynamics, std::size_t& acting, double& drag) const {
-    const double duration = step.end - step.begin;
+    const double duration = interval.end - interval.begin;
     const int pieces = std::max(1, saturate_cast<int>(std::ceil(duration / longest_step - 1e-9)));
     const double dt = duration / pieces;
     for (int k = 0; k < pieces; ++k) {
-      const double time = step.begin + k * dt;
-      s.speed = step.speed + (step.next_speed - step.speed) * k / pieces;
-      const double angle = servo(s.steer, time, time + dt, step.sample, p, acting);
+      const double time = interval.begin + k * dt;
+      s.speed = interval.speed + (interval.next_speed - interval.speed) * k / pieces;
+      const double angle = servo(s.steer, time, time + dt, interval.sample, p, acting);
       // The gain of the speed is the motor's force less that of tyres that slip.
-      const double motor = step.acceleration - drag;
+      const double motor = interval.acceleration - drag;
       const double before = s.speed;
       s = dynamics.advance(s, angle, motor, p[At::friction], dt);
       drag = std::clamp((s.speed - before) / dt - motor, -largest_acceleration, 0.0);
@@ -194,7 +195,7 @@ class Drive {
   std::span<const DrivenSample> samples_;
   PathTrackingOptions car_;
   SingleTrackOptions own_;
-  std::vector<Step> steps_;
+  std::vector<SampleInterval> intervals_;
   std::vector<Window> windows_;
 };
 

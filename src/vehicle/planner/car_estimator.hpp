@@ -17,9 +17,9 @@ class CarEstimator {
       : identify_(options.estimation.identify),
         latency_(options.latency),
         steer_resolution_(options.steer_resolution),
-        friction_(model.traits().friction),
+        friction_(model.traits().tyres.friction),
         observer_(options.estimation, options.control_period, options.latency, model.traits().dead_time),
-        parameters_(model.dynamics(), options.estimation, model.traits().friction,
+        parameters_(model.dynamics(), options.estimation, model.traits().tyres.friction,
                     options.latency + model.traits().dead_time, options.control_period) {}
 
   void reset() noexcept {

@@ -22,7 +22,7 @@ constexpr double reading_error = 0.02;
 /// The body without margin, or smaller by `less` (m), for look-ups in the map of these traits.
 BodyOptions bare(const VehicleTraits& traits, double less) {
   BodyOptions body = traits.body;
-  body.model = traits.obstacle_map == ObstacleMap::clearance ? BodyModel::discs : BodyModel::box;
+  body.model = traits.obstacles.map == ObstacleMap::clearance ? BodyModel::discs : BodyModel::box;
   body.margin = std::min(body.margin, -less);
   body.soft_margin = 0;
   return body;
@@ -58,8 +58,8 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
       states_(static_cast<std::size_t>(horizon) + 1),
       candidate_states_(states_.size()),
       path_(states_.size()),
-      margin_is_cost_(traits.seeks_lap_time && traits.body.margin > 0 &&
-                      traits.obstacle_map == ObstacleMap::clearance),
+      margin_is_cost_(traits.tyres.seeks_lap_time && traits.body.margin > 0 &&
+                      traits.obstacles.map == ObstacleMap::clearance),
       body_(bare(traits, margin_is_cost_ ? reading_error : 0)) {}
 
 void SequenceChoice::sees(const VehicleMaps& maps) noexcept {
@@ -200,7 +200,7 @@ void SequenceChoice::follow_slower(int braking_steps) noexcept {
                    : std::min(before + accelerating_share * change * dt, fastest);
     ahead += 0.5 * (before + speed) * dt;
     for (; at + 1 < steps && way() > 0 && ahead >= way(); ++at) ahead -= way();
-    const double slowness = speed / traits_.half_steer_speed;
+    const double slowness = speed / traits_.tyres.half_steer_speed;
     candidate_[k * inputs_] = static_cast<float>(path_[at + 1].steer * (1 + slowness * slowness));
     candidate_[k * inputs_ + 1] = brakes ? -max_deceleration_ : max_deceleration_;
   }

@@ -42,10 +42,10 @@ class WaysAround {
   void draw(const VehicleStart& start, int nearest, std::span<const double> path_speeds,
             double friction) noexcept {
     const auto at = static_cast<std::size_t>(nearest);
-    Car car{start.pose.x, start.pose.y, 0, std::max(start.speed, 0.0), at, at, 0, 1, 0};
+    Bicycle car{start.pose.x, start.pose.y, 0, std::max(start.speed, 0.0), at, at, 0, 1, 0};
     car.turn(start.pose.yaw);
     for (int way = 0; way < count; ++way)
-      draw_way(way, car, path_speeds, turning_share * traits_.usable_grip * friction * gravity);
+      draw_way(way, car, path_speeds, turning_share * traits_.tyres.usable_grip * friction * gravity);
   }
 
   /// The inputs, [step][input], of the cheapest way; empty if no cost is finite.
@@ -71,7 +71,7 @@ class WaysAround {
   static constexpr double min_wheelbases = 2;                 ///< wheelbases that are added to it
 
   /// A car that drives one of the ways: a kinematic bicycle.
-  struct Car {
+  struct Bicycle {
     double x, y, yaw, speed;
     std::size_t at;           ///< nearest point of the path
     std::size_t to;           ///< the point that it steers to
@@ -94,14 +94,14 @@ class WaysAround {
       speed = std::max(speed + acceleration * dt, 0.0);
     }
   };
-  /// A point of the path.
-  struct Place {
+  /// A point of the path with its normal.
+  struct PathNormal {
     double x, y;            ///< m
     double left_x, left_y;  ///< unit vector to the left of the path
     double gap;             ///< m, to the next point
   };
 
-  void draw_way(int way, Car car, std::span<const double> path_speeds, double grip) noexcept {
+  void draw_way(int way, Bicycle car, std::span<const double> path_speeds, double grip) noexcept {
     const double offset = (way / speeds - sides) * side_step * traits_.body.width;
     const double fastest = top_speeds[way % speeds], dt = traits_.time_step;
     for (int k = 0; k < batch_.steps(); ++k) {
@@ -112,7 +112,7 @@ class WaysAround {
       const double wanted = (std::min(path_speeds[car.at], fastest) - car.speed) / dt;
       const double acceleration =
           std::clamp(wanted, -braking * traits_.max_deceleration, accelerating * traits_.max_acceleration);
-      const double share = car.speed / traits_.half_steer_speed;
+      const double share = car.speed / traits_.tyres.half_steer_speed;
       batch_.at(k, 0, way) = static_cast<float>(std::atan(tangent) * (1 + share * share));
       batch_.at(k, 1, way) = static_cast<float>(acceleration);
       car.drive(acceleration, tangent, traits_.wheelbase, dt);
@@ -120,7 +120,7 @@ class WaysAround {
   }
 
   /// Updates the car's two points of the path: the nearest one, and the one to steer to.
-  void look_ahead(Car& car) const noexcept {
+  void look_ahead(Bicycle& car) const noexcept {
     const auto squared_distance = [&](std::size_t i) {
       return square(path_[i].x - car.x) + square(path_[i].y - car.y);
     };
@@ -145,8 +145,8 @@ class WaysAround {
 
   /// Returns the tangent of the wheels' angle for a circle to the point `offset` m left of the path (pure
   /// pursuit; Coulter, CMU-RI-TR-92-01, 1992).
-  double steering_to(const Car& car, double offset) const noexcept {
-    const Place& to = path_[car.to];
+  double steering_to(const Bicycle& car, double offset) const noexcept {
+    const PathNormal& to = path_[car.to];
     const double x = to.x + offset * to.left_x - car.x, y = to.y + offset * to.left_y - car.y;
     const double left = y * car.ahead_x - x * car.ahead_y;
     return 2 * traits_.wheelbase * left / std::max(x * x + y * y, 1e-6);
@@ -159,7 +159,7 @@ class WaysAround {
     return true;
   }
 
-  std::vector<Place> path_;
+  std::vector<PathNormal> path_;
   bool closed_;
   VehicleTraits traits_;
   double steepest_;  ///< tangent of the wheels' angle
