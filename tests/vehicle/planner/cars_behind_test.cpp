@@ -101,14 +101,5 @@ TEST(CarsBehind, WhatCannotBeUsedStaysAsItIs) {
   EXPECT_TRUE(stays()) << "more poses than there is room for";
 }
 
-TEST(CarsBehind, NothingAllocates) {
-  const PredictedCar car(-1, {6, 5, 4, 3}, {0.4, 0.3, 0.1, 0.2});
-  const std::vector<maps::PredictedObstacle> all(32, car.obstacle);
-  CarsBehind behind(wheelbase);
-  const long before = slalom::testing::allocations();
-  EXPECT_EQ(behind.giving_way(all, own).size(), 32u);
-  EXPECT_EQ(slalom::testing::allocations(), before);
-}
-
 }  // namespace
 }  // namespace slalom::vehicle::detail
