@@ -92,9 +92,11 @@ class MppiSolver final : public SolverBase {
     result_.iterations = 0;
     for (int i = 0; i < wanted; ++i, scale *= annealing_.iteration_decay * annealing_.iteration_decay) {
       for (std::size_t r = 0; r < size(); ++r) variance_[r] = static_cast<float>(scale * first_variance_[r]);
-      result_.status =
-          update_.update(evaluator, key(i), zero_.data(), variance_.data(), low().data(), high().data(),
-                         pool(), deadline, mean_.data(), result_, update_.samples().proposed());
+      const auto drawn = update_.sample(
+          evaluator, key(i), {mean_.data(), zero_.data(), variance_.data(), low().data(), high().data()},
+          pool(), deadline);
+      result_.status = update_.move_mean(drawn, pool(), mean_.data(), result_, update_.samples().proposed());
+      if (drawn.finite > 0) clamp(mean_.data());
       if (result_.status == Status::deadline || result_.status == Status::degenerate) return;
       has_solution_ = true;
       result_.iterations = i + 1;

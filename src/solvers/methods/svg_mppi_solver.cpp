@@ -162,8 +162,12 @@ class SvgMppiSolver final : public SolverBase {
 
   Status update(const BatchEvaluator& evaluator, const float* nominal, int stage,
                 const Deadline& deadline) noexcept {
-    return update_.update(evaluator, key(stage), nominal, variance_.data(), low().data(), high().data(),
-                          pool(), deadline, mean_.data(), result_);
+    const auto drawn = update_.sample(evaluator, key(stage),
+                                      {mean_.data(), nominal, variance_.data(), low().data(), high().data()},
+                                      pool(), deadline);
+    const Status status = update_.move_mean(drawn, pool(), mean_.data(), result_);
+    if (drawn.finite > 0) clamp(mean_.data());
+    return status;
   }
 
   /// Makes one update for each batch, then replaces the mean by the best sequence if that costs less.
