@@ -44,10 +44,6 @@ void expect_within(P problem, SolverOptions options, double low, double high) {
   EXPECT_GT(largest, high - 0.2);
 }
 
-TEST(InputBounds, EveryMethodKeepsThoseOfTheProblem) {
-  for (const char* name : solver_names()) expect_within(Bounded{}, solver_options(name), -0.25, 0.75);
-}
-
 TEST(InputBounds, TheNarrowerOfProblemAndOptionsApplies) {
   expect_within(Bounded{}, MppiOptions{.input_min = -2, .input_max = 0.5}, -0.25, 0.5);
   expect_within(Bounded{}, MppiOptions{.input_min = {-0.125}, .input_max = 3}, -0.125, 0.75);
