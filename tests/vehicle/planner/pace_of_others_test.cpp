@@ -1,4 +1,4 @@
-#include "vehicle/planner/pace_of_others.hpp"
+#include "vehicle/planner/obstacles/pace_of_others.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "vehicle/planner/obstacle_memory.hpp"
+#include "vehicle/planner/obstacles/obstacle_memory.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "vehicle/planner/cars_behind.hpp"
+#include "vehicle/planner/obstacles/cars_behind.hpp"
 
 #include <algorithm>
 #include <cmath>

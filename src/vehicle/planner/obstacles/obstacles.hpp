@@ -7,9 +7,9 @@
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "vehicle/planner/car_scale.hpp"
-#include "vehicle/planner/cars_behind.hpp"
-#include "vehicle/planner/obstacle_memory.hpp"
-#include "vehicle/planner/pace_of_others.hpp"
+#include "vehicle/planner/obstacles/cars_behind.hpp"
+#include "vehicle/planner/obstacles/obstacle_memory.hpp"
+#include "vehicle/planner/obstacles/pace_of_others.hpp"
 
 namespace slalom::vehicle::detail {
 

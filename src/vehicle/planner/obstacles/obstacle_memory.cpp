@@ -1,4 +1,4 @@
-#include "vehicle/planner/obstacle_memory.hpp"
+#include "vehicle/planner/obstacles/obstacle_memory.hpp"
 
 #include <cmath>
 #include <numbers>

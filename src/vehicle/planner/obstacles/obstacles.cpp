@@ -1,4 +1,4 @@
-#include "vehicle/planner/obstacles.hpp"
+#include "vehicle/planner/obstacles/obstacles.hpp"
 
 #include <algorithm>
 #include <cmath>
