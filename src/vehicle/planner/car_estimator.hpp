@@ -10,18 +10,7 @@ namespace slalom::vehicle::detail {
 /// command is this angle less the car's steering offset, divided by its steering gain.
 class CarEstimator {
  public:
-<<<<<<< HEAD
-  CarEstimator(const PlannerOptions& options, const DynamicVehicleModel& model)
-      : identify_(options.estimation.identify),
-        latency_(options.latency),
-        steer_resolution_(options.steer_resolution),
-        friction_(model.traits().tyres.friction),
-        observer_(options.estimation, options.control_period, options.latency, model.traits().dead_time),
-        parameters_(model.dynamics(), options.estimation, model.traits().tyres.friction,
-                    options.latency + model.traits().dead_time, options.control_period) {}
-=======
   CarEstimator(const PlannerOptions& options, const DynamicVehicleModel& model);
->>>>>>> main
 
   void reset() noexcept;
 

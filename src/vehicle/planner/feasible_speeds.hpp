@@ -20,19 +20,7 @@ struct DrivingLimits {
 };
 
 /// The limits of a model with tyres that slip, on ground of this friction.
-<<<<<<< HEAD
-inline DrivingLimits driving_limits(const VehicleTraits& traits, double friction) {
-  return {.grip = friction * gravity * traits.tyres.usable_grip,
-          .acceleration = traits.max_acceleration,
-          .braking = traits.max_deceleration,
-          .braking_share = traits.tyres.braking_share,
-          .delay = traits.tyres.seeks_lap_time ? 0 : traits.time_step,
-          .lead = traits.tyres.seeks_lap_time ? traits.time_step : 0,
-          .switch_speed = traits.tyres.switch_speed};
-}
-=======
 DrivingLimits driving_limits(const VehicleTraits& traits, double friction);
->>>>>>> main
 
 /// Computes the highest speeds that a car can drive along a path, no higher than the path's own:
 ///
