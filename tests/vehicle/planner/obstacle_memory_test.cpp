@@ -1,5 +1,5 @@
 // The memory of obstacles that the car has passed.
-#include "vehicle/planner/obstacle_memory.hpp"
+#include "vehicle/planner/obstacles/obstacle_memory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace slalom::vehicle::detail {
 namespace {
 
 TEST(ObstacleMemory, KnowsWhatTheCarHasPassed) {
-  ObstacleMemory memory(1);
+  ObstacleMemory memory({});
   const std::vector<maps::ScanPoint> seen = {{2.0f, 0.1f}};
   memory.remember(seen, {10, 5, 0}, 0.25);
   const std::vector<float> ranges(271, 10.0f);
@@ -32,7 +32,7 @@ TEST(ObstacleMemory, KnowsTheDirectionsThatAScanDoesNotCover) {
         {3.0f * std::cos(0.042f * static_cast<float>(i)), 3.0f * std::sin(0.042f * static_cast<float>(i))});
   const maps::Pose laser{0.1, 0.02, 0.3};
   for (const auto& [first, last] : {std::pair{-2.356, 2.356}, {-1.0, 0.4}, {-3.1, 3.14}, {0.0, 6.28}}) {
-    ObstacleMemory memory(1);
+    ObstacleMemory memory({});
     memory.remember(seen, {1, 2, 0.7}, 0.25);
     const std::vector<float> ranges(201, 10.0f);
     const maps::LaserScanView view{ranges, first, (last - first) / 200, 0.05, 30};
