@@ -19,9 +19,10 @@ option(SLALOM_BUILD_BENCHMARKS "Add the target `benchmarks`" OFF)
 option(SLALOM_BUILD_EXAMPLES "Build the examples in the tree (they also build against an install)" OFF)
 option(SLALOM_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 option(SLALOM_INSTALL "Generate the install and export targets" ${PROJECT_IS_TOP_LEVEL})
-option(SLALOM_GROUP_SOURCES "Compile the sources of program and live view in groups, which takes less time" ON)
+option(SLALOM_GROUP_SOURCES "Compile sources in groups and tests with precompiled headers, which takes less time" ON)
 set(SLALOM_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, for example address,undefined")
-# A wheel of the Python package leaves out what it cannot call, unless it is built with cars, robots and courses.
+# A wheel of the Python package leaves out what it cannot call, unless it is built with cars, robots and
+# courses.
 set(SLALOM_PYTHON_ALONE OFF)
 if(SLALOM_PYTHON_WHEEL AND NOT (SLALOM_BUILD_NAVIGATION OR SLALOM_BUILD_TRACKING OR SLALOM_BUILD_VEHICLE OR SLALOM_BUILD_SIM))
   set(SLALOM_PYTHON_ALONE ON)
@@ -35,7 +36,8 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
   find_program(SLALOM_CCACHE ccache)
   if(SLALOM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${SLALOM_CCACHE})
+    # Without this ccache takes no file that uses a precompiled header.
+    set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${SLALOM_CCACHE})
   endif()
 else()
   include(${CMAKE_CURRENT_LIST_DIR}/warn_unoptimised.cmake)

@@ -190,15 +190,12 @@ std::string csv_line(const LapRow& row, const std::vector<Experiment>& experimen
   return line;
 }
 
-bool same_lap(const LapRow& a, const LapRow& b) {
-  const auto repeatable = [](const LapRow& row) {
+bool same_lap(const LapRow& a, const LapRow& b, const std::vector<Experiment>& experiments) {
+  const auto repeatable = [&](const LapRow& row) {
     std::string cells;
-    const auto add = [&](const auto& value, const Figure& figure) {
+    visit_columns(row, experiments, [&](const auto& value, const Figure& figure) {
       if (!figure.wall_clock) cells.append(cell_of(value)).append(",");
-    };
-    visit_row(row, add);
-    visit_figures(row.tracking, add);
-    visit_figures(row.overtaking, add);
+    });
     return cells;
   };
   return repeatable(a) == repeatable(b);

@@ -282,7 +282,8 @@ int drive_again(const DriveArguments& arguments, const std::string& method, cons
     return row.experiment == index && row.lap == arguments.lap;
   });
   const bool same =
-      kept != stored.rows.end() && same_lap(make_row(index, arguments.lap, job.laps().front(), 0), *kept);
+      kept != stored.rows.end() &&
+      same_lap(make_row(index, arguments.lap, job.laps().front(), 0), *kept, stored.experiments);
   std::fprintf(job.words(), "%s\n",
                kept == stored.rows.end() ? "the evaluation does not contain this lap yet"
                : same                    ? "identical to the lap of the evaluation, bit for bit"

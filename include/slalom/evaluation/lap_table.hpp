@@ -86,8 +86,8 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
 /// is within 0.05 m of the start. No driver avoids it.
 bool began_in_contact(const LapRow& row, const maps::Pose& start);
 
-/// Whether two rows of a lap agree in all figures but wall-clock times.
-bool same_lap(const LapRow& a, const LapRow& b);
+/// Whether two rows of a lap agree in all columns but wall-clock times.
+bool same_lap(const LapRow& a, const LapRow& b, const std::vector<Experiment>& experiments);
 
 /// The header of laps.csv: `method,scenario,set,lap`, the figures of LapRow, if one of the experiments
 /// tracks, those of TrackingFigures, and if one has opponents, those of OvertakingFigures.
