@@ -10,7 +10,7 @@ namespace {
 
 constexpr double usable_steering = 0.85;  // share of the largest curvature of arcs; the rest corrects
 constexpr double kept_share = 0.4;        // share of the margin that arcs keep
-constexpr std::size_t most_goals = 96;
+constexpr std::size_t most_goals = 96;    // poses, as goals of a search
 
 double largest_curvature(double wheelbase, double steer_limit) {
   return std::tan(std::min(steer_limit, 1.2)) / wheelbase;
