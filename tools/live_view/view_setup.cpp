@@ -62,7 +62,7 @@ std::string evaluation_message(const StoredEvaluation& stored, const std::string
                     {"finished", row.finished},
                     {"time", row.time},
                     {"contacts", row.collisions},
-                    {"points", points(row.contact_points)}});
+                    {"points", points(row.collision_points)}});
   return Json{{"type", "evaluation"},
               {"folder", folder_name(stored.folder)},
               {"course", course},
