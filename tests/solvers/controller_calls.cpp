@@ -96,8 +96,7 @@ void draw_proposals(Proposals<P>& proposals, Adversary& adversary) {
 /// Solves from some state. `told` is what was applied before, or null.
 template <class P>
 void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& high,
-                const typename Controller<P>::Inputs* told, Proposals<P>* proposals, Adversary& adversary,
-                ControllerTally& tally) {
+                const typename Controller<P>::Inputs* told, Proposals<P>* proposals, Adversary& adversary) {
   StateValues<P> values;
   const bool hostile = adversary.once_in(3);
   for (double& value : values) value = hostile ? adversary.any(-3, 3) : adversary.within(-2, 2);
@@ -121,14 +120,11 @@ void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& 
     const double before = controller.bounds().nearest(static_cast<std::size_t>(i), (*told)[i]);
     check_rate(detail::input_step(controller.problem(), i), before, plan.inputs[0][i]);
   }
-  ++tally.plans;
-  ++(plan.status == Status::ok ? tally.ok : tally.other);
-  tally.corrections += plan.corrections;
 }
 
-/// One controller and a few dozen calls of its methods.
+/// One controller and a few dozen calls of its methods. Returns the number of plans.
 template <class P>
-void call_controller(P problem, SolverOptions options, Adversary& adversary, ControllerTally& tally) {
+int call_controller(P problem, SolverOptions options, Adversary& adversary) {
   const auto [low, high] = any_bounds(adversary);
   set(options, "horizon", 1 + adversary.below(6));
   set(options, "samples", 1 + adversary.below(40));
@@ -144,13 +140,12 @@ void call_controller(P problem, SolverOptions options, Adversary& adversary, Con
     controller.emplace(problem, options);
     if (controller->solver().takes_proposals() && adversary.below(2)) proposals.emplace(*controller, 2);
   } catch (const std::invalid_argument&) {  // bounds apart from the problem's
-    ++tally.calls;
-    return;
+    return 0;
   }
   typename Controller<P>::Inputs told{};  // what was applied before the next solve
   bool knows = false;
+  int plans = 0;
   for (int i = 0; i < 60 && !adversary.is_done(); ++i) {
-    ++tally.calls;
     const int what = adversary.below(16);
     if (what == 0) {
       controller->reset(static_cast<std::uint64_t>(i));
@@ -164,16 +159,18 @@ void call_controller(P problem, SolverOptions options, Adversary& adversary, Con
                           [](double value) { return std::isfinite(value); });
     } else {
       call_solve(*controller, low, high, knows ? &told : nullptr, proposals ? &*proposals : nullptr,
-                 adversary, tally);
+                 adversary);
       knows = false;
+      ++plans;
     }
   }
+  return plans;
 }
 
 }  // namespace
 
-void call_any_controller(const SolverOptions& options, Adversary& adversary, ControllerTally& tally) {
-  const auto call = [&](auto problem) { call_controller(problem, options, adversary, tally); };
+int call_any_controller(const SolverOptions& options, Adversary& adversary) {
+  const auto call = [&](auto problem) { return call_controller(problem, options, adversary); };
   switch (adversary.below(10)) {
     case 0:
       return call(DoubleIntegrator{});

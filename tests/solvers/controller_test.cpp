@@ -143,49 +143,6 @@ TEST(Controller, NamesTheBoundThatOptionsLack) {
             "unbounded.input_min: missing; the options of a method must have this PerInput");
 }
 
-/// A problem that wants all samples of a batch at once.
-class WholeBatches final : public BatchEvaluator {
- public:
-  explicit WholeBatches(const BatchEvaluator& other) : other_(other) {}
-  int inputs() const noexcept override { return other_.inputs(); }
-  double time_step() const noexcept override { return other_.time_step(); }
-  bool whole_batches() const noexcept override { return true; }
-  void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
-                std::uint8_t* collided) const noexcept override {
-    if (batch.samples() == 1000) {
-      ++calls;
-      counts_are_whole = counts_are_whole && first == 0 && count == 1000;
-    }
-    other_.evaluate(batch, first, count, costs, collided);
-  }
-  mutable int calls = 0;
-  mutable bool counts_are_whole = true;
-
- private:
-  const BatchEvaluator& other_;
-};
-
-TEST(BatchEvaluation, WholeBatchesGiveTheSameBitsAsSlices) {
-  ProblemEvaluator problem(DoubleIntegrator{});
-  problem.set_state({0.5, 0.2});
-  const WholeBatches whole(problem);
-  for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
-    SolverOptions options = solver_options(name);
-    *options.find<int>("samples") = 1000;
-    if (int* const batches = options.find<int>("batches")) *batches = 1;
-    const auto one = make_solver(options, 1), other = make_solver(options, 1);
-    whole.calls = 0;
-    for (int k = 0; k < 3; ++k) {
-      const auto& a = one->solve(problem, {.elapsed = 0.1});
-      const auto& b = other->solve(whole, {.elapsed = 0.1});
-      EXPECT_EQ(a.status, b.status) << name;
-      for (std::size_t i = 0; i < a.inputs.size(); ++i) EXPECT_EQ(a.inputs[i], b.inputs[i]) << name;
-    }
-    EXPECT_GT(whole.calls, 0) << name;
-    EXPECT_TRUE(whole.counts_are_whole) << name;
-  }
-}
-
 /// The double integrator by hand-written loops over a whole batch, as code for a GPU would be.
 class BatchedIntegrator final : public BatchEvaluator {
  public:

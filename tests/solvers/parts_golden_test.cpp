@@ -6,66 +6,10 @@
 #include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
-/// The parts of the solvers against those of the published program.
+/// The parts of the solvers against those of the published program; svg_trace_golden_test.cpp has those of
+/// SVG-MPPI.
 namespace slalom::testing {
 namespace {
-
-TEST(SolverGolden, Softmax) {
-  int shifted = 0;
-  compare_cases("softmax", [&](const Json& json, Comparison& comparison) {
-    auto exact = numbers<double>(json["costs"]);
-    // Costs whose differences float32 cannot tell, for their size, are given relative to the least: the
-    // weights do not depend on a common offset.
-    const double min_cost = *std::min_element(exact.begin(), exact.end());
-    const double resolution =
-        std::numeric_limits<float>::epsilon() * std::abs(min_cost) / number(json["lambda"]);
-    if (resolution > 0.1 * 1e-4) {
-      for (double& cost : exact) cost -= min_cost;
-      comparison.note(std::to_string(++shifted) + " of them relative to the least cost, for their precision");
-    }
-    std::vector<float> costs(exact.begin(), exact.end());
-    costs.resize(padded(static_cast<int>(costs.size())), std::numeric_limits<float>::infinity());
-    std::vector<float> weights(costs.size());
-    const detail::Range range{0, static_cast<int>(costs.size())};
-    const float least = detail::kernels::minimum(costs.data(), range);
-    const auto sums = detail::kernels::exponential_weights(
-        costs.data(), costs.data(), least, static_cast<float>(number(json["lambda"])), range, weights.data());
-    detail::kernels::scale(1.0f / (sums.weight + 1e-10f), range, weights.data());
-    comparison.compare(weights, numbers<double>(json["weights"]), case_name(json));
-  });
-}
-
-TEST(SolverGolden, ControlTerm) {
-  compare_cases("control_term", [&](const Json& json, Comparison& comparison) {
-    SequenceBatch samples = batch_of(json["samples"]);
-    const auto mean = numbers<float>(json["mean"]), nominal = numbers<float>(json["nominal"]);
-    const auto variance = numbers<float>(json["cov"]);
-    std::vector<float> coefficients(mean.size());
-    detail::control_coefficients(number(json["lambda"]), number(json["alpha"]), 1e-4, mean.data(),
-                                 nominal.data(), variance.data(), samples.rows(), coefficients.data());
-    auto costs = padded_numbers(json["costs"], 0);
-    detail::kernels::add_linear(rows_of(samples), coefficients.data(), all_of(samples), costs.data());
-    comparison.compare(costs, numbers<double>(json["costs_with_control_term"]), case_name(json));
-  });
-}
-
-TEST(SolverGolden, GaussianFitting) {
-  int undetermined = 0;
-  const auto compare = [&](const Json& json, Comparison& comparison) {
-    const auto x = numbers<double>(json["x"]), y = numbers<double>(json["y"]);
-    const auto fit = published_fit(x, y);
-    const double fitted = std::sqrt(detail::fitted_variance(fit, true)), expected = number(json["variance"]);
-    EXPECT_EQ(std::isinf(fitted), std::isinf(expected)) << case_name(json) << ": the rank decision differs";
-    if (std::isinf(expected))
-      comparison.note(std::to_string(++undetermined) + " of them undetermined, every decision equal");
-    comparison.compare<double>({std::clamp(fitted, 0.001, 0.1)}, {std::clamp(expected, 0.001, 0.1)},
-                               case_name(json), 1);
-    if (number(json["cond_A"]) < 1e8) {
-      EXPECT_NEAR(std::clamp(fitted, 0.001, 0.1), std::clamp(expected, 0.001, 0.1), 1e-11) << case_name(json);
-    }
-  };
-  compare_cases("gaussian_fitting", compare, ", clamped (double)");
-}
 
 TEST(SolverGolden, MirrorDescent) {
   compare_cases("md_update", [&](const Json& json, Comparison& comparison) {
@@ -88,29 +32,6 @@ TEST(SolverGolden, MirrorDescent) {
 
 /// Gradients so small that the published program's floor has swallowed them count as zero.
 constexpr double swallowed = 1e-12;
-
-TEST(SolverGolden, SvgGradient) {
-  compare_cases("svg_grad", [&](const Json& json, Comparison& comparison) {
-    SequenceBatch samples = batch_of(json["grad_samples"]);
-    auto totals = padded_numbers(json["grad_sample_costs"], 0);
-    const auto centre = numbers<float>(json["particle"]), previous = numbers<float>(json["prev_control_seq"]);
-    const auto inverse = numbers<float>(json["grad_sampler_inv_cov"]);
-    auto weight = numbers<float>(json["guide_inv_cov"]);
-    const float temperature = static_cast<float>(number(json["grad_lambda"]));
-    for (float& w : weight) w *= temperature;
-    std::vector<float> weights(totals.size()), gradient(centre.size());
-    const detail::SurrogateGradient how{.temperature = temperature,
-                                        .subtract_minimum = false,
-                                        .floor = 1e-10,
-                                        .centre = centre.data(),
-                                        .inverse_variance = inverse.data(),
-                                        .distance_centre = previous.data(),
-                                        .distance_weight = weight.data()};
-    detail::surrogate_gradient(how, rows_of(samples), all_of(samples), samples.samples(), totals.data(),
-                               weights.data(), gradient.data());
-    comparison.compare(gradient, numbers<double>(json["grad_log_likelihood"]), case_name(json), swallowed);
-  });
-}
 
 TEST(SolverGolden, SvMpcGradient) {
   compare_cases("svmpc_grad", [&](const Json& json, Comparison& comparison) {

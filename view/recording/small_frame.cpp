@@ -77,7 +77,7 @@ std::string small_frame(std::string_view frame) {
   FrameWriter to;
   for (const Block kind :
        {Block::scalars, Block::scan, Block::candidates, Block::nominal, Block::plan, Block::bodies,
-        Block::covariance, Block::ghost, Block::ghost_frame, Block::others}) {
+        Block::covariance, Block::ghost_frame, Block::others}) {
     const std::string_view block = reader.block(kind);
     if (block.empty()) continue;
     to.begin(kind);

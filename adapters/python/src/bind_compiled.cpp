@@ -23,9 +23,7 @@ Parameter parameter_of(CompiledProblem& problem, const std::string& name) {
 void set_attribute(CompiledProblem& problem, const std::string& name, const py::object& value) {
   const Parameter parameter = parameter_of(problem, name);
   const std::vector<double> values = numbers_of(value_as<Values>(value, name));
-  if (values.size() != parameter.values.size())
-    throw std::invalid_argument(name + ": has " + std::to_string(values.size()) + " values, must have " +
-                                std::to_string(parameter.values.size()));
+  checked(values, parameter.values.size(), name);
   std::copy(values.begin(), values.end(), parameter.values.begin());
 }
 
@@ -90,12 +88,7 @@ const Part network_parts[] = {
             value_as<std::vector<std::tuple<double, double, double>>>(value, "MlpProblem.discs"))
          p.model.discs.push_back({x, y, radius});
      },
-     [](const Parts& p) {
-       py::list all;
-       for (const NetworkModel::Disc& disc : p.model.discs)
-         all.append(py::make_tuple(disc.x, disc.y, disc.radius));
-       return py::object(all);
-     }},
+     [](const Parts& p) { return py::object(discs_of(p.model.discs)); }},
     number("disc_weight", "cost of a state that collides, with a disc or a wall", &NetworkModel::disc_weight),
     field("walls", "Field with the distance from the nearest wall (slalom.signed_distance), m, or None",
           &Parts::walls),

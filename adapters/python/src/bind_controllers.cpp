@@ -67,30 +67,38 @@ py::object copy(const py::object& self) {
   return made;
 }
 
-}  // namespace
+Plan solve(const py::object& self, std::vector<double> state, double elapsed, double deadline,
+           const Numbers& proposals) {
+  auto& controller = self.cast<Controller&>();
+  check_proposals(controller.solver(), proposals);
+  const std::vector<float> values(proposals.data(), proposals.data() + proposals.size());
+  const auto count = static_cast<int>(proposals.ndim() == 3 ? proposals.shape(0) : proposals.size() > 0);
+  controller.solve(self, std::move(state), {elapsed, deadline, {values, count}});
+  return {self, controller.solves()};
+}
 
-void bind_controllers(py::module_& module) {
-  bind_plan(module);
+std::vector<Plan> solve_batch(const std::vector<py::object>& controllers,
+                              std::vector<std::vector<double>> states, double elapsed, double deadline,
+                              int threads) {
+  if (controllers.size() != states.size())
+    throw std::invalid_argument("states: has " + std::to_string(states.size()) + " states, must have " +
+                                std::to_string(controllers.size()) + ", one for each controller");
+  Controller::solve({controllers.begin(), controllers.end()}, std::move(states), {elapsed, deadline, {}},
+                    threads);
+  std::vector<Plan> plans;
+  for (const py::object& each : controllers) plans.push_back({each, each.cast<Controller&>().solves()});
+  return plans;
+}
+
+void bind_controller(py::module_& module) {
   py::class_<Controller> base(module, "Controller", "Base class of all controllers.");
   base.def(py::init(&make_controller), "method"_a, "problem"_a)
-      .def(
-          "solve",
-          [](const py::object& self, std::vector<double> state, double elapsed, double deadline,
-             const Numbers& proposals) {
-            auto& controller = self.cast<Controller&>();
-            check_proposals(controller.solver(), proposals);
-            const std::vector<float> values(proposals.data(), proposals.data() + proposals.size());
-            const auto count =
-                static_cast<int>(proposals.ndim() == 3 ? proposals.shape(0) : proposals.size() > 0);
-            controller.solve(self, std::move(state), {elapsed, deadline, {values, count}});
-            return Plan{self, controller.solves()};
-          },
-          "state"_a, "elapsed"_a = 0.0, "deadline"_a = std::numeric_limits<double>::infinity(),
-          "proposals"_a = Numbers(),
-          "Returns the plan from `state`. The warm start is shifted by `elapsed` (s), the time since the "
-          "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
-          "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
-          "inputs), or (horizon, inputs) for one.")
+      .def("solve", &solve, "state"_a, "elapsed"_a = 0.0,
+           "deadline"_a = std::numeric_limits<double>::infinity(), "proposals"_a = Numbers(),
+           "Returns the plan from `state`. The warm start is shifted by `elapsed` (s), the time since the "
+           "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
+           "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
+           "inputs), or (horizon, inputs) for one.")
       .def(py::pickle(&state_of, &from_state))
       .def("__copy__", &copy)
       .def("__deepcopy__", [](const py::object& self, const py::dict&) { return copy(self); })
@@ -113,21 +121,16 @@ void bind_controllers(py::module_& module) {
   read("options", "the options in use, by name", [](const Controller& c) -> py::dict {
     return py::module_::import("slalom.display").attr("Options")(values_of(c.options()));
   });
+}
+
+}  // namespace
+
+void bind_controllers(py::module_& module) {
+  bind_plan(module);
+  bind_controller(module);
   module.def(
-      "solve_batch",
-      [](const std::vector<py::object>& controllers, std::vector<std::vector<double>> states, double elapsed,
-         double deadline, int threads) {
-        if (controllers.size() != states.size())
-          throw std::invalid_argument("states: has " + std::to_string(states.size()) + " states, must have " +
-                                      std::to_string(controllers.size()) + ", one for each controller");
-        Controller::solve({controllers.begin(), controllers.end()}, std::move(states),
-                          {elapsed, deadline, {}}, threads);
-        std::vector<Plan> plans;
-        for (const py::object& each : controllers) plans.push_back({each, each.cast<Controller&>().solves()});
-        return plans;
-      },
-      "controllers"_a, "states"_a, "elapsed"_a = 0.0, "deadline"_a = std::numeric_limits<double>::infinity(),
-      "threads"_a = 1,
+      "solve_batch", &solve_batch, "controllers"_a, "states"_a, "elapsed"_a = 0.0,
+      "deadline"_a = std::numeric_limits<double>::infinity(), "threads"_a = 1,
       "The plans of many controllers, each from its own state and its own last plan, in parallel on "
       "`threads` threads; with callables on one. Copies of one controller draw the same noise unless each is "
       "reset with a seed of its own.");

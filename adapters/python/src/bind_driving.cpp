@@ -52,7 +52,7 @@ py::dict lap_dict(const evaluation::LapResult& lap, const std::vector<std::array
   return py::module_::import("slalom.plot").attr("Lap")(results, waypoints);
 }
 
-void bind_driving(py::module_& module) {
+void bind_planner(py::module_& module) {
   py::class_<vehicle::Planner>(module, "Planner", "Computes steering and speed from LiDAR scan and odometry.")
       .def(py::init([](const Environment& environment, const std::string& method, const py::dict& options,
                        const std::string& config) {
@@ -93,6 +93,9 @@ void bind_driving(py::module_& module) {
           "tick_time (s) and corrections, the number of values that the final check changed.")
       .def("reset", &vehicle::Planner::reset, "seed"_a = 0,
            "Discards all state and starts the random numbers from `seed`.");
+}
+
+void bind_laps(py::module_& module) {
   module.def(
       "courses", [] { return vehicle::course_names(course_folders()); }, "The names of the courses found.");
   module.def(
@@ -129,6 +132,7 @@ PYBIND11_MODULE(_driving, module) {
   module.doc() = "Courses, simulator and planner of cars, and the navigator of mobile robots.";
   pybind11::module_::import("slalom._slalom");  // registers the exceptions
   slalom::python::bind_world(module);
-  slalom::python::bind_driving(module);
+  slalom::python::bind_planner(module);
+  slalom::python::bind_laps(module);
   slalom::python::bind_navigation(module);
 }

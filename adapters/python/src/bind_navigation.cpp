@@ -91,13 +91,10 @@ struct PythonCost {
   void add(const navigation::RolloutStates& states, std::span<double> costs) noexcept {
     const py::gil_scoped_acquire lock;
     if (error) return;
-    const auto array = [](std::span<const double> values) {
-      return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-    };
     try {
       const Numbers term =
-          function(array(states.x), array(states.y), array(states.yaw), array(states.forward),
-                   array(states.left), array(states.turn), states.step);
+          function(array_of(states.x), array_of(states.y), array_of(states.yaw), array_of(states.forward),
+                   array_of(states.left), array_of(states.turn), states.step);
       const auto count = static_cast<py::ssize_t>(costs.size());
       if (term.size() != 1 && (term.ndim() != 1 || term.size() != count))
         throw py::value_error("Navigator.set_cost: the function returned shape " +

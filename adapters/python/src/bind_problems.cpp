@@ -22,14 +22,7 @@ py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char*
   for (const OptionEntry& entry : list_options(P{})) {
     const std::string key = entry.declaration.name;
     bound.def_property(
-        key.c_str(),
-        [key](const Bound& self) {
-          py::object value;
-          visit_options(self.problem(), [&](const auto& field, const Declaration& d) {
-            if (key == d.name) value = py::cast(field);
-          });
-          return value;
-        },
+        key.c_str(), [key](const Bound& self) { return py::object(values_of(self.problem())[key.c_str()]); },
         [key, name](Bound& self, const py::object& value) {
           set_from_keywords(self.problem(), py::kwargs(py::dict(py::arg(key.c_str()) = value)), name);
         },
@@ -37,13 +30,7 @@ py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char*
   }
   if constexpr (requires(P & p) { p.discs[0].radius; }) {
     bound.def_property(
-        "discs",
-        [](const Bound& self) {
-          py::list all;
-          for (const auto& disc : self.problem().discs)
-            all.append(py::make_tuple(disc.x, disc.y, disc.radius));
-          return all;
-        },
+        "discs", [](const Bound& self) { return discs_of(self.problem().discs); },
         [](Bound& self, const std::vector<std::array<double, 3>>& values) {
           auto& discs = self.problem().discs;
           if (values.size() != discs.size())
@@ -55,13 +42,6 @@ py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char*
         "(x, y, radius) of each disc, m");
   }
   return bound;
-}
-
-std::span<const double> checked(const std::vector<double>& values, int count, const char* what) {
-  if (static_cast<int>(values.size()) != count)
-    throw std::invalid_argument(std::string(what) + ": has " + std::to_string(values.size()) +
-                                " values, must have " + std::to_string(count));
-  return values;
 }
 
 /// The arguments of slalom.mlp.Mlp; the activation as a number.
@@ -78,27 +58,34 @@ py::dict read_mlp(const std::string& file) {
                   "residual"_a = p.residual);
 }
 
-}  // namespace
+void check_state(const AnyProblem& problem, const std::vector<double>& state) {
+  checked(state, static_cast<std::size_t>(problem.states()), "state");
+}
 
-void bind_problems(py::module_& module) {
+void bind_any_problem(py::module_& module) {
   py::class_<AnyProblem>(module, "AnyProblem", "Base class of all problems.")
       .def_property_readonly("states", &AnyProblem::states, "scalars of a state")
-      .def_property_readonly("inputs", &AnyProblem::inputs, "inputs a step")
+      .def_property_readonly(
+          "inputs", [](const AnyProblem& self) { return self.inputs(); }, "inputs a step")
       .def(
           "step",
           [](AnyProblem& self, const std::vector<double>& state, const std::vector<double>& input, int k) {
-            const auto next =
-                self.step(checked(state, self.states(), "state"), checked(input, self.inputs(), "input"), k);
-            return py::array_t<double>(static_cast<py::ssize_t>(next.size()), next.data());
+            check_state(self, state);
+            checked(input, static_cast<std::size_t>(self.inputs()), "input");
+            return array_of(self.step(state, input, k));
           },
           "state"_a, "input"_a, "k"_a = 0,
           "The state after one step, in double. `k` is the index of the step, for dynamics that take it.")
       .def(
           "collides",
           [](AnyProblem& self, const std::vector<double>& state) {
-            return self.predict(checked(state, self.states(), "state"), {}).collided;
+            check_state(self, state);
+            return self.predict(state, {}).collided;
           },
           "state"_a, "Whether a state collides, according to the terminal cost.");
+}
+
+void bind_callable_problem(py::module_& module) {
   py::class_<CallableProblem, AnyProblem> problem(
       module, "Problem",
       "A problem of your own: callables on batches of K samples.\n\n"
@@ -140,6 +127,9 @@ void bind_problems(py::module_& module) {
   limits("input_max", &CallableParts::input_max, "as given: a number, one for each input, or None");
   limits("input_rate_max", &CallableParts::input_rate_max,
          "per s, as given: a number, one for each input, or None");
+}
+
+void bind_built_in_problems(py::module_& module) {
   bind_problem<problems::Arm>(
       module, "Arm",
       "An arm with seven joints that reaches past a ball. State: the joints' angles (rad); inputs: "
@@ -171,6 +161,14 @@ void bind_problems(py::module_& module) {
       module, "Car",
       "A car that steers and accelerates among parked cars. State: x, y (m), yaw (rad), "
       "speed (m/s); inputs: steering angle (rad), acceleration (m/s^2).");
+}
+
+}  // namespace
+
+void bind_problems(py::module_& module) {
+  bind_any_problem(module);
+  bind_callable_problem(module);
+  bind_built_in_problems(module);
   module.def("_read_mlp", &read_mlp);
 }
 

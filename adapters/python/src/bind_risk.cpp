@@ -30,15 +30,21 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
     return std::any_of(variants_.begin(), variants_.end(),
                        [](const auto& variant) { return variant->evaluator().whole_batches(); });
   }
-  double input_min(int input) const override { return problem().input_min(input); }
-  double input_max(int input) const override { return problem().input_max(input); }
-  void hold_rates(std::span<const double> previous, std::span<double> u) const override {
-    problem().hold_rates(previous, u);
+  InputBounds stated_bounds() const override { return problem().stated_bounds(); }
+  double unit_variance(int input) const noexcept override { return problem().unit_variance(input); }
+  double input_step(int input) const noexcept override { return problem().input_step(input); }
+  bool in_levels() const noexcept override { return problem().in_levels(); }
+  void hold_rates(std::span<const double> previous, std::span<double> sequence) const noexcept override {
+    problem().hold_rates(previous, sequence);
   }
-  void set_state(std::span<const double> state) override {
+  void carry(std::span<const float> wanted, std::span<const double> held,
+             std::span<double> remainder) const noexcept override {
+    problem().carry(wanted, held, remainder);
+  }
+  void set_state(std::span<const double> state) noexcept override {
     for (const auto& variant : variants_) variant->set_state(state);
   }
-  void set_previous_input(std::span<const double> u) override {
+  void set_previous_input(std::span<const double> u) noexcept override {
     for (const auto& variant : variants_) variant->set_previous_input(u);
   }
   void begin(void* owner) override {

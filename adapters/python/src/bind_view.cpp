@@ -15,10 +15,6 @@ struct Drawing {
   py::object pose, figure, shapes, move, plant;
 };
 
-Numbers row_of(std::span<const double> values) {
-  return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
 /// An array of points (n, 2), or of places (n, 3).
 Numbers places_of(const py::object& values, const std::string& what, bool may_have_yaw) {
   const auto array = Numbers::ensure(values);
@@ -86,7 +82,7 @@ class PythonSubject final : public view::Subject {
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
     const py::gil_scoped_acquire lock;
     if (drawing_->plant.is_none()) return problem().step(state, input, 0);
-    return drawing_->plant(row_of(state), row_of(input)).cast<std::vector<double>>();
+    return drawing_->plant(array_of(state), array_of(input)).cast<std::vector<double>>();
   }
 
   std::vector<maps::Pose> poses(std::span<const double> states) override {
@@ -124,7 +120,7 @@ class PythonSubject final : public view::Subject {
     const py::gil_scoped_acquire lock;
     std::vector<view::Line> all;
     if (drawing_->figure.is_none()) return all;
-    for (const py::handle& line : drawing_->figure(row_of(state)))
+    for (const py::handle& line : drawing_->figure(array_of(state)))
       all.push_back(line_of(py::reinterpret_borrow<py::object>(line), "figure: a line"));
     return all;
   }
@@ -159,9 +155,7 @@ std::unique_ptr<view::View> make_view(const py::object& controller, Drawing draw
   auto& native = controller.cast<Controller&>();
   AnyProblem& problem = native.problem();
   const int states = problem.states();
-  if (static_cast<int>(drawing.start.size()) != states)
-    throw py::value_error("start: has " + std::to_string(drawing.start.size()) + " values, must have " +
-                          std::to_string(states));
+  checked(drawing.start, static_cast<std::size_t>(states), "start");
   for (const int index : {drawing.x, drawing.y, drawing.heading.value_or(0)})
     if (drawing.pose.is_none() && (index < 0 || index >= states))
       throw py::value_error("x, y, heading: " + std::to_string(index) +

@@ -80,21 +80,18 @@ CallableProblem::CallableProblem(CallableParts parts)
   set_dt(parts_.dt);
 }
 
-double CallableProblem::input_min(int input) const {
-  return value_for(parts_.input_min, input, AnyProblem::input_min(input));
+double CallableProblem::input_step(int input) const noexcept {
+  return parts_.input_rate_max.empty() ? AnyProblem::input_step(input)
+                                       : value_for(parts_.input_rate_max, input, 0) * parts_.dt;
 }
-double CallableProblem::input_max(int input) const {
-  return value_for(parts_.input_max, input, AnyProblem::input_max(input));
-}
-void CallableProblem::set_previous_input(std::span<const double> u) {
+void CallableProblem::set_previous_input(std::span<const double> u) noexcept {
   previous_.assign(u.begin(), u.end());
 }
-void CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const {
+void CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const noexcept {
   if (parts_.input_rate_max.empty()) return;
   const auto nu = static_cast<std::size_t>(parts_.inputs);
   for (std::size_t i = 0; i < u.size(); ++i) {
-    const double before = i < nu ? previous[i] : u[i - nu];
-    const double reach = value_for(parts_.input_rate_max, static_cast<int>(i % nu), 0) * parts_.dt;
+    const double before = i < nu ? previous[i] : u[i - nu], reach = input_step(static_cast<int>(i % nu));
     u[i] = std::clamp(u[i], before - reach, before + reach);
   }
 }
@@ -112,7 +109,7 @@ std::unique_ptr<AnyProblem> CallableProblem::clone() const {
   return std::make_unique<CallableProblem>(parts_);
 }
 
-void CallableProblem::set_state(std::span<const double> state) {
+void CallableProblem::set_state(std::span<const double> state) noexcept {
   state_.assign(state.begin(), state.end());
 }
 
@@ -140,7 +137,7 @@ void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, in
                                 std::vector<float>& held) const {
   float* before = held.data();
   for (int i = 0; i < parts_.inputs; ++i) {
-    const float reach = static_cast<float>(value_for(parts_.input_rate_max, i, 0) * parts_.dt);
+    const float reach = static_cast<float>(input_step(i));
     const float* wanted = batch.row(k, i) + first;
     for (int s = 0; s < count; ++s, ++before)
       *before = std::min(std::max(wanted[s], *before - reach), *before + reach);

@@ -33,12 +33,14 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   const BatchEvaluator& evaluator() const noexcept override { return *this; }
   double time_step() const noexcept override { return parts_.dt; }
   const Sampler* sampler() const noexcept override { return parts_.sampler.is_none() ? nullptr : this; }
-  double input_min(int input) const override;
-  double input_max(int input) const override;
-  void hold_rates(std::span<const double> previous, std::span<double> u) const override;
-  void set_previous_input(std::span<const double> u) override;
+  InputBounds stated_bounds() const override {
+    return bounds_of(parts_.input_min, parts_.input_max, parts_.inputs);
+  }
+  double input_step(int input) const noexcept override;
+  void hold_rates(std::span<const double> previous, std::span<double> sequence) const noexcept override;
+  void set_previous_input(std::span<const double> u) noexcept override;
   bool whole_batches() const noexcept override { return true; }
-  void set_state(std::span<const double> state) override;
+  void set_state(std::span<const double> state) noexcept override;
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
   Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps,

@@ -6,8 +6,6 @@
 
 #include "keywords.hpp"
 #include "problem.hpp"
-#include "slalom/core/final_check.hpp"
-#include "slalom/core/polymorphic.hpp"
 #include "slalom/solvers/registry.hpp"
 
 namespace slalom::python {
@@ -32,29 +30,29 @@ class Controller {
   void reset(std::uint64_t seed);
   void prepare();
   /// Sets the input applied before the next solve, for problems with limits on input rates.
-  void set_previous_input(std::vector<double> input);
+  void set_previous_input(const std::vector<double>& input);
 
   AnyProblem& problem() noexcept { return *problem_; }
-  const Solver& solver() const noexcept { return *solver_; }
+  const Solver& solver() const noexcept { return core_.solver(); }
   bool on_gpu() const noexcept { return on_gpu_; }
   /// Why the GPU fails; empty if it does not.
-  std::string gpu_fault() const { return on_gpu_ ? problem_->gpu_fault(*solver_) : ""; }
+  std::string gpu_fault() const { return on_gpu_ ? problem_->gpu_fault(solver()) : ""; }
   /// Copies the memory that the problem declares to the GPU again.
   void refresh_gpu() {
-    if (on_gpu_) problem_->refresh_gpu(*solver_);
+    if (on_gpu_) problem_->refresh_gpu(core_.solver());
   }
   const SolverOptions& options() const noexcept { return options_; }
-  const SolveResult& result() const noexcept { return solver_->result(); }
+  const SolveResult& result() const noexcept { return solver().result(); }
   /// The status of the last solve. A cost that is not finite shows when the prediction is first asked for.
-  Status status() const noexcept { return status_; }
+  Status status() const noexcept { return core_.status(); }
   /// The number of values that the final check changed in the last solve.
-  int corrections() const noexcept { return corrections_; }
+  int corrections() const noexcept { return core_.corrections(); }
   /// The number of solves, which tells whether a plan is the last one.
   std::uint64_t solves() const noexcept { return solves_; }
   /// Whether it is in the state after its construction.
   bool is_new() const noexcept { return is_new_; }
   /// The plan's inputs in double, [step][input].
-  std::vector<double>& inputs() noexcept { return inputs_; }
+  std::span<const double> inputs() const noexcept { return core_.inputs(); }
   /// The states and the cost of the plan, computed on the first call.
   Prediction& prediction();
 
@@ -73,23 +71,16 @@ class Controller {
   Controller(const Controller&) = default;
 
   Busy use();
-  void check(const std::vector<double>& state, const SolveRequest& request) const;
-  bool start(py::handle owner, std::vector<double> state, double elapsed);
+  bool start(py::handle owner, std::vector<double> state, const SolveRequest& request);
   void finish();
-  void update_previous_input(double elapsed);
-  void rest();
 
   Polymorphic<AnyProblem> problem_;
   SolverOptions options_;
   bool on_gpu_;
-  Polymorphic<Solver> solver_;
-  InputBounds bounds_;
-  Status status_ = Status::ok;
-  int corrections_ = 0;
+  ControllerCore core_;
   std::uint64_t solves_ = 0;
   bool is_new_ = true;
-  std::vector<double> state_, inputs_, previous_;
-  bool previous_known_ = true;  ///< whether `previous_` has been set for the next solve
+  std::vector<double> state_;  ///< start of the last solve
   std::optional<Prediction> prediction_;
   Usage usage_;
 };

@@ -4,11 +4,13 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "slalom/core/final_check.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose.hpp"
 
@@ -25,6 +27,11 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 inline void check_signals() {
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+/// An array [number] with a copy of the values.
+inline Numbers array_of(std::span<const double> values) {
+  return Numbers(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 /// Returns a function that adds a property which cannot be set: name, help, getter.
@@ -50,6 +57,14 @@ inline py::tuple to_tuple(const maps::Pose& pose) {
   return py::make_tuple(pose.x, pose.y, pose.yaw);
 }
 
+/// Discs as a list of tuples.
+template <class Discs>
+py::list discs_of(const Discs& discs) {
+  py::list all;
+  for (const auto& disc : discs) all.append(py::make_tuple(disc.x, disc.y, disc.radius));
+  return all;
+}
+
 /// Marks an array as one that must not be written.
 inline py::array read_only(py::array array) {
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
@@ -65,6 +80,15 @@ T value_as(const py::handle& value, const std::string& name) {
     throw py::type_error(name + ": " + std::string(py::repr(py::type::handle_of(value))) +
                          " has the wrong form");
   }
+}
+
+/// Throws std::invalid_argument unless there are as many values as `count`. Returns them.
+inline const std::vector<double>& checked(const std::vector<double>& values, std::size_t count,
+                                          const std::string& what) {
+  if (values.size() != count)
+    throw std::invalid_argument(what + ": has " + std::to_string(values.size()) + " values, must have " +
+                                std::to_string(count));
+  return values;
 }
 
 /// Values that are given as one number, as a sequence, or not at all: None.
@@ -84,6 +108,18 @@ inline py::object from_numbers(std::span<const double> values) {
 inline double value_for(const std::vector<double>& values, int input, double otherwise) {
   if (values.empty()) return otherwise;
   return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(input)];
+}
+/// The bounds of inputs by their values. Throws std::invalid_argument if one is nan.
+inline InputBounds bounds_of(const std::vector<double>& least, const std::vector<double>& most, int inputs) {
+  InputBounds bounds(inputs);
+  for (int i = 0; i < inputs; ++i) {
+    double &low = bounds.low[static_cast<std::size_t>(i)], &high = bounds.high[static_cast<std::size_t>(i)];
+    low = value_for(least, i, low);
+    high = value_for(most, i, high);
+    if (std::isnan(low) || std::isnan(high))
+      throw std::invalid_argument("Problem.input_min, Problem.input_max: nan must be a number");
+  }
+  return bounds;
 }
 
 /// An option's value as a configuration file has it.

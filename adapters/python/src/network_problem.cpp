@@ -82,14 +82,7 @@ NetworkProblem::NetworkProblem(Parts parts) : parts_(std::move(parts)) {
   state_.resize(static_cast<std::size_t>(m.states));
 }
 
-double NetworkProblem::input_min(int input) const {
-  return value_for(parts_.model.input_min, input, AnyProblem::input_min(input));
-}
-double NetworkProblem::input_max(int input) const {
-  return value_for(parts_.model.input_max, input, AnyProblem::input_max(input));
-}
-
-void NetworkProblem::set_state(std::span<const double> state) {
+void NetworkProblem::set_state(std::span<const double> state) noexcept {
   state_.assign(state.begin(), state.end());
 }
 

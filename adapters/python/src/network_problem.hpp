@@ -24,9 +24,10 @@ class NetworkProblem final : public AnyProblem, public BatchEvaluator {
   int inputs() const noexcept override { return parts_.model.inputs; }
   const BatchEvaluator& evaluator() const noexcept override { return *this; }
   double time_step() const noexcept override { return parts_.model.dt; }
-  double input_min(int input) const override;
-  double input_max(int input) const override;
-  void set_state(std::span<const double> state) override;
+  InputBounds stated_bounds() const override {
+    return bounds_of(parts_.model.input_min, parts_.model.input_max, parts_.model.inputs);
+  }
+  void set_state(std::span<const double> state) noexcept override;
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,

@@ -44,6 +44,19 @@ def test_the_pendulum_of_the_readme_is_compiled_once(cache):
 
 
 @needs_compiler
+def test_a_step_of_a_compiled_problem_gets_its_index():
+    walk = slalom.compile("""struct Walk {
+      template <class T> struct State { T x; };
+      static constexpr int inputs = 1;
+      template <class T> State<T> step(const State<T>& x, const slalom::Input<T, 1>& u, int k) const {
+        return {x.x + T(k) * u[0]};
+      }
+      template <class T> T stage_cost(const State<T>& x, const slalom::Input<T, 1>&) const { return x.x * x.x; }
+    };""")
+    assert [walk.step([1], [2], k)[0] for k in (0, 3)] == [1, 7]
+
+
+@needs_compiler
 def test_parameters_of_a_compiled_problem():
     source = PENDULUM.replace("double dt = 0.02;", "double dt = 0.02, weight{1}; std::array<double, 2> pair{1, 2};"
                               "double input_min = -5, input_max = 5, input_levels = 3;")

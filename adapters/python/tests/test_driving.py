@@ -7,37 +7,6 @@ import pytest
 import slalom
 
 pytest.importorskip("slalom._driving")
-from slalom.env import RacingEnv
-
-
-def test_the_environment_drives_and_repeats():
-    runs = []
-    for _ in range(2):
-        env = RacingEnv("wren", beams=54)
-        observation, info = env.reset(seed=3)
-        assert observation.shape == (54 + 3,) and observation.dtype == np.float32
-        total = 0.0
-        for _ in range(40):
-            observation, reward, terminated, truncated, info = env.step([0.0, 1.0])
-            total += reward
-            assert not truncated
-            if terminated:
-                break
-        runs.append((observation, total, info["pose"]))
-    assert total > 0.3
-    assert np.array_equal(runs[0][0], runs[1][0]) and runs[0][1:] == runs[1][1:]
-
-
-def test_a_contact_ends_the_episode():
-    env = RacingEnv("wren", beams=54)
-    env.reset(seed=0)
-    for _ in range(400):
-        _, reward, terminated, _, info = env.step([0.4, 3.0])
-        if terminated:
-            break
-    assert terminated and info["contact"] and reward < -5
-    with pytest.raises(ValueError, match="action"):
-        env.step([0.0])
 
 
 KINEMATIC = {"horizon": 14, "samples": 1000, "temperature": 3, "input_min": -0.4189, "input_max": 0.4189,

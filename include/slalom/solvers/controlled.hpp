@@ -2,10 +2,13 @@
 
 #include <array>
 #include <concepts>
+#include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "slalom/core/problem_check.hpp"
 #include "slalom/core/problem_evaluator.hpp"
+#include "slalom/solvers/controller_core.hpp"
 
 namespace slalom {
 
@@ -31,6 +34,12 @@ concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, 
 
 namespace detail {
 
+/// Stands for the problem of an evaluator that has none: it states nothing of its inputs.
+template <int N>
+struct NoProblem {
+  static constexpr int inputs = N;
+};
+
 /// Properties of the problem or the evaluator that a controller owns.
 template <class P>
 struct Controlled {
@@ -44,10 +53,9 @@ struct Controlled {
   using State = StateOf<P, double>;
   static constexpr int inputs = P::inputs;
   static constexpr bool predicts = true;
-  static constexpr bool uses_previous_input = carries_inputs<P>;
-  static constexpr bool in_levels = has_levels<P>;
   static constexpr bool has_problem = true;
   static constexpr auto cost_terms() { return cost_terms_of<P>(); }
+  static const P& problem_of(const Evaluator& evaluator) noexcept { return evaluator.problem(); }
 };
 
 template <StateEvaluator E>
@@ -59,12 +67,77 @@ struct Controlled<E> {
       requires(const E& e, const State& x, const Input<double, inputs>* u, State* states) {
     { e.predict(x, u, 1, states) } -> std::convertible_to<Cost<double>>;
   };
-  static constexpr bool uses_previous_input = requires(E & e, const Input<double, inputs>& u) {
-    e.set_previous_input(u);
-  };
   static constexpr bool has_problem = requires(const E& e) { e.problem(); };
-  static constexpr bool in_levels = requires(const E& e) { e.problem().input_levels; };
   static constexpr auto cost_terms() { return std::array<CostTerm, 1>{{{"total", 0}}}; }
+  static decltype(auto) problem_of(const E& evaluator) noexcept {
+    if constexpr (has_problem) {
+      return evaluator.problem();
+    } else {
+      return NoProblem<inputs>{};
+    }
+  }
+};
+
+/// A control sequence in double as inputs, in the same memory.
+template <int N>
+std::span<Input<double, N>> as_inputs(std::span<double> sequence) noexcept {
+  static_assert(sizeof(Input<double, N>) == N * sizeof(double));
+  return {reinterpret_cast<Input<double, N>*>(sequence.data()), sequence.size() / N};
+}
+template <int N>
+std::span<const Input<double, N>> as_inputs(std::span<const double> sequence) noexcept {
+  return {reinterpret_cast<const Input<double, N>*>(sequence.data()), sequence.size() / N};
+}
+
+/// The problem or the evaluator `P`, as a ControllerCore needs it. `Base` is a ControlledProblem.
+template <class P, class Base = ControlledProblem>
+class ControlledEvaluator : public Base {
+ public:
+  using State = typename Controlled<P>::State;
+  using Evaluator = typename Controlled<P>::Evaluator;
+  static constexpr int input_count = Controlled<P>::inputs;
+
+  explicit ControlledEvaluator(P problem) : evaluator_(std::move(problem)) {}
+
+  Evaluator& evaluator() noexcept { return evaluator_; }
+  const Evaluator& evaluator() const noexcept override { return evaluator_; }
+  int inputs() const noexcept override { return input_count; }
+  void set_state(std::span<const double> state) noexcept override {
+    State x;
+    std::memcpy(&x, state.data(), sizeof x);
+    evaluator_.set_state(x);
+  }
+  InputBounds stated_bounds() const override { return detail::stated_bounds(stated()); }
+  double unit_variance(int input) const noexcept override { return detail::unit_variance(stated(), input); }
+  double input_step(int input) const noexcept override { return detail::input_step(stated(), input); }
+  bool in_levels() const noexcept override { return has_levels<Stated>; }
+  void set_previous_input(std::span<const double> u) noexcept override {
+    if constexpr (requires(Evaluator & e, const U& input) { e.set_previous_input(input); })
+      evaluator_.set_previous_input(as_inputs<input_count>(u)[0]);
+  }
+  void hold_rates([[maybe_unused]] std::span<const double> previous,
+                  [[maybe_unused]] std::span<double> sequence) const noexcept override {
+    if constexpr (carries_inputs<Stated>) {
+      const std::span<U> u = as_inputs<input_count>(sequence);
+      hold_input_rates(stated(), as_inputs<input_count>(previous)[0], u.data(), static_cast<int>(u.size()));
+    }
+  }
+  void carry([[maybe_unused]] std::span<const float> wanted, [[maybe_unused]] std::span<const double> held,
+             [[maybe_unused]] std::span<double> remainder) const noexcept override {
+    if constexpr (has_levels<Stated>) {
+      const std::span<const U> u = as_inputs<input_count>(held);
+      carry_remainder(stated(), wanted.data(), u.data(), static_cast<int>(u.size()),
+                      as_inputs<input_count>(remainder)[0]);
+    }
+  }
+
+ private:
+  using U = Input<double, input_count>;
+
+  decltype(auto) stated() const noexcept { return Controlled<P>::problem_of(evaluator_); }
+  using Stated = std::remove_cvref_t<decltype(Controlled<P>::problem_of(std::declval<const Evaluator&>()))>;
+
+  Evaluator evaluator_;
 };
 
 }  // namespace detail

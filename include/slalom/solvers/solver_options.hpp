@@ -139,21 +139,4 @@ void visit_options(Options& options, Visit&& visit) {
   });
 }
 
-/// Multiplies the options whose unit is input^2 by `unit(input)` for each of the inputs where that is above
-/// 0. A `variance` of 0, which would follow from the bounds, becomes that unit.
-template <class Unit>
-void scale_variances(SolverOptions& options, int inputs, Unit&& unit) {
-  options.for_each([&](const SolverOptions::Field& field, const Declaration& declaration) {
-    PerInput* const* const option = std::get_if<PerInput*>(&field);
-    if (!option || std::string_view(declaration.unit) != "input^2" || !(*option)->fits(inputs)) return;
-    std::vector<double> scaled;
-    const bool of_samples = std::string_view(declaration.name) == "variance";
-    for (int i = 0; i < inputs; ++i) {
-      const double given = (**option)[i], factor = unit(i);
-      scaled.push_back(factor > 0 ? factor * (given == 0 && of_samples ? 1 : given) : given);
-    }
-    **option = PerInput(std::move(scaled));
-  });
-}
-
 }  // namespace slalom

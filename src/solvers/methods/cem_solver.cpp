@@ -7,6 +7,7 @@
 #include "slalom/solvers/cem_options.hpp"
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/icem_options.hpp"
+#include "solvers/methods/method_solver.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 namespace slalom {
@@ -36,11 +37,11 @@ std::vector<int> batch_sizes(int samples, int iterations, int elites, double dec
 /// `cem`, the cross-entropy method (Rubinstein 1999; Kobilarov 2012): draws samples, fits mean and variance
 /// to the fraction with the lowest costs, and repeats this. With `Memory` it is `icem` (Pinneri et al. 2020,
 /// algorithm 1).
-class CemSolver final : public SolverBase {
+class CemSolver final : public detail::MethodSolver<CemSolver> {
  public:
   CemSolver(const char* name, const CemOptions& options, const Memory& memory, int inputs,
             std::shared_ptr<ThreadPool> pool)
-      : SolverBase(options, inputs, std::move(pool)),
+      : MethodSolver(options, inputs, std::move(pool)),
         name_(name),
         options_(options),
         memory_(memory),
@@ -65,11 +66,6 @@ class CemSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return name_; }
-  std::unique_ptr<Solver> clone() const override {
-    auto copy = std::make_unique<CemSolver>(*this);
-    copy->bind_result();
-    return copy;
-  }
 
   bool takes_proposals() const noexcept override { return true; }
 
@@ -84,10 +80,8 @@ class CemSolver final : public SolverBase {
     bind_result();
   }
 
-  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
-    const auto begin = detail::Clock::now();
-    const Deadline deadline(begin, request.deadline);
-    result_.times = {};
+  void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
+               const Deadline& deadline) noexcept {
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
 
@@ -118,11 +112,8 @@ class CemSolver final : public SolverBase {
     result_.iterations = iteration;
     detail::report_samples(batch, statistics, batch.sum_weights(batch.samples()), result_);
     next_solve();
-    result_.times.total = detail::seconds(begin, detail::Clock::now());
-    return result_;
   }
 
- private:
   /// Lets the result point to this solver's values.
   void bind_result() noexcept {
     result_.mean = mean_;
@@ -132,6 +123,7 @@ class CemSolver final : public SolverBase {
     if (result_.samples) detail::bind_samples(batches_[last_batch_], result_);
   }
 
+ private:
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
     move_forward(mean_.data(), steps);

@@ -4,6 +4,7 @@
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/dial_mpc_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
+#include "solvers/methods/method_solver.hpp"
 #include "solvers/methods/mppi_update.hpp"
 
 namespace slalom {
@@ -20,11 +21,11 @@ struct Annealing {
 
 /// `mppi`: a closed-form update with zero as the nominal sequence. With `Annealing` it is `dial_mpc` (Xue et
 /// al. 2024, algorithm 1): several updates, with less noise in each.
-class MppiSolver final : public SolverBase {
+class MppiSolver final : public detail::MethodSolver<MppiSolver> {
  public:
   MppiSolver(const char* name, const MppiOptions& options, const Annealing& annealing, int inputs,
              std::shared_ptr<ThreadPool> pool)
-      : SolverBase(options, inputs, std::move(pool)),
+      : MethodSolver(options, inputs, std::move(pool)),
         name_(name),
         annealing_(annealing),
         shift_(options.shift_warm_start),
@@ -43,11 +44,6 @@ class MppiSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return name_; }
-  std::unique_ptr<Solver> clone() const override {
-    auto copy = std::make_unique<MppiSolver>(*this);
-    copy->bind_result();
-    return copy;
-  }
 
   bool takes_proposals() const noexcept override { return true; }
 
@@ -64,20 +60,15 @@ class MppiSolver final : public SolverBase {
 
   void prepare() noexcept override { update_.samples().prepare(key(0), pool()); }
 
-  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
-    const auto start = detail::Clock::now();
-    const Deadline deadline(start, request.deadline);
-    result_.times = {};
+  void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
+               const Deadline& deadline) noexcept {
     const double shift = shift_ ? warm_start_shift(evaluator, request) : 0;
     if (shift > 0) move_forward(mean_.data(), shift);
     update_.samples().propose(request.proposals);
     make_updates(evaluator, deadline);
     next_solve();
-    result_.times.total = detail::seconds(start, detail::Clock::now());
-    return result_;
   }
 
- private:
   /// Points the spans of the result to this solver's values.
   void bind_result() noexcept {
     result_.inputs = result_.mean = mean_;
@@ -86,15 +77,18 @@ class MppiSolver final : public SolverBase {
     if (result_.samples) detail::bind_samples(update_.samples(), result_);
   }
 
+ private:
   void make_updates(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     const int wanted = has_solution_ ? annealing_.iterations : annealing_.first_iterations;
     double scale = 1;
     result_.iterations = 0;
     for (int i = 0; i < wanted; ++i, scale *= annealing_.iteration_decay * annealing_.iteration_decay) {
       for (std::size_t r = 0; r < size(); ++r) variance_[r] = static_cast<float>(scale * first_variance_[r]);
-      result_.status =
-          update_.update(evaluator, key(i), zero_.data(), variance_.data(), low().data(), high().data(),
-                         pool(), deadline, mean_.data(), result_, update_.samples().proposed());
+      const auto drawn = update_.sample(
+          evaluator, key(i), {mean_.data(), zero_.data(), variance_.data(), low().data(), high().data()},
+          pool(), deadline);
+      result_.status = update_.move_mean(drawn, pool(), mean_.data(), result_, update_.samples().proposed());
+      if (drawn.finite > 0) clamp(mean_.data());
       if (result_.status == Status::deadline || result_.status == Status::degenerate) return;
       has_solution_ = true;
       result_.iterations = i + 1;

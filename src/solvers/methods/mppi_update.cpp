@@ -31,17 +31,16 @@ WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool, int out
 
 /// Computes the coefficients of the control term. Correlated samples have the covariance D C D, where D holds
 /// their standard deviations and C their correlations.
-void MppiUpdate::set_control_term(double temperature, const float* mean, const float* nominal,
-                                  const float* variance) noexcept {
-  control_coefficients(temperature, discount_, inverse_variance_offset_, mean, nominal, variance,
-                       samples_.rows(), linear_.data());
+void MppiUpdate::set_control_term(double temperature, const Distribution& from) noexcept {
+  control_coefficients(temperature, discount_, inverse_variance_offset_, from.mean, from.nominal,
+                       from.variance, samples_.rows(), linear_.data());
   if (!samples_.shape().correlated()) return;
   const double factor = temperature * (1.0 - discount_);
   const auto scaled = [&](std::size_t r, double value) {
     return deviation_[r] > 0 ? value / deviation_[r] : 0.0;
   };
   const auto difference = [&](std::size_t r) {
-    const double u = mean[r], n = nominal[r];
+    const double u = from.mean[r], n = from.nominal[r];
     return u - n;
   };
   for (std::size_t r = 0; r < sums_.size(); ++r) sums_[r] = scaled(r, difference(r));
@@ -52,44 +51,43 @@ void MppiUpdate::set_control_term(double temperature, const float* mean, const f
   }
 }
 
-Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal,
-                          const float* variance, const float* low, const float* high, ThreadPool& pool,
-                          const Deadline& deadline, float* mean, SolveResult& result,
-                          int outsiders) noexcept {
-  const std::size_t rows = deviation_.size();
-  for (std::size_t r = 0; r < rows; ++r) deviation_[r] = std::sqrt(variance[r]);
+BatchStatistics MppiUpdate::sample(const BatchEvaluator& evaluator, RandomKey key, const Distribution& from,
+                                   ThreadPool& pool, const Deadline& deadline) noexcept {
+  for (std::size_t r = 0; r < deviation_.size(); ++r) deviation_[r] = std::sqrt(from.variance[r]);
   // If the temperature is adapted, the control term is stored separately, in units of the temperature.
   const bool seeks = weighting_.seeks();
-  set_control_term(seeks ? 1.0 : weighting_.temperature(), mean, nominal, variance);
+  set_control_term(seeks ? 1.0 : weighting_.temperature(), from);
   const int zero_mean_from = saturate_cast<int>((1.0 - zero_mean_share_) * samples_.samples());
-  const BatchStatistics statistics =
-      samples_.draw_and_evaluate(evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from},
-                                 seeks ? nullptr : linear_.data(), pool, deadline);
+  return samples_.draw_and_evaluate(evaluator, key,
+                                    {from.mean, deviation_.data(), from.low, from.high, zero_mean_from},
+                                    seeks ? nullptr : linear_.data(), pool, deadline);
+}
 
-  result.times.draw += statistics.draw_time;
-  result.times.evaluate += statistics.evaluate_time;
-  const auto evaluated = Clock::now();
+Status MppiUpdate::move_mean(const BatchStatistics& drawn, ThreadPool& pool, float* mean, SolveResult& result,
+                             int outsiders) noexcept {
+  const auto start = Clock::now();
+  result.times.draw += drawn.draw_time;
+  result.times.evaluate += drawn.evaluate_time;
   WeightSums<double> sums;
-  if (statistics.finite > 0) {
-    if (seeks) {
+  if (drawn.finite > 0) {
+    if (weighting_.seeks()) {
       samples_.keep_terms(linear_.data(), pool);
       sums = weighting_.seek(samples_, pool, outsiders);
     } else {
-      sums = weighting_.weigh(samples_, statistics.minimum_total, pool);
+      sums = weighting_.weigh(samples_, drawn.minimum_total, pool);
     }
     const double normaliser = 1.0 / (sums.weight + normaliser_offset_);
     samples_.weighted_sums(zero_.data(), sums_.data(), pool, normaliser);
     std::copy(sums_.begin(), sums_.end(), mean);
-    for (std::size_t r = 0; r < rows; ++r) mean[r] = std::clamp(mean[r], low[r], high[r]);
   } else {
     std::fill(samples_.weights().begin(), samples_.weights().end(), 0.0f);
   }
-  report_samples(samples_, statistics, sums, result);
+  report_samples(samples_, drawn, sums, result);
   result.temperature = weighting_.temperature();
-  result.times.update += seconds(evaluated, Clock::now());
-  if (statistics.evaluated < samples_.samples()) return Status::deadline;
-  if (statistics.finite == 0) return Status::degenerate;
-  return statistics.collided == samples_.samples() ? Status::all_collided : Status::ok;
+  result.times.update += seconds(start, Clock::now());
+  if (drawn.evaluated < samples_.samples()) return Status::deadline;
+  if (drawn.finite == 0) return Status::degenerate;
+  return drawn.collided == samples_.samples() ? Status::all_collided : Status::ok;
 }
 
 }  // namespace slalom::detail

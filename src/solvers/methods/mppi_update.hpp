@@ -73,16 +73,21 @@ class MppiUpdate {
   /// Returns to the configured temperature.
   void reset() noexcept { weighting_.reset(); }
 
-  /// Replaces `mean` [row] (u) by the new solution, clamped to the bounds. `nominal`, `variance`, `low` and
-  /// `high` are [row]. The last `outsiders` samples are proposals of other controllers. If no cost is finite,
-  /// `mean` does not change. Writes the statistics to `result` and returns the status.
-  Status update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal, const float* variance,
-                const float* low, const float* high, ThreadPool& pool, const Deadline& deadline, float* mean,
-                SolveResult& result, int outsiders = 0) noexcept;
+  /// Parameters of the samples, all [row]: the solution u, the nominal sequence n, and the bounds.
+  struct Distribution {
+    const float *mean, *nominal, *variance, *low, *high;
+  };
+  /// Draws and evaluates the samples.
+  BatchStatistics sample(const BatchEvaluator& evaluator, RandomKey key, const Distribution& from,
+                         ThreadPool& pool, const Deadline& deadline) noexcept;
+  /// Replaces `mean` [row] (u) by the weighted mean of the samples, which rounding may move beyond the
+  /// bounds. The last `outsiders` samples are proposals of other controllers. If no cost is finite, `mean`
+  /// does not change. Writes the statistics to `result` and returns the status.
+  Status move_mean(const BatchStatistics& drawn, ThreadPool& pool, float* mean, SolveResult& result,
+                   int outsiders = 0) noexcept;
 
  private:
-  void set_control_term(double temperature, const float* mean, const float* nominal,
-                        const float* variance) noexcept;
+  void set_control_term(double temperature, const Distribution& from) noexcept;
 
   double discount_;                 ///< alpha
   double inverse_variance_offset_;  ///< added to 1 / variance, 1/input^2

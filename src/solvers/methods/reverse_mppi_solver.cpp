@@ -5,6 +5,7 @@
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
+#include "solvers/methods/method_solver.hpp"
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
 #include "solvers/published/published_program.hpp"
@@ -21,10 +22,10 @@ struct Gaussian {
 
 /// `reverse_mppi` (Kobayashi and Fukumoto 2022): mirror descent on the reverse KL divergence. A second
 /// distribution is fitted to bad samples, and fewer samples are drawn where its density is high.
-class ReverseMppiSolver final : public SolverBase {
+class ReverseMppiSolver final : public detail::MethodSolver<ReverseMppiSolver> {
  public:
   ReverseMppiSolver(const ReverseMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
-      : SolverBase(options, inputs, std::move(pool)),
+      : MethodSolver(options, inputs, std::move(pool)),
         options_(options),
         samples_(options.horizon, inputs, options.samples),
         inflated_(
@@ -56,11 +57,6 @@ class ReverseMppiSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return ReverseMppiOptions::method; }
-  std::unique_ptr<Solver> clone() const override {
-    auto copy = std::make_unique<ReverseMppiSolver>(*this);
-    copy->bind_result();
-    return copy;
-  }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -73,10 +69,8 @@ class ReverseMppiSolver final : public SolverBase {
     bind_result();
   }
 
-  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
-    const auto begin = detail::Clock::now();
-    const Deadline deadline(begin, request.deadline);
-    result_.times = {};
+  void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
+               const Deadline& deadline) noexcept {
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     now_ = start_;
     now_rejected_ = start_rejected_;
@@ -98,11 +92,8 @@ class ReverseMppiSolver final : public SolverBase {
     report(statistics);
     store();
     next_solve();
-    result_.times.total = detail::seconds(begin, detail::Clock::now());
-    return result_;
   }
 
- private:
   /// Lets the result point to this solver's values.
   void bind_result() noexcept {
     result_.inputs = result_.mean = now_.mean;
@@ -111,6 +102,7 @@ class ReverseMppiSolver final : public SolverBase {
     if (result_.samples) detail::bind_samples(samples_, result_);
   }
 
+ private:
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
     for (Gaussian* g : {&start_, &start_rejected_})

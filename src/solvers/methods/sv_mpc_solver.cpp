@@ -5,6 +5,7 @@
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/sv_mpc_options.hpp"
 #include "solvers/kernels/kernels.hpp"
+#include "solvers/methods/method_solver.hpp"
 #include "solvers/methods/stein.hpp"
 #include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"
@@ -15,10 +16,10 @@ namespace {
 
 /// `sv_mpc` (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020): all samples are
 /// particles. SVGD moves them towards the posterior of optimal control sequences for a Gaussian prior.
-class SvMpcSolver final : public SolverBase {
+class SvMpcSolver final : public detail::MethodSolver<SvMpcSolver> {
  public:
   SvMpcSolver(const SvMpcOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
-      : SolverBase(options, inputs, std::move(pool)),
+      : MethodSolver(options, inputs, std::move(pool)),
         options_(options),
         particles_(options.horizon, inputs, options.samples),
         gradient_batch_(options.horizon, inputs, particles_.stride() * options.gradient_samples),
@@ -51,11 +52,6 @@ class SvMpcSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return SvMpcOptions::method; }
-  std::unique_ptr<Solver> clone() const override {
-    auto copy = std::make_unique<SvMpcSolver>(*this);
-    copy->bind_result();
-    return copy;
-  }
   bool keeps_bounds() const noexcept override { return options_.published.clamp_solution; }
 
   void reset(std::uint64_t seed) noexcept override {
@@ -67,10 +63,9 @@ class SvMpcSolver final : public SolverBase {
     bind_result();
   }
 
-  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+  void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
+               const Deadline& deadline) noexcept {
     const auto begin = detail::Clock::now();
-    const Deadline deadline(begin, request.deadline);
-    result_.times = {};
     next_solve();  // here, so that the published program's random numbers stay; symptoms are a solve late
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     set_prior();
@@ -105,12 +100,8 @@ class SvMpcSolver final : public SolverBase {
                      : all_collided                      ? Status::all_collided
                                                          : Status::ok;
     result_.times.update = detail::seconds(evaluated, detail::Clock::now());
-    result_.times.total = detail::seconds(begin, detail::Clock::now());
-    return result_;
   }
 
- private:
-  static constexpr int tile = 128;  ///< particles per task
   /// Lets the result point to this solver's values.
   void bind_result() noexcept {
     result_.inputs = solution_;
@@ -120,6 +111,8 @@ class SvMpcSolver final : public SolverBase {
     if (result_.samples) detail::bind_samples(particles_, result_);
   }
 
+ private:
+  static constexpr int tile = 128;  ///< particles per task
   int tiles() const noexcept { return (particles_.stride() + tile - 1) / tile; }
   detail::Range range(int t) const noexcept {
     return {t * tile, std::min(tile, particles_.stride() - t * tile)};

@@ -6,6 +6,7 @@
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/methods/guides.hpp"
+#include "solvers/methods/method_solver.hpp"
 #include "solvers/methods/mppi_update.hpp"
 #include "solvers/sampling/seek_temperature.hpp"
 
@@ -21,11 +22,11 @@ namespace {
 /// last two batches have white noise, those between coloured noise: some problems need inputs that change
 /// slowly, others inputs that change from step to step. The best sequence or the last mean, whichever costs
 /// less, is the solution.
-class SvgMppiSolver final : public SolverBase {
+class SvgMppiSolver final : public detail::MethodSolver<SvgMppiSolver> {
  public:
   /// `options` has the size of the largest batch in place of the number of all samples, `total`.
   SvgMppiSolver(const SvgMppiOptions& options, int total, int inputs, std::shared_ptr<ThreadPool> pool)
-      : SolverBase(options, inputs, std::move(pool)),
+      : MethodSolver(options, inputs, std::move(pool)),
         shift_(options.shift_warm_start),
         use_nominal_(options.use_nominal),
         around_nominal_(options.use_nominal && options.guides.sample_around == SampleCentre::nominal),
@@ -48,11 +49,6 @@ class SvgMppiSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return SvgMppiOptions::method; }
-  std::unique_ptr<Solver> clone() const override {
-    auto copy = std::make_unique<SvgMppiSolver>(*this);
-    copy->bind_result();
-    return copy;
-  }
 
   bool takes_proposals() const noexcept override { return true; }
 
@@ -71,10 +67,9 @@ class SvgMppiSolver final : public SolverBase {
 
   void prepare() noexcept override { update_.samples().prepare(key(samples), pool()); }
 
-  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+  void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
+               const Deadline& deadline) noexcept {
     const auto start = detail::Clock::now();
-    const Deadline deadline(start, request.deadline);
-    result_.times = {};
     if (shift_) shift(warm_start_shift(evaluator, request));
 
     // (a) Guides move to modes (equations (9) to (11)); the last solution and proposals may join them.
@@ -103,14 +98,7 @@ class SvgMppiSolver final : public SolverBase {
     result_.guides = guides_.sequences();
     result_.guide_path = guides_.path();
     next_solve();
-    result_.times.total = detail::seconds(start, detail::Clock::now());
-    return result_;
   }
-
- private:
-  static constexpr int most_elites = 4;  ///< sequences that are kept from one solve to the next
-  /// The random streams of a solve.
-  enum Stage { first_guides, samples, gradients, later_batches = 60000, restarts = 65535 };
 
   /// Points the spans of the result to this solver's values.
   void bind_result() noexcept {
@@ -122,6 +110,11 @@ class SvgMppiSolver final : public SolverBase {
     result_.guides = guides_.sequences();
     result_.guide_path = guides_.path();
   }
+
+ private:
+  static constexpr int most_elites = 4;  ///< sequences that are kept from one solve to the next
+  /// The random streams of a solve.
+  enum Stage { first_guides, samples, gradients, later_batches = 60000, restarts = 65535 };
 
   /// Offers proposals as guides; without a nominal sequence, as samples.
   void take_in(const BatchEvaluator& evaluator, const SequenceList& proposals) noexcept {
@@ -162,8 +155,12 @@ class SvgMppiSolver final : public SolverBase {
 
   Status update(const BatchEvaluator& evaluator, const float* nominal, int stage,
                 const Deadline& deadline) noexcept {
-    return update_.update(evaluator, key(stage), nominal, variance_.data(), low().data(), high().data(),
-                          pool(), deadline, mean_.data(), result_);
+    const auto drawn = update_.sample(evaluator, key(stage),
+                                      {mean_.data(), nominal, variance_.data(), low().data(), high().data()},
+                                      pool(), deadline);
+    const Status status = update_.move_mean(drawn, pool(), mean_.data(), result_);
+    if (drawn.finite > 0) clamp(mean_.data());
+    return status;
   }
 
   /// Makes one update for each batch, then replaces the mean by the best sequence if that costs less.

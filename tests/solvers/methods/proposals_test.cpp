@@ -67,23 +67,6 @@ TEST(Proposals, TheyAreTheLastSamplesInTheirOrder) {
   EXPECT_NE(result.samples->at(0, 0, count - 1), 2.0f) << "they count for one solve only";
 }
 
-TEST(Proposals, BadValuesDoNoHarm) {
-  const auto evaluator = far_away();
-  for (const char* method : taking) {
-    for (const float value :
-         {std::numeric_limits<float>::quiet_NaN(), 1e30f, -1e30f, std::numeric_limits<float>::infinity()}) {
-      const std::vector<float> values(steps, value);
-      const auto solver = make(method);
-      for (int i = 0; i < 2; ++i) {
-        for (const float u : solver->solve(evaluator, {.proposals = {values, 1}}).inputs) {
-          EXPECT_TRUE(std::isfinite(u)) << method << " " << value;
-          EXPECT_LE(std::abs(u), 4.0f) << method << " " << value;
-        }
-      }
-    }
-  }
-}
-
 TEST(Proposals, MoreThanSamples) {
   const auto evaluator = far_away();
   std::vector<float> values(40 * steps);

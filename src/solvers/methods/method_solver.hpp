@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "slalom/solvers/solver_base.hpp"
+#include "solvers/sampling/sample_set.hpp"
+
+namespace slalom::detail {
+
+/// The frame of the solvers of this library: how they are copied, and what begins and ends a solve. `Self`
+/// has
+///
+///     void compute(const BatchEvaluator&, const SolveRequest&, const Deadline&) noexcept;
+///     void bind_result() noexcept;    // points the spans of the result to its own values
+template <class Self>
+class MethodSolver : public SolverBase {
+ public:
+  std::unique_ptr<Solver> clone() const override {
+    auto copy = std::make_unique<Self>(static_cast<const Self&>(*this));
+    copy->bind_result();
+    return copy;
+  }
+  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+    const auto start = Clock::now();
+    result_.times = {};
+    static_cast<Self&>(*this).compute(evaluator, request, Deadline(start, request.deadline));
+    result_.times.total = seconds(start, Clock::now());
+    return result_;
+  }
+
+ protected:
+  using SolverBase::SolverBase;
+};
+
+}  // namespace slalom::detail
