@@ -118,7 +118,9 @@ export default async function (h) {
     assert.equal(await line.getAttribute("aria-pressed"), "false");
     await line.click();
     await page.check("#log");
-    const box = await page.locator("#charts .u-over").nth(1).boundingBox();
+    const chart = page.locator("#charts .u-over").nth(1);
+    await chart.scrollIntoViewIfNeeded();
+    const box = await chart.boundingBox();
     const at = (share) => [box.x + share * box.width, box.y + 20];
     await look.drag(at(0.2), at(0.6));
     await page.locator("#zoom-out").waitFor();
