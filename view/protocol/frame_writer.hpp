@@ -37,7 +37,7 @@ enum class Block : std::uint16_t {
   file = 30,
 };
 
-constexpr int unknown_place = 255;  ///< of a candidate that collides: the first state that does is not known
+constexpr int unknown_place = 255;  ///< code of a candidate that collides, but not where
 
 /// The words of a text.
 std::vector<std::string> words_of(const char* text);

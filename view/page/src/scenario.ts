@@ -45,7 +45,7 @@ function show(state: State) {
   field("real-time").checked = state.real_time;
 }
 
-/** What drives where, in a few words. */
+/** Names of course, method, ghost, seed and obstacles, in a few words. */
 export function titleParts(): string[] {
   const { state } = page;
   if (!state) return [];
