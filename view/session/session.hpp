@@ -26,7 +26,7 @@ struct SessionOptions {
   ScenarioNames scenario;
   std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws errors for the user
   Choices choices;
-  std::string further_arguments;  ///< arguments of the equivalent command line; begins with a space
+  std::string further_arguments;   ///< arguments of the equivalent command line; begins with a space
   std::string against{};           ///< method of a ghost from the start, if any
   bool introduction = false;       ///< in slow motion until the first obstacle has been passed
   bool record_all = false;         ///< recordings and replays contain everything
