@@ -189,6 +189,13 @@ TEST(ObjectTrackerInput, IsChecked) {
   EXPECT_EQ(tracker.update({{}, {}, 1.1}).status, TrackerStatus::bad_scan);
 }
 
+TEST(ObjectTrackerInput, AStampMayGoBackByMoreThanASecond) {
+  ObjectTracker tracker;
+  EXPECT_EQ(tracker.update({{}, {}, 10}).status, TrackerStatus::bad_scan);
+  EXPECT_EQ(tracker.update({{}, {}, 9.2}).status, TrackerStatus::stale);
+  EXPECT_EQ(tracker.update({{}, {}, 8.5}).status, TrackerStatus::bad_scan) << "a clock that was set back";
+}
+
 TEST(TrackerCheck, BeamsThatAreNearlyOneEnd) {
   // An object spans 1e8 such beams; the test would not end if each were looked at.
   ObjectTracker tracker(room());

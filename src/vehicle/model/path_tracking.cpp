@@ -9,7 +9,7 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double most_checks = 1000;
+constexpr double most_checks = 1000;  // places of the body on its way between two states
 
 /// The radius of three equal discs that cover the body's rectangle, m.
 double disc_radius(const BodyOptions& options) {

@@ -17,26 +17,23 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double longest_gap = 0.2;          // s between samples
-constexpr double settling_time = 0.5;        // s at the begin of a segment
 constexpr double window_length = 0.2;        // s
 constexpr double longest_step = 0.005;       // s of the prediction
 constexpr double largest_acceleration = 15;  // m/s^2
 constexpr double outlier = 5;                // deviations
-constexpr std::size_t min_windows = 50;
-constexpr double first_yaw = 0.01, first_sideways = 0.01;  // rad, m, deviations before the first fit
+constexpr double first_deviation = 0.01;     // rad and m, before the first fit
 
 /// The parameters by their index.
 struct At {
-  static constexpr std::size_t friction = 0, front = 1, rear = 2, gain = 3, offset = 4, delay = 5, lag = 6,
-                               count = 7;
+  enum : std::size_t { friction, front, rear, gain, offset, delay, lag, count };
 };
+/// The least and the largest value of each, and the step of derivatives by it.
 constexpr std::array<detail::FitParameter, At::count> tyre_parameters{{{0.1, 2.5, 1e-4},
                                                                        {0.5, 100, 1e-3},
                                                                        {0.5, 100, 1e-3},
                                                                        {0.3, 3, 1e-4},
                                                                        {-0.3, 0.3, 1e-5},
-                                                                       {0, 0.3, 1e-4},
+                                                                       {0, detail::DriveLimits::delay, 1e-4},
                                                                        {2e-3, 1, 1e-4}}};
 
 /// The drive from one sample to the next.
@@ -65,7 +62,7 @@ double acceleration_at(std::span<const DrivenSample> samples, std::size_t i) {
   std::size_t low = i, high = i + 1;
   const auto joined = [&](std::size_t a) {
     const double dt = samples[a + 1].time - samples[a].time;
-    return is_usable(samples[a]) && is_usable(samples[a + 1]) && dt > 0 && dt <= longest_gap;
+    return is_usable(samples[a]) && is_usable(samples[a + 1]) && dt > 0 && dt <= detail::DriveLimits::gap;
   };
   for (int k = 0; k < 2 && low > 0 && joined(low - 1); ++k) --low;
   for (int k = 0; k < 2 && high + 1 < samples.size() && joined(high); ++k) ++high;
@@ -79,7 +76,7 @@ std::vector<Step> steps_of(std::span<const DrivenSample> samples, double min_spe
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const DrivenSample &a = samples[i], &b = samples[i + 1];
     const double dt = b.time - a.time;
-    if (!is_usable(a) || !is_usable(b) || dt <= 0 || dt > longest_gap ||
+    if (!is_usable(a) || !is_usable(b) || dt <= 0 || dt > detail::DriveLimits::gap ||
         std::min(a.speed, b.speed) < min_speed) {
       first = true;
       continue;
@@ -100,7 +97,7 @@ std::vector<Window> windows_of(std::span<const DrivenSample> samples, const std:
            steps[end - 1].end - steps[i].begin < window_length - 1e-9)
       ++end;
     const double duration = steps[end - 1].end - steps[i].begin;
-    if (duration >= window_length - 1e-9 && steps[i].begin - segment_begin >= settling_time) {
+    if (duration >= window_length - 1e-9 && steps[i].begin - segment_begin >= detail::DriveLimits::settling) {
       const DrivenSample &a = samples[steps[i].sample], &b = samples[steps[end - 1].sample + 1];
       const double turned = maps::wrap_angle(b.yaw - a.yaw);
       windows.push_back({i, end, turned, maps::inverse_transform({a.x, a.y, a.yaw}, {b.x, b.y}).y,
@@ -214,10 +211,10 @@ Deviations spread(const std::vector<double>& residuals, const Deviations& before
 }
 
 void require_windows(std::span<const DrivenSample> samples, const std::vector<Window>& windows) {
-  if (windows.size() < min_windows)
+  if (windows.size() < detail::DriveLimits::windows)
     throw std::invalid_argument("identify: " + std::to_string(windows.size()) +
                                 " windows of 0.2 s are usable, must be at least " +
-                                std::to_string(min_windows) + "; drive for longer");
+                                std::to_string(detail::DriveLimits::windows) + "; drive for longer");
   double low = 1e9, high = -1e9;
   for (const DrivenSample& s : samples)
     if (is_usable(s)) low = std::min(low, s.steer_command), high = std::max(high, s.steer_command);
@@ -264,7 +261,7 @@ TyreIdentification identify_tyres(std::span<const DrivenSample> samples, const P
   for (const double share : {0.4, 0.7, 1.0})
     for (const double wait : {0.02, 0.08})
       starts.push_back({share * own.friction, own.cornering_front, own.cornering_rear, 1, 0, wait, 0.05});
-  Deviations deviations{first_yaw, first_sideways};
+  Deviations deviations{first_deviation, first_deviation};
   detail::Fit best = best_fit(drive, deviations, starts);
 
   std::vector<double> residuals;

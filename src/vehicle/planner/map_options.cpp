@@ -47,7 +47,7 @@ double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOp
 
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                   const VehicleTraits& traits, double duration) {
-  constexpr double least = 6, most = 30;
+  constexpr double least = 6, most = 30;  // m, reach of the maps
   const double scale = map_scale(options);
   return std::clamp(fastest(path, options, traits) * duration + 1.5, scale * least, scale * most);
 }

@@ -168,7 +168,7 @@ class PathTracking {
   /// cost makes plans end in states from which the car can stop in time.
   template <class T>
   SLALOM_INLINE T speed_of_collision(const State<T>& s) const {
-    constexpr int pieces = 5;
+    constexpr int pieces = 5;  // parts of the way in which the car stops
     const T piece = motion_.stopping_distance(s) * T(1.0 / pieces);
     const T lead = T(obstacles_.foremost());
     T sine, cosine;
