@@ -2,7 +2,6 @@
 // server. The first byte of the latter chooses whether the others are sent as they are, or behind the opening
 // of a WebSocket.
 #include <chrono>
-#include <stdexcept>
 
 #include "fuzz/target.hpp"
 #include "view/server/server.hpp"
@@ -31,21 +30,6 @@ view::SessionOptions session_options() {
   };
   options.choices = {
       .courses = {"wren"}, .methods = {"mppi", "svg_mppi", "cem"}, .configurations = {"default"}};
-  // Two experiments of four laps each, the second with obstacles to hit.
-  options.evaluation = R"({"type":"evaluation","folder":"ev","course":"wren","experiments":[],"laps":[]})";
-  options.load_lap = [load = options.load](int experiment, int lap) {
-    if (experiment < 0 || experiment > 1)
-      throw std::invalid_argument("experiment: must be one of this evaluation");
-    if (lap < 0 || lap > 3) throw std::invalid_argument("lap: must be a lap of the experiment");
-    view::LoadedLap loaded;
-    loaded.names = {.course = "wren",
-                    .method = "mppi",
-                    .config = "default",
-                    .seed = static_cast<std::uint64_t>(lap),
-                    .obstacles = 2 * experiment};
-    loaded.scenario = load(loaded.names);
-    return loaded;
-  };
   return options;
 }
 
@@ -84,9 +68,7 @@ const Target commands_target(
 {"do":"restart"}
 {"do":"scenario","course":"wren","seed":"9","obstacles":1,"opponents":0}
 {"do":"save","what":"recording"}
-{"do":"lap","experiment":0,"lap":0}
 {"do":"step"}
-{"do":"lap","experiment":1,"lap":3,"contact":0}
 )"};
     },
     [](std::string_view bytes) {

@@ -10,7 +10,9 @@ namespace {
 
 TEST_F(ViewSession, FirstMessagesHoldWhatThePageNeeds) {
   const json hello = next("hello");
-  EXPECT_EQ(hello["protocol"], 1);
+  EXPECT_EQ(hello["protocol"], 2);
+  EXPECT_EQ(hello["terms"].size(), 3u);
+  EXPECT_GT(hello["body"]["front"], 0) << "a car has wheels";
   EXPECT_EQ(hello["scalars"].size(), scalar_names().size());
   EXPECT_EQ(hello["courses"], (json{"stag", "eel"}));
   const json options = next("options");

@@ -21,7 +21,7 @@ struct ViewArguments {
   std::uint64_t seed = 0;
   std::string host = "127.0.0.1";
   std::uint16_t port = 8400;
-  std::string token, against, evaluation, problem, room;
+  std::string token, against, problem, room;
   bool record_all = false, record_times = false;
   bool introduction = false;
 };
@@ -68,9 +68,7 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
 int view(const ViewArguments& arguments) {
   const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
   view::Server server(options, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
-  view::SessionOptions session_of = session_options(arguments);
-  if (!arguments.evaluation.empty()) open_evaluation(arguments.evaluation, session_of);
-  view::Session session(std::move(session_of), server);
+  view::Session session(session_options(arguments), server);
   const InterruptFlag interrupt;
   print_address(view::address_of(server, options));
   while (!interrupt.raised()) session.turn(std::chrono::milliseconds(50));
@@ -108,8 +106,6 @@ void declare_view(Subcommand& command) {
   command.option(
       "--room", arguments->room,
       "Show the navigator of a mobile robot in a scenario of slalom navigate, such as crowd-crossing");
-  command.option("--eval", arguments->evaluation,
-                 "Open an evaluation (output folder of slalom eval): its laps and the collisions in them");
   command.flag("--record-all", arguments->record_all,
                "Recordings and replays that the page saves have all candidates, guides and cost maps");
   command.flag("--record-times", arguments->record_times,

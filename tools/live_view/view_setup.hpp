@@ -22,8 +22,4 @@ view::ServerOptions server_options(const std::string& host, std::uint16_t port, 
 /// Prints the address of the page.
 void print_address(const std::string& address);
 
-/// Makes the live view show an evaluation: its laps and collisions, each of which can be repeated. Throws
-/// IoError.
-void open_evaluation(const std::string& folder, view::SessionOptions& options);
-
 }  // namespace slalom::tools

@@ -65,6 +65,7 @@ void put_points(FrameWriter& to, Poses poses, double most) {
 }
 
 void put_lines(FrameWriter& to, Block block, const std::vector<Line>& lines) {
+  if (lines.empty()) return;
   to.begin(block);
   to.put(static_cast<std::uint32_t>(lines.size()));
   for (const Line& line : lines) {
@@ -101,7 +102,7 @@ void put_scene(FrameWriter& to, const SubjectFacts& facts, const std::vector<Sha
 }
 
 /// Writes candidates: each term of their costs, the solver's cost, the weight, and 1 + the first state that
-/// collides, at most 255.
+/// collides, at most 254, or `unknown_place`.
 void put_candidates(FrameWriter& to, const Sequences& all, const SolveResult& solve,
                     const Trajectories& rolled, std::size_t terms, std::size_t points, Poses poses,
                     double reach) {
@@ -122,7 +123,7 @@ void put_candidates(FrameWriter& to, const Sequences& all, const SolveResult& so
   for (std::size_t i = 0; i < all.candidates; ++i) {
     const bool collides = solve.collided[static_cast<std::size_t>(all.samples[i])] != 0;
     const int at = rolled.collisions[first + i];
-    to.put(static_cast<std::uint8_t>(collides ? std::clamp(at + 1, 1, 255) : 0));
+    to.put(static_cast<std::uint8_t>(!collides ? 0 : at < 0 ? unknown_place : std::min(at + 1, 254)));
   }
   to.pad();
   put_points(to, poses.subspan(first * points, all.candidates * points), reach);
@@ -139,9 +140,9 @@ std::vector<std::string> problem_scalars(const SubjectFacts& facts) {
   const auto add = [&](const char* kind, const std::vector<std::string>& all) {
     for (const std::string& each : all) names.push_back(kind + each);
   };
+  for (const std::string& term : facts.terms) names.push_back(term + "_cost");
   add("state.", facts.states);
   add("input.", facts.inputs);
-  add("cost.", facts.terms);
   return names;
 }
 
@@ -170,9 +171,9 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
   to.put({static_cast<double>(solve.iterations), 1e3 * step.solve_time, 1e3 * step.period});
   to.put({frame.collides ? 1.0 : 0.0, static_cast<double>(step.collisions + frame.collides), step.period});
   to.put({static_cast<double>(step.method), cost, static_cast<double>(solve.symptom())});
+  for (const double sum : sums) to.put(sum);
   for (const double value : step.state) to.put(value);
   for (std::size_t i = 0; i < inputs; ++i) to.put(subject.inputs()[i]);
-  for (const double sum : sums) to.put(sum);
   to.end();
 
   const std::vector<Shape> shapes = subject.shapes();
@@ -201,7 +202,7 @@ ProblemFrame encode_step(Subject& subject, const SolveResult& solve, const Probl
 
   put_scene(to, facts, shapes, now, frame.collides);
   put_lines(to, Block::figure, figure);
-  if (!lines.empty()) put_lines(to, Block::lines, lines);
+  put_lines(to, Block::lines, lines);
   if (all.candidates > 0) put_candidates(to, all, solve, rolled, terms, points, poses, reach);
   std::vector<double> costs = rolled.costs;  // those of plan and candidates
   const auto block = static_cast<std::ptrdiff_t>(points * terms);

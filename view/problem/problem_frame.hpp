@@ -6,6 +6,7 @@
 
 #include "slalom/view/subject.hpp"
 #include "view/protocol/frame_writer.hpp"
+#include "view/protocol/page_json.hpp"
 
 /// The messages of a control step of a user's own problem.
 namespace slalom::view {
@@ -22,15 +23,6 @@ struct ProblemStep {
   int collisions = 0;     ///< steps until now that collided, without this one
   int method = 0;         ///< index of the method
   std::vector<double> state;
-};
-
-/// A rectangle along the axes, m.
-struct Bounds {
-  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  /// Grows to include a point.
-  void include(double x, double y) {
-    x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
-  }
 };
 
 /// A frame, and what else follows from its rollouts.

@@ -19,7 +19,7 @@ void ProblemSession::join(std::uint64_t client) {
   }
   audience_.tell(client, options());
   audience_.tell(client, state());
-  if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
+  if (!timeline_.empty()) server_.publish(client, timeline_.frame(shown_tick()));
 }
 
 void ProblemSession::tell() {
@@ -30,8 +30,12 @@ void ProblemSession::tell() {
 
 Json ProblemSession::hello() const {
   const SubjectFacts& facts = drives_->subject->facts();
+  Json can = Json::array();
+  if (facts.can_place) can.push_back("place");
+  if (facts.can_move) can.push_back("move");
   return {{"type", "hello"},
-          {"protocol", 1},
+          {"protocol", 2},
+          {"title", facts.title.empty() ? "your problem" : facts.title},
           {"scalars", problem_scalars(facts)},
           {"statuses", facts.statuses.empty() ? names_json(Status::invalid_time) : Json(facts.statuses)},
           {"symptoms", symptoms_json()},
@@ -39,14 +43,10 @@ Json ProblemSession::hello() const {
           {"methods", methods_},
           {"configurations", Json::array()},
           {"terms", facts.terms},
-          {"problem",
-           {{"title", facts.title.empty() ? "your problem" : facts.title},
-            {"states", facts.states},
-            {"inputs", facts.inputs},
-            {"length", facts.length},
-            {"width", facts.width},
-            {"can_place", facts.can_place},
-            {"can_move", facts.can_move}}},
+          {"states", facts.states},
+          {"inputs", facts.inputs},
+          {"body", body_json(facts.length, facts.width)},
+          {"can", can},
           {"history_seconds", stored_seconds},
           {"control_period", drives_->period}};
 }
@@ -54,7 +54,7 @@ Json ProblemSession::hello() const {
 Json ProblemSession::state() {
   const SolverOptions* options = shown().options();
   return {{"type", "state"},
-          {"course", drives_->subject->facts().title},
+          {"course", ""},
           {"description", ""},
           {"length", 0},
           {"method", options ? options->method() : ""},
@@ -77,7 +77,8 @@ Json ProblemSession::state() {
           {"ghost_label", ""},
           {"generation", generation_},
           {"edited", edited_},
-          {"bounds", {bounds_.x0, bounds_.y0, bounds_.x1, bounds_.y1}}};
+          {"introduction", false},
+          {"bounds", bounds_json(bounds_)}};
 }
 
 Json ProblemSession::options() {

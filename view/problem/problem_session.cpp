@@ -59,7 +59,7 @@ void ProblemSession::restart() {
 
 void ProblemSession::tick() {
   pace_.step(drives_->period, rate_);
-  timeline_.checkpoint(*drives_, copy_bytes_, solve_time_);
+  timeline_.checkpoint(*drives_);
   keep(drive(*drives_));
 }
 
@@ -68,7 +68,6 @@ ProblemFrame ProblemSession::drive(Run& run) {
   const auto begin = Clock::now();
   const SolveResult& solve = run.decide();
   solve_time_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  copy_bytes_ = bytes_of(&solve);
   const auto method = std::find(methods_.begin(), methods_.end(),
                                 run.subject->options() ? run.subject->options()->method() : "");
   const auto earlier = std::lower_bound(collided_.begin(), collided_.end(), run.steps) - collided_.begin();
@@ -92,7 +91,9 @@ void ProblemSession::keep(ProblemFrame frame) {
   if (number == 0) bounds_ = frame.bounds;
   bounds_.include(frame.bounds.x0, frame.bounds.y0);
   bounds_.include(frame.bounds.x1, frame.bounds.y1);
-  timeline_.keep({number, {}, shared(std::move(frame.message))});
+  DrivenTick driven{number, {}, shared(std::move(frame.message))};
+  driven.keep_scalars(scalars());
+  timeline_.keep(std::move(driven));
   offer_newest();
 }
 
@@ -120,7 +121,7 @@ void ProblemSession::perform(const Timeline::Action& change) {
   timeline_.note(before.steps, action);
   drives_ = std::move(run);
   if (!is_driven_again) return;
-  timeline_.checkpoint(before, copy_bytes_, 1);  // a copy in any case: going back need not repeat the changes
+  timeline_.checkpoint(before, true);  // a copy in any case: going back need not repeat the changes
   held_ = std::move(before);
   keep(std::move(frame));
   publish_newest();

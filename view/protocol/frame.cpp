@@ -20,7 +20,7 @@ constexpr const char* scalar_labels =
     "distance_cost yaw_cost collision_cost minimum_cost expected_cost effective_samples samples "
     "collided_share temperature iterations tick_ms draw_ms evaluate_ms guide_ms update_ms solve_ms "
     "deadline_ms lap lap_time progress path_distance clearance contact contacts sequence_cost "
-    "prediction_step method slip_estimate grip_used friction_estimate friction_relied_on "
+    "prediction_step method plan_cost slip_estimate grip_used friction_estimate friction_relied_on "
     "steering_gain_estimate steering_offset_estimate delay_estimate odometry_x odometry_y odometry_yaw "
     "odometry_speed symptom";
 
@@ -118,7 +118,7 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   to.put({static_cast<double>(lap), tick.time - laps.lap_start_time()});
   to.put({laps.progress() / world.track().lap_path()->length() - lap, laps.offset(), clearance_of(world)});
   to.put({tick.seen.collides() ? 1.0 : 0.0, static_cast<double>(tick.collisions), tick.cost.total()});
-  to.put({facts.prediction_step, static_cast<double>(facts.method)});
+  to.put({facts.prediction_step, static_cast<double>(facts.method), cost_.state + cost_.collision});
   if (estimate.friction > 0) {
     const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
     to.put({out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction});
@@ -187,7 +187,7 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   to.begin(Block::candidates);
   to.put(static_cast<std::uint16_t>(count));
   to.put(static_cast<std::uint16_t>(steps + 1));
-  std::string collided;  // 1 + the first state that collides, or 1 if that is not known
+  std::string collided;  // 1 + the first state that collides
   for (int i = 0; i < count; ++i) {
     // Evenly spread over the samples, so that the picture is as dense in every region as they are.
     const auto k = static_cast<int>(std::int64_t{i} * batch.samples() / count);
@@ -199,7 +199,7 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
     const auto first =
         std::find_if(states.begin(), states.end(), [](const auto& each) { return each.cost.collided; });
     const auto place =
-        first == states.end() ? 1 : std::min<std::ptrdiff_t>(1 + (first - states.begin()), 255);
+        first == states.end() ? unknown_place : std::min<std::ptrdiff_t>(1 + (first - states.begin()), 254);
     const auto at = static_cast<std::size_t>(k);
     to.put_f32({cost_.distance, cost_.state - cost_.distance, cost_.collision});
     to.put(solve.costs[at]);

@@ -44,8 +44,6 @@ class FrameEncoder {
 
 /// Returns the block with the bodies of a world, to be appended to a frame. Body 0 is the driven car.
 std::string encode_bodies(const sim::World& world);
-/// Returns the block with the car of the ghost, to be appended to a frame.
-std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> plan);
 /// Returns the block with the message `frame` of the ghost's control step, to be appended to a frame.
 std::string encode_ghost_frame(std::string_view frame);
 /// Returns the message with the map and the line of the course.

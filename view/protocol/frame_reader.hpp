@@ -31,17 +31,17 @@ class FrameReader {
   /// Returns the payload of a block; empty if the message has none of this kind.
   std::string_view block(Block kind) const {
     const auto found = blocks_.find(kind);
-    return found == blocks_.end() ? std::string_view{} : found->second.payload;
+    return found == blocks_.end() ? std::string_view{} : found->second.bytes;
   }
   /// Returns the position of the payload in the message.
   std::size_t offset(Block kind) const { return blocks_.at(kind).offset; }
 
  private:
-  struct Place {
+  struct Payload {
     std::size_t offset = 0;
-    std::string_view payload;
+    std::string_view bytes;
   };
-  std::map<Block, Place> blocks_;
+  std::map<Block, Payload> blocks_;
 };
 
 /// Reads a payload from its beginning.

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
-#include <iterator>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +23,6 @@ enum class Block : std::uint16_t {
   plan = 7,
   bodies = 8,
   covariance = 9,
-  ghost = 10,
   ghost_frame = 11,
   others = 12,
   figure = 13,
@@ -41,11 +37,10 @@ enum class Block : std::uint16_t {
   file = 30,
 };
 
+constexpr int unknown_place = 255;  ///< code of a candidate that collides, but not where
+
 /// The words of a text.
-inline std::vector<std::string> words_of(const char* text) {
-  std::istringstream words(text);
-  return {std::istream_iterator<std::string>(words), {}};
-}
+std::vector<std::string> words_of(const char* text);
 
 /// Writes a binary message: "SLV1", then blocks of kind (u16), 0 (u16), length (u32) and payload, padded with
 /// zeros to four bytes. Numbers are little-endian, as in the memory of all supported machines.
@@ -55,17 +50,8 @@ class FrameWriter {
 
   FrameWriter() { bytes_ = "SLV1"; }
 
-  void begin(Block block) {
-    put(static_cast<std::uint16_t>(block));
-    put(std::uint16_t{0});
-    length_at_ = bytes_.size();
-    put(std::uint32_t{0});
-  }
-  void end() {
-    const auto length = static_cast<std::uint32_t>(bytes_.size() - length_at_ - 4);
-    std::memcpy(bytes_.data() + length_at_, &length, sizeof length);
-    pad();
-  }
+  void begin(Block block);
+  void end();
   void pad() { bytes_.resize((bytes_.size() + 3) & ~std::size_t{3}, '\0'); }
 
   template <class T>
@@ -82,53 +68,18 @@ class FrameWriter {
   }
   void put_pose(const maps::Pose& pose) { put({pose.x, pose.y, pose.yaw}); }
   /// Writes a body of the block `bodies`; its length and width in m.
-  void put_body(std::size_t id, int kind, bool touched, const maps::Pose& at, double length, double width) {
-    put(static_cast<std::uint16_t>(id));
-    put(static_cast<std::uint8_t>(kind));
-    put(static_cast<std::uint8_t>(touched));
-    put_f32({at.x, at.y, at.yaw, length, width});
-  }
+  void put_body(std::size_t id, int kind, bool touched, const maps::Pose& at, double length, double width);
   /// Writes the variance of the first input of each step, [step][input].
-  void put_covariance(std::span<const float> variances, std::size_t inputs) {
-    begin(Block::covariance);
-    for (std::size_t row = 0; row < variances.size(); row += inputs) put(variances[row]);
-    end();
-  }
+  void put_covariance(std::span<const float> variances, std::size_t inputs);
 
   /// Writes the block with a map: runs of equal cells, the value in the upper 8 bits, the length in the
   /// lower 24.
-  void put_grid(const maps::OccupancyGrid& grid) {
-    std::vector<std::uint32_t> runs;
-    for (const maps::Occupancy cell : grid.cells) {
-      const auto value = static_cast<std::uint32_t>(cell);
-      if (runs.empty() || runs.back() >> 24 != value || (runs.back() & 0xffffffu) == 0xffffffu)
-        runs.push_back(value << 24);
-      ++runs.back();
-    }
-    begin(Block::grid);
-    put(static_cast<std::uint32_t>(grid.width));
-    put(static_cast<std::uint32_t>(grid.height));
-    put(grid.resolution);
-    put_pose(grid.origin);
-    put(static_cast<std::uint32_t>(runs.size()));
-    for (const std::uint32_t run : runs) put(run);
-    end();
-  }
+  void put_grid(const maps::OccupancyGrid& grid);
 
   /// Begins a list of points with their origin and unit (m), of which 16 bits reach 32767 either way. Each
   /// point is stored as its difference to the one before, which compresses better.
-  void begin_points(const maps::Point& origin, double unit = 0.001) {
-    origin_ = origin;
-    unit_ = unit;
-    last_x_ = last_y_ = 0;
-    put(origin.x);
-    put(origin.y);
-    put_f32(unit);
-  }
-  void put_point(const maps::Point& point) {
-    put_difference(counts(point.x - origin_.x), last_x_);
-    put_difference(counts(point.y - origin_.y), last_y_);
-  }
+  void begin_points(const maps::Point& origin, double unit = 0.001);
+  void put_point(const maps::Point& point);
 
   void append(std::string_view bytes) { bytes_ += bytes; }
   std::string take() { return std::move(bytes_); }
@@ -136,16 +87,8 @@ class FrameWriter {
   std::string take_blocks() { return take().substr(4); }
 
  private:
-  std::int16_t counts(double metres) const {
-    const double value = std::round(metres / unit_);
-    return static_cast<std::int16_t>(value > 32767 ? 32767 : value > -32767 ? value : -32767);
-  }
-
-  /// Stores a difference modulo 2^16, so that it always fits.
-  void put_difference(std::int16_t now, std::int16_t& last) {
-    put(static_cast<std::int16_t>(now - last));
-    last = now;
-  }
+  std::int16_t counts(double metres) const;
+  void put_difference(std::int16_t now, std::int16_t& last);
 
   std::string bytes_;
   std::size_t length_at_ = 0;

@@ -65,24 +65,34 @@ std::string hello_message(const evaluation::Environment& environment, const Choi
   const sim::WorldOptions world = environment.world_options();
   const sim::CarParameters& car = world.car;
   return json_text({{"type", "hello"},
-                    {"protocol", 1},
+                    {"protocol", 2},
+                    {"title", environment.course.name},
                     {"scalars", scalar_names()},
                     {"statuses", names_json(vehicle::PlannerStatus::solver_degenerate)},
                     {"symptoms", symptoms_json()},
                     {"courses", choices.courses},
                     {"methods", choices.methods},
                     {"configurations", choices.configurations},
-                    {"car",
-                     {{"length", car.length},
-                      {"width", car.width},
-                      {"front", car.front_length},
-                      {"rear", car.rear_length}}},
+                    {"terms", {"distance", "yaw", "collision"}},
+                    {"states", Json::array()},
+                    {"inputs", {"steering, rad", "acceleration, m/s^2"}},
+                    {"body", body_json(car.length, car.width, car.front_length, car.rear_length)},
+                    {"can", {"place", "move", "add", "scenario", "real_time", "save", "ghost", "undo"}},
                     {"lidar",
                      {{"angle_min", world.lidar.angle_min()},
                       {"angle_increment", world.lidar.angle_increment()},
                       {"range_max", world.lidar.range_max}}},
                     {"history_seconds", history},
                     {"control_period", control_period}});
+}
+
+/// Around the line of a course.
+Bounds bounds_of(const evaluation::Environment& environment) {
+  constexpr double room = 1.5;  // m beside the line
+  const auto& path = environment.path;
+  Bounds b{path[0].x, path[0].y, path[0].x, path[0].y};
+  for (const maps::ReferencePoint& p : path) b.include(p.x, p.y);
+  return {b.x0 - room, b.y0 - room, b.x1 + room, b.y1 + room};
 }
 
 std::string state_message(const DriveState& facts, const evaluation::Environment& environment,
@@ -119,12 +129,8 @@ std::string state_message(const DriveState& facts, const evaluation::Environment
                 {"ghost_label", facts.ghost_label},
                 {"generation", facts.generation},
                 {"edited", facts.edited},
-                {"introduction", facts.introduction}};
-  if (facts.contact[0] >= 0)
-    state["contact"] = {{"experiment", facts.contact[0]},
-                        {"lap", facts.contact[1]},
-                        {"contact", facts.contact[2]},
-                        {"tick", facts.contact[3]}};
+                {"introduction", facts.introduction},
+                {"bounds", bounds_json(bounds_of(environment))}};
   return json_text(state);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -69,8 +68,6 @@ struct DriveState {
   std::string ghost{};        ///< its method; empty if there is none
   std::string ghost_label{};  ///< name of the ghost
   int generation = 0;         ///< number of drives that have begun
-  /// The part of an evaluation that is shown: experiment, lap, collision (-1: the whole lap) and its tick.
-  std::array<int, 4> contact{-1, -1, -1, -1};
 };
 std::string state_message(const DriveState& state, const evaluation::Environment& environment,
                           double control_period);

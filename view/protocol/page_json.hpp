@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "slalom/core/option_access.hpp"
@@ -18,6 +19,23 @@ inline Json option_json(const OptionEntry& entry, const std::string& loaded) {
   if (std::isfinite(d.max)) json["max"] = d.max;
   if (!entry.choices.empty()) json["choices"] = entry.choices;
   return json;
+}
+
+/// A rectangle along the axes, m.
+struct Bounds {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  /// Grows to include a point.
+  void include(double x, double y) {
+    x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+  }
+};
+inline Json bounds_json(const Bounds& b) {
+  return {b.x0, b.y0, b.x1, b.y1};
+}
+
+/// The size of the driven body, m; `front` and `rear`: distances of the axles, 0 without wheels.
+inline Json body_json(double length, double width, double front = 0, double rear = 0) {
+  return {{"length", length}, {"width", width}, {"front", front}, {"rear", rear}};
 }
 
 /// The names of the values of an enumeration up to `last`.

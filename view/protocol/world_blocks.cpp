@@ -38,20 +38,6 @@ std::string encode_bodies(const sim::World& world) {
   return to.take_blocks();
 }
 
-std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> plan) {
-  const sim::CarState& car = world.state(0);
-  FrameWriter to;
-  to.begin(Block::ghost);
-  to.put_pose({car.x, car.y, car.yaw});
-  const double laps = world.laps(0)->progress() / world.track().lap_path()->length();
-  to.put({car.steer, car.speed, laps, world.laps(0)->last_lap_time()});
-  to.put(static_cast<std::uint32_t>(plan.size()));
-  to.begin_points({car.x, car.y});
-  for (const maps::Pose& pose : plan) to.put_point({pose.x, pose.y});
-  to.end();
-  return to.take_blocks();
-}
-
 std::string encode_ghost_frame(std::string_view frame) {
   FrameWriter to;
   to.begin(Block::ghost_frame);

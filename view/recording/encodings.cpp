@@ -1,6 +1,7 @@
 #include "view/recording/encodings.hpp"
 
 #include <zlib.h>
+#include <zstd.h>
 
 #include <cstdint>
 #include <stdexcept>
@@ -65,6 +66,20 @@ std::string gunzip(std::string_view bytes) {
   inflateEnd(&stream);
   if (status != Z_STREAM_END) throw std::invalid_argument("gunzip: the data is damaged or incomplete");
   return out;
+}
+
+std::string pack(std::string_view bytes) {
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1);
+  if (ZSTD_isError(size)) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
+  return packed.substr(0, size);
+}
+
+std::string unpack(std::string_view packed) {
+  std::string bytes(ZSTD_getFrameContentSize(packed.data(), packed.size()), '\0');
+  const std::size_t size = ZSTD_decompress(bytes.data(), bytes.size(), packed.data(), packed.size());
+  if (ZSTD_isError(size)) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
+  return bytes;
 }
 
 }  // namespace slalom::view

@@ -101,14 +101,16 @@ void Recorder::add_cars(const FrameReader& reader) {
     }
   }
   scene.begin("ghost");
-  if (const auto block = reader.block(Block::ghost); !block.empty()) {
-    PayloadReader ghost(block);
-    const maps::Pose pose = ghost.pose();
+  if (const auto block = reader.block(Block::ghost_frame); !block.empty()) {
+    const FrameReader ghost(block);
+    PayloadReader scalars(ghost.block(Block::scalars));
+    scalars.take(2 * sizeof(double));  // tick and time
+    const maps::Pose pose = scalars.pose();
     scene.box(pose, 0.5, 0.27, car_height, ghost_color);
     scene.text({pose.x, pose.y}, 0.4, "ghost", ghost_color);
-    ghost.take(4 * sizeof(double));
-    const auto points = ghost.points(ghost.get<std::uint32_t>());
-    scene.line(points, ghost_color, 2);
+    std::vector<maps::Point> plan;
+    for (const auto& state : plan_of(ghost)) plan.push_back({state[0], state[1]});
+    scene.line(plan, ghost_color, 2);
   }
   add(Topic::cars, scene.message());
 }

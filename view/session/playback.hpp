@@ -26,7 +26,8 @@ class Playback {
   /// Executes the commands that have come, and drives one step if it is due; waits for one, for `at_most` at
   /// most.
   void turn(std::chrono::nanoseconds at_most = {}) {
-    const auto wait = std::min<Clock::duration>(until_due(), at_most);
+    const auto wait =
+        is_prepared_ ? std::min<Clock::duration>(until_due(), at_most) : Clock::duration::zero();
     if (wait > Clock::duration::zero()) server_.wait(wait);
     audience_.turn(
         [this](auto client) { join(client); },
@@ -35,7 +36,7 @@ class Playback {
       if (steps_left_ > 0) --steps_left_;
       tick();
     }
-    if (paused_ && is_held()) prepare_change();
+    is_prepared_ = !(paused_ && is_held()) || prepare_change();
     const auto now = Clock::now();
     if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
     last_state_ = now;
@@ -56,15 +57,16 @@ class Playback {
   virtual void tick() = 0;     ///< drives one step
   virtual void restart() = 0;  ///< drives again from the start
   virtual void tell() = 0;     ///< tells all pages the state, and the options if they have changed
-  /// Does work while paused, so that the first change need not wait for it.
-  virtual void prepare_change() { present(); }
+  /// Does a part of the work that the first change after a pause would wait for. Returns whether all is done.
+  virtual bool prepare_change() { return approach(0); }
+  virtual Packing packing() const { return {}; }  ///< form of stored frames
 
   /// Executes the commands that concern time, and those that pages may give that watch; false for others.
   /// Throws std::invalid_argument unless the client drives.
   bool obey_transport(std::uint64_t client, const std::string& what, const Json& command) {
     if (what == "past") {
       const int from = field::integer(command, "from"), to = field::integer(command, "to");
-      server_.send(client, {shared(timeline_.past(from, to, scalars())), true});
+      server_.send(client, {shared(timeline_.past(from, to)), true});
       return true;
     }
     if (what == "take_over") {
@@ -102,7 +104,7 @@ class Playback {
   /// Begins with other drives, without a past.
   void begin(Drives drives) {
     drives_ = std::move(drives);
-    timeline_ = Timeline(control_period());
+    timeline_ = Timeline(control_period(), packing());
     held_.reset();
     viewed_ = -1;
     steps_left_ = 0;
@@ -125,17 +127,21 @@ class Playback {
   /// is shown began, or with `lead` the step before it; else the present ones.
   const Drives& present(int lead = 0) {
     if (!is_held()) return *drives_;
-    const int tick = std::max(shown_tick() - lead, timeline_.oldest());
-    if (!held_ || held_->ticks() != tick) held_ = timeline_.before(tick);
+    while (!approach(lead)) continue;
     return *held_;
+  }
+
+  /// Brings `held_` one step nearer to what `present` returns; true if it is there.
+  bool approach(int lead) {
+    return timeline_.approach(held_, std::max(shown_tick() - lead, timeline_.oldest()));
   }
 
   /// Makes the step that is shown the newest one.
   void continue_from_shown() {
     if (viewed_ < 0) return;
-    Drives drives = present();
-    drives.tick(timeline_.at(viewed_).delays);
-    drives_ = std::move(drives);
+    present();
+    drives_ = std::move(*std::exchange(held_, std::nullopt));
+    drives_->tick(timeline_.at(viewed_).delays);
     forget_after(viewed_, viewed_);
     pace_.due = Clock::now();
   }
@@ -153,7 +159,7 @@ class Playback {
     tick = std::clamp(tick, timeline_.oldest(), timeline_.newest());
     viewed_ = tick == timeline_.newest() ? -1 : tick;
     paused_ = is_newest_sent_ = is_state_changed_ = true;
-    server_.publish(0, timeline_.at(tick).frame);
+    server_.publish(0, timeline_.frame(tick));
   }
   /// Sends the frame of a step that was just driven, unless the last one was sent a moment ago.
   void offer_newest() {
@@ -163,7 +169,7 @@ class Playback {
   void publish_newest() {
     if (std::exchange(is_newest_sent_, true) || timeline_.empty()) return;
     last_frame_ = Clock::now();
-    server_.publish(0, timeline_.steps().back().frame);
+    server_.publish(0, timeline_.frame(timeline_.newest()));
   }
 
   Server& server_;
@@ -173,9 +179,9 @@ class Playback {
   std::optional<Drives> held_;  ///< while nothing moves: what a change last applied to, with the change
   Pace pace_;
   double rate_ = 1, measured_rate_ = 0;  ///< simulated to real time; 0: as fast as possible, not known
-  std::size_t copy_bytes_ = 0;           ///< about the size of a copy of the drives
   bool paused_ = false, is_state_changed_ = true;
   bool waiting_ = true;         ///< for the first page to be opened
+  bool is_prepared_ = true;     ///< whether a change after a pause need not wait
   bool is_newest_sent_ = true;  ///< false if the newest step came too early for a frame
   int viewed_ = -1;             ///< step that is shown while it is not the newest
   int steps_left_ = 0;          ///< steps of a command "step" that are still to come

@@ -67,13 +67,12 @@ void Session::restart() {
 void Session::begin(Drives drives) {
   Playback::begin(std::move(drives));
   state_.laps.clear();
-  state_.contact.fill(-1);
   // Options can still be set back; the bodies of another world cannot.
   for (auto* changes : {&undo_, &redo_}) {
     std::erase_if(*changes, [](const Change& each) { return each.before.index() == 1; });
     for (Change& each : *changes) each.ticks = 0;
   }
-  stop_at_ = passing_ticks_ = -1;
+  passing_ticks_ = -1;
   slow_down();
   are_options_changed_ = true;
 }
@@ -81,33 +80,25 @@ void Session::begin(Drives drives) {
 void Session::drive_tick(bool is_shown) {
   pace_.step(control_period(), rate_);
   Drives& drives = *drives_;
-  timeline_.checkpoint(drives, copy_bytes_, last_updates_.car + last_updates_.ghost);
-  copy_bytes_ = 0;
-  std::string ghost_car, ghost, frame;
+  timeline_.checkpoint(drives);
+  std::string ghost, frame;
   const Delays delays = state_.real_time ? last_updates_ : Delays{};
   const auto on_ghost = [&](const evaluation::ControlStep& step) {
-    std::vector<maps::Pose> plan;
-    for (const auto& state : step.output.predicted) plan.push_back(state.pose);
-    ghost_car = encode_ghost(step.world, plan);
     ghost = encoder_.encode(step, facts_of(*drives.ghost));
     last_updates_.ghost = step.output.tick_time;
-    copy_bytes_ += bytes_of(step.output.solve);
   };
   const int number = drives.ticks();
   const auto on_car = [&](const evaluation::ControlStep& step) {
-    frame = frame_of(encoder_.encode(step, facts_of(drives.car)) + ghost_car, ghost, drives);
+    frame = frame_of(encoder_.encode(step, facts_of(drives.car)), ghost, drives);
     last_updates_.car = step.output.tick_time;
-    copy_bytes_ += bytes_of(step.output.solve);
   };
   drives.tick(delays, on_car, on_ghost);
-  timeline_.keep({number, delays, shared(std::move(frame))});
+  DrivenTick driven{number, delays, shared(std::move(frame))};
+  driven.keep_scalars(scalars());
+  timeline_.keep(std::move(driven));
   note_laps(drives.car, driver().method, false);
   if (drives.ghost) note_laps(*drives.ghost, drives.ghost_label, true);
   slow_down();
-  if (number == stop_at_) {
-    paused_ = is_state_changed_ = true;
-    stop_at_ = -1;
-  }
   if (is_shown) offer_newest();
 }
 
@@ -152,8 +143,9 @@ void Session::slow_down() {
 }
 
 /// Goes back for the first change after a pause, unless a change is shown there already.
-void Session::prepare_change() {
-  if (!held_ || std::abs(held_->ticks() - shown_tick()) > scan_lead) present(scan_lead);
+bool Session::prepare_change() {
+  const int ahead = held_ ? shown_tick() - held_->ticks() : -1;
+  return (ahead >= 0 && ahead <= scan_lead) || approach(scan_lead);
 }
 
 void Session::forget_after(int tick, int ticks) {

@@ -9,6 +9,7 @@
 
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
+#include "view/recording/encodings.hpp"
 #include "view/session/drives.hpp"
 #include "view/session/playback.hpp"
 
@@ -21,20 +22,12 @@ struct LoadedScenario {
   evaluation::LapSettings lap;
 };
 
-/// A lap of an evaluation, loaded.
-struct LoadedLap {
-  ScenarioNames names;
-  LoadedScenario scenario;
-};
-
 struct SessionOptions {
   ScenarioNames scenario;
   std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws errors for the user
   Choices choices;
-  std::string further_arguments;  ///< arguments of the equivalent command line; begins with a space
-  std::string evaluation{};       ///< message (JSON) of an evaluation to show
-  std::function<LoadedLap(int experiment, int lap)> load_lap{};  ///< loads a lap of the evaluation
-  std::string against{};                                         ///< method of a ghost from the start, if any
+  std::string further_arguments;   ///< arguments of the equivalent command line; begins with a space
+  std::string against{};           ///< method of a ghost from the start, if any
   bool introduction = false;       ///< in slow motion until the first obstacle has been passed
   bool record_all = false;         ///< recordings and replays contain everything
   bool record_times = false;       ///< recordings contain wall-clock times
@@ -72,7 +65,8 @@ class Session final : public Playback<Drives> {
   StepFacts facts_of(const evaluation::LapDrive& drive) const;
 
   // Changing the drive, from the tick that is shown on.
-  void prepare_change() override;
+  bool prepare_change() override;
+  Packing packing() const override { return {pack, unpack}; }
   void forget_after(int tick, int ticks) override;
   void perform(const std::vector<Action>& actions, int lead = 0);
   void remember(decltype(Change::before) before, int drag = 0);
@@ -80,7 +74,6 @@ class Session final : public Playback<Drives> {
   void undo(bool again);
   void fork(const Json& command);
   void set_ghost(const std::string& method);
-  void show_lap(const Json& command);
 
   // Commands.
   void obey(std::uint64_t client, const std::string& what, const Json& command) override;
@@ -111,7 +104,6 @@ class Session final : public Playback<Drives> {
 
   FrameEncoder encoder_;
   Delays last_updates_;     ///< s of wall clock
-  int stop_at_ = -1;        ///< tick at which to pause
   int passing_ticks_ = -1;  ///< ticks of the introduction since the cars came to the obstacle; -1 before
   bool are_options_changed_ = false;
   std::future<void> saving_;  ///< the last member: its thread ends before what it uses

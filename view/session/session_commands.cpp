@@ -10,9 +10,6 @@
 namespace slalom::view {
 namespace {
 
-constexpr double before_contact = 2.0, after_contact = 0.25;  // s that are shown of a collision
-constexpr double contact_rate = 0.25;
-
 maps::Pose pose_of(const Json& command) {
   return {field::number(command, "x"), field::number(command, "y"), field::number(command, "yaw", 0)};
 }
@@ -103,14 +100,12 @@ bool is_among(std::initializer_list<std::string_view> names, const std::string& 
 
 void Session::obey(std::uint64_t client, const std::string& what, const Json& command) {
   if (what == "save") return save(client, field::text(command, "what"));
-  if (obey_transport(client, what, command)) {
-    if (what == "play") stop_at_ = -1;
-  } else if (!obey_edit(what, command) && !obey_scenario(what, command) && !obey_options(what, command)) {
+  if (!obey_transport(client, what, command) && !obey_edit(what, command) && !obey_scenario(what, command) &&
+      !obey_options(what, command))
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command");
-  }
   // Another scenario or another rate ends the introduction.
   const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);
-  if (!state_.introduction || !(is_other || is_among({"rate", "real_time", "lap"}, what))) return;
+  if (!state_.introduction || !(is_other || is_among({"rate", "real_time"}, what))) return;
   state_.introduction = false;
   if (is_other) rate_ = 1;
 }
@@ -137,8 +132,6 @@ bool Session::obey_scenario(const std::string& what, const Json& command) {
     const ScenarioNames names = chosen_scenario(present, command, options_.choices);
     install(options_.load(names), names);
     paused_ = false;
-  } else if (what == "lap") {
-    show_lap(command);
   } else {
     return false;
   }
@@ -224,46 +217,6 @@ void Session::set_ghost(const std::string& method) {
   std::optional<evaluation::Driver> other;
   if (method != driver().method) other = {driver().configuration, method};
   perform({start_ghost(method, std::move(other))});
-}
-
-/// Shows a lap of the evaluation: from its start, or the seconds before one of its collisions.
-void Session::show_lap(const Json& command) {
-  if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
-  const int experiment = field::integer(command, "experiment"), lap = field::integer(command, "lap"),
-            contact = field::integer(command, "contact", -1);
-  audience_.tell(
-      0, {{"type", "note"}, {"message", "Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6"}});
-  LoadedLap loaded = options_.load_lap(experiment, lap);
-  const evaluation::Driver driver{loaded.scenario.configuration, loaded.names.method};
-  Drives drives{
-      evaluation::LapDrive({loaded.scenario.environment, driver, loaded.scenario.lap}, loaded.names.seed)};
-  Drives before = drives;  // at the moment that is shown first
-  int hit = -1;
-  if (contact >= 0) {
-    const double period = drives.car.setup().control_period(), timeout = drives.car.setup().timeout();
-    const int lead = static_cast<int>(before_contact / period);
-    Drives latest = drives;
-    const auto collisions = [&] { return std::as_const(drives.car).first_collisions(); };
-    while (std::ssize(collisions()) <= contact) {
-      if (drives.ticks() * period > timeout)
-        throw std::runtime_error(
-            "the repeated lap has no such collision: another version drove the evaluation");
-      if (drives.ticks() % lead == 0) before = std::exchange(latest, drives);
-      drives.tick({});
-    }
-    hit = static_cast<int>(collisions()[static_cast<std::size_t>(contact)].time / period);
-    while (before.ticks() < hit - lead) before.tick({});
-  }
-  install(std::move(loaded.scenario), loaded.names);
-  waiting_ = state_.real_time = paused_ = false;
-  rate_ = 1;
-  if (hit >= 0) {
-    drives_ = std::move(before);
-    stop_at_ = hit + static_cast<int>(after_contact / control_period());
-    rate_ = contact_rate;
-  }
-  state_.contact = {experiment, lap, contact, hit};
-  pace_.due = Clock::now();
 }
 
 }  // namespace slalom::view

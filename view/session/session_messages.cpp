@@ -31,9 +31,8 @@ void Session::join(std::uint64_t client) {
   server_.send(client, {scene_, true});
   audience_.tell_text(client, options_message(options_facts()));
   audience_.tell_text(client, state());
-  if (!options_.evaluation.empty()) audience_.tell_text(client, options_.evaluation);
   if (std::exchange(waiting_, false)) pace_.due = Clock::now();
-  if (!timeline_.empty()) server_.publish(client, timeline_.at(shown_tick()).frame);
+  if (!timeline_.empty()) server_.publish(client, timeline_.frame(shown_tick()));
 }
 
 void Session::tell() {
@@ -81,12 +80,12 @@ void Session::save(std::uint64_t client, const std::string& what) {
   if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     throw std::invalid_argument("the previous file is still being written");
   const auto tell_drive = [hello = hello(), course = scene_, options = options_message(options_facts()),
-                           state = state(), steps = timeline_.steps()](auto& to) {
+                           state = state(), ticks = timeline_.stored(), packing = packing()](auto& to) {
     to.add_text(hello);
     to.add_course(*course);
     to.add_text(options);
     to.add_text(state);
-    for (const Timeline::Step& step : steps) to.add_frame(*step.frame);
+    for (const DrivenTick& tick : ticks) to.add_frame(*tick.message(packing));
     to.finish();
   };
   const sim::WorldOptions world = setup().environment->world_options();

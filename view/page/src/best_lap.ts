@@ -1,5 +1,5 @@
-import type { Past } from "./past";
-import { page, scalar } from "./page";
+import { on, page, scalar } from "./page";
+import { past } from "./past";
 import type { LapRow, Pose } from "./protocol";
 
 /** The control steps of a lap: share of the way round (0 to 1), time since its start (s), and pose. */
@@ -29,51 +29,12 @@ function between(keys: number[], key: number): [number, number] {
   return [after - 1, Math.min(1, Math.max(0, share))];
 }
 
-/** The best lap of the drive, once the page knows all its steps, to compare the car with. */
-export class BestLap {
-  private lap?: Driven;
-
-  /** The number of the lap that is compared with. */
-  get number() {
-    return this.lap?.row.lap;
-  }
-  forget() {
-    this.lap = undefined;
-  }
-
-  /** To be called when laps or steps may have become known, or unknown since the drive went back. */
-  update(past: Past) {
-    const { laps } = page.state!;
-    if (this.lap && !laps.some((row) => isSame(row, this.lap!.row))) this.lap = undefined;
-    const best = bestOf(laps);
-    if (best && !(this.lap && isSame(best, this.lap.row))) this.lap = collected(best, past) ?? this.lap;
-  }
-
-  /** The time (s) by which a car is behind at this share of the way, `time` after the start of its lap. */
-  behind(progress: number, time: number): number | undefined {
-    if (!this.lap) return undefined;
-    const [i, share] = between(this.lap.progress, progress);
-    const { times } = this.lap;
-    return time - (times[i] + share * (times[i + 1] - times[i]));
-  }
-
-  /** The pose of the best lap at a time (s) after its start. */
-  at(time: number): Pose | undefined {
-    if (!this.lap) return undefined;
-    const [i, share] = between(this.lap.times, time);
-    const a = this.lap.poses[i];
-    const b = this.lap.poses[i + 1];
-    const turn = Math.atan2(Math.sin(b.yaw - a.yaw), Math.cos(b.yaw - a.yaw));
-    return { x: a.x + share * (b.x - a.x), y: a.y + share * (b.y - a.y), yaw: a.yaw + share * turn };
-  }
-}
-
 /** The steps of a lap, or undefined where one of them is not known. */
-function collected(row: LapRow, past: Past): Driven | undefined {
+function collected(row: LapRow): Driven | undefined {
   const driven: Driven = { row, progress: [], times: [], poses: [] };
   let isWithin = false;
-  for (let position = past.oldest; position <= past.newest; ++position) {
-    const step = past.at(position);
+  for (let tick = past.oldest; tick <= past.newest; ++tick) {
+    const step = past.at(tick);
     if (!step) {
       if (isWithin) return undefined;
       continue;
@@ -87,7 +48,35 @@ function collected(row: LapRow, past: Past): Driven | undefined {
     driven.times.push(of("lap_time"));
     driven.poses.push({ x: of("x"), y: of("y"), yaw: of("yaw") });
   }
-  return driven.times.length > 1 && driven.progress[0] < atEnds && driven.progress.at(-1)! > 1 - atEnds
-    ? driven
-    : undefined;
+  const isWhole =
+    driven.times.length > 1 && driven.progress[0] < atEnds && driven.progress.at(-1)! > 1 - atEnds;
+  return isWhole ? driven : undefined;
+}
+
+let lap: Driven | undefined; // the best, once the page knows all its steps
+for (const what of ["frame", "state", "past"] as const)
+  on(what, () => {
+    const laps = page.state?.laps ?? [];
+    if (lap && !laps.some((row) => isSame(row, lap!.row))) lap = undefined;
+    const best = bestOf(laps);
+    if (best && !(lap && isSame(best, lap.row))) lap = collected(best) ?? lap;
+  });
+
+/** The number of the best lap. */
+export const bestNumber = () => lap?.row.lap;
+
+/** The time (s) by which the car is behind the best lap at the same place. */
+export function behindBest(): number | undefined {
+  if (!lap) return undefined;
+  const [i, share] = between(lap.progress, scalar("progress"));
+  return scalar("lap_time") - (lap.times[i] + share * (lap.times[i + 1] - lap.times[i]));
+}
+
+/** The pose of the best lap as long after its start as the car is after its own. */
+export function bestPose(): Pose | undefined {
+  if (!lap) return undefined;
+  const [i, share] = between(lap.times, scalar("lap_time"));
+  const [a, b] = [lap.poses[i], lap.poses[i + 1]];
+  const turn = Math.atan2(Math.sin(b.yaw - a.yaw), Math.cos(b.yaw - a.yaw));
+  return { x: a.x + share * (b.x - a.x), y: a.y + share * (b.y - a.y), yaw: a.yaw + share * turn };
 }

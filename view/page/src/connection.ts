@@ -1,97 +1,92 @@
-import type { Handlers, Link } from "./link";
-import { solver, type Command } from "./page";
+import { page, solver, tell, isReplay } from "./page";
+import { Player } from "./player";
 import { decode, type Frame, type Text } from "./protocol";
 import { WorkerSocket } from "./worker_socket";
 
-/** Keeps a WebSocket open, or a worker: reconnects by itself, with a wait that grows to three seconds. */
-export class Connection implements Link {
-  private socket?: WebSocket | WorkerSocket;
-  private attempts = 0;
-  private timer = 0;
-  private arrived = 0; // frames of this socket
+export type Command = Record<string, unknown>;
+
+let socket: WebSocket | WorkerSocket | Player | undefined;
+let attempts = 0; // to connect, in vain
+let timer = 0;
+let arrived = 0; // frames of this socket
+/** Frames that have come and are not drawn. */
+export let waiting = 0;
+let asked = 0;
+const questions = new Map<number, { done(): void; fail(error: Error): void }>();
+
+const isOpen = () => socket?.readyState === WebSocket.OPEN;
+
+/** Sends a command to the server. */
+export function send(command: Command) {
+  if (isOpen()) socket!.send(JSON.stringify(command));
+}
+
+/** Sends a command and waits until it was executed; fails with the reason why it could not be. */
+export function ask(command: Command): Promise<void> {
+  if (!isOpen()) return Promise.reject(new Error("There is no connection to the server."));
+  const id = ++asked;
+  return new Promise((done, fail) => {
+    questions.set(id, { done, fail });
+    send({ ...command, id });
+  });
+}
+
+/** Tells that the frames are drawn: the server has at most two under way that are not acknowledged. */
+export function acknowledge() {
+  if (!isOpen() || waiting === 0) return;
   waiting = 0;
+  const message = new DataView(new ArrayBuffer(4));
+  message.setUint32(0, arrived, true);
+  socket!.send(message);
+}
 
-  constructor(private readonly handlers: Handlers) {
-    this.open();
-  }
+/** Keeps a connection open: reconnects by itself, with a wait that grows to three seconds. */
+export function connect() {
+  const address = new URL("ws", location.href);
+  address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+  address.hash = "";
+  const token = new URLSearchParams(location.search).get("token");
+  address.search = "?acknowledge=1" + (token ? "&token=" + encodeURIComponent(token) : "");
+  socket = isReplay ? new Player() : solver ? new WorkerSocket(solver) : new WebSocket(address);
+  socket.binaryType = "arraybuffer";
+  socket.onopen = () => {
+    attempts = arrived = waiting = 0;
+    tell("connection", { isOpen: true, attempts });
+  };
+  socket.onmessage = ({ data }: { data: string | ArrayBuffer }) =>
+    typeof data === "string" ? readText(JSON.parse(data) as Text) : readMessage(data);
+  socket.onclose = () => {
+    attempts += 1;
+    for (const { fail } of questions.values()) fail(new Error("The connection was lost."));
+    questions.clear();
+    tell("connection", { isOpen: false, attempts });
+    clearTimeout(timer);
+    timer = window.setTimeout(connect, Math.min(3000, 250 * attempts));
+  };
+}
 
-  get connected() {
-    return this.socket?.readyState === WebSocket.OPEN;
-  }
+/** Answers go to who asked. A server that shows something else is shown by another page. */
+function readText(message: Text) {
+  const id = message.type === "done" || message.type === "error" ? (message.id ?? 0) : 0;
+  const question = questions.get(id);
+  questions.delete(id);
+  const isOther = message.type === "hello" && page.hello && `${page.hello.scalars}` !== `${message.scalars}`;
+  if (isOther) location.reload();
+  else if (message.type === "state" && !page.hello)
+    return; // for the pages before this one
+  else if (!question) tell(message.type, message as never);
+  else if (message.type === "error") question.fail(new Error(message.message));
+  else question.done();
+}
 
-  send(command: Command) {
-    if (this.connected) this.socket!.send(JSON.stringify(command));
-  }
-
-  ask(command: Command): Promise<void> {
-    if (!this.connected) return Promise.reject(new Error("There is no connection to the server."));
-    const id = ++this.asked;
-    return new Promise((done, fail) => {
-      this.questions.set(id, { done, fail });
-      this.send({ ...command, id });
-    });
-  }
-  private asked = 0;
-  private readonly questions = new Map<number, { done(): void; fail(error: Error): void }>();
-
-  /** Whether a message answers a command; the asker deals with it then. */
-  private answers(message: Text) {
-    if (message.type !== "done" && message.type !== "error") return false;
-    const question = this.questions.get(message.id ?? 0);
-    this.questions.delete(message.id ?? 0);
-    if (message.type === "done") question?.done();
-    else question?.fail(new Error(message.message));
-    return question !== undefined;
-  }
-
-  /** Acknowledges the frames: the server has at most two under way that are not acknowledged. */
-  drawn() {
-    if (!this.connected || this.waiting === 0) return;
-    this.waiting = 0;
-    const message = new DataView(new ArrayBuffer(4));
-    message.setUint32(0, this.arrived, true);
-    this.socket!.send(message);
-  }
-
-  private open() {
-    const address = new URL("ws", location.href);
-    address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
-    address.hash = "";
-    const token = new URLSearchParams(location.search).get("token");
-    address.search = "?acknowledge=1" + (token ? "&token=" + encodeURIComponent(token) : "");
-    const socket = solver ? new WorkerSocket(solver) : new WebSocket(address);
-    socket.binaryType = "arraybuffer";
-    this.socket = socket;
-    socket.onopen = () => {
-      this.attempts = 0;
-      this.arrived = this.waiting = 0;
-      this.handlers.status(true, 0);
-    };
-    socket.onmessage = (event: { data: string | ArrayBuffer }) => this.got(event.data);
-    socket.onclose = () => {
-      this.attempts += 1;
-      for (const { fail } of this.questions.values()) fail(new Error("The connection was lost."));
-      this.questions.clear();
-      this.handlers.status(false, this.attempts);
-      clearTimeout(this.timer);
-      this.timer = window.setTimeout(() => this.open(), Math.min(3000, 250 * this.attempts));
-    };
-  }
-
-  private got(data: string | ArrayBuffer) {
-    if (typeof data === "string") {
-      const text = JSON.parse(data) as Text;
-      if (!this.answers(text)) this.handlers.text(text);
-      return;
-    }
-    const message = decode(data);
-    if (message.file) this.handlers.file(message.file.name, message.file.content);
-    else if (message.past) this.handlers.past(message.past);
-    else if (message.grid) this.handlers.scene(message);
-    else if (message.scalars) {
-      this.arrived += 1;
-      this.waiting += 1;
-      this.handlers.frame(message as Frame);
-    }
+function readMessage(data: ArrayBuffer) {
+  const message = decode(data);
+  if (message.file) tell("file", message.file);
+  else if (message.past) tell("past", message.past);
+  else if (message.grid) tell("scene", message);
+  else if (message.scalars) {
+    arrived += 1;
+    waiting += 1;
+    if (page.hello) tell("frame", message as Frame);
   }
 }

@@ -1,30 +1,34 @@
-import { all, counted, get } from "./dom";
+import { send } from "./connection";
+import { click, counted, get } from "./dom";
 import { modesOf, verdict } from "./modes";
-import { page, scalar, send } from "./page";
+import { drivenOf, isReplay, methodOf, on, page, scalar } from "./page";
 import type { Frame } from "./protocol";
-import type { SceneView } from "./scene/scene";
+import { isNew } from "./scenario";
+import { show, type Layer } from "./scene/layers";
+import { camera, isSplit, setSplit } from "./scene/stage";
 import { toast } from "./toast";
 
+// The first thing that a new user sees: two controllers before one obstacle. The viewer ends each step.
+
 /** Layers in the order in which they are explained, and those that are not. */
-const explained = ["candidates", "plan", "guides"];
-const hidden = ["spread", "nominal"];
+const explained: Layer[] = ["candidates", "plan", "guides"];
+const hidden: Layer[] = ["spread", "nominal"];
 
 /** One thing that the viewer is told. */
-interface Step {
+interface Caption {
   /** The number of layers that are shown. */
   layers: number;
-  /** Whether the drive is to stop at a frame; without it the step follows the one before. */
+  /** Whether the drive is to stop at a frame; without it the caption follows the one before. */
   due?(frames: Frame[]): boolean;
   text(frames: Frame[]): string;
 }
 
-const method = (of: Frame) => page.hello!.methods[scalar("method", of.scalars)];
 const contacts = (of: Frame) => scalar("contacts", of.scalars);
 const verdicts = (frames: Frame[]) => frames.map((each) => verdict(modesOf(each)));
 const list = (frames: Frame[], text: (frame: Frame) => string) => frames.map(text).join(", ");
 const hits = (of: Frame) =>
   contacts(of) === 0 ? "without a collision" : `with ${counted(contacts(of), "collision")}`;
-const outcome = (of: Frame) => `${method(of)} ${hits(of)}`;
+const outcome = (of: Frame) => `${methodOf(of)} ${hits(of)}`;
 
 // docs/live-view.md says how they were driven.
 const laps = "100 laps among five parked cars each";
@@ -32,11 +36,11 @@ const overLaps = "mppi hits 22 % of the cars (95 % interval: 19 to 26 %) and svg
 /** Options that take the guides from svg_mppi: neither nominal sequence nor variances are theirs. */
 const guideOptions = ["svg_mppi.use_nominal", "svg_mppi.adapt_covariance"];
 
-const steps: Step[] = [
+const captions: Caption[] = [
   {
     layers: explained.length,
     text: (both) =>
-      `${both.map(method).join(" and ")} drive the same car with the same seed. ` +
+      `${both.map(methodOf).join(" and ")} drive the same car with the same seed. ` +
       "A parked car stands in the middle of the road.",
   },
   {
@@ -45,7 +49,7 @@ const steps: Step[] = [
     text: (both) =>
       "Samples: before each control step, mppi (model predictive path integral control) and svg_mppi " +
       "(Stein variational guided mppi) try many control sequences " +
-      `(${list(both, (each) => `${method(each)} ${scalar("samples", each.scalars)}`)}). ` +
+      `(${list(both, (each) => `${methodOf(each)} ${scalar("samples", each.scalars)}`)}). ` +
       "Each line shows where one of them leads.",
   },
   {
@@ -69,14 +73,14 @@ const steps: Step[] = [
     layers: 3,
     due: (both) => verdicts(both).join() === "commits,averages",
     text: ([car, ghost]) =>
-      `Two ways: left and right of the parked car. ${method(ghost)} gives weight to both, and the plan ` +
-      `between them leads into the car. ${method(car)} chooses one.`,
+      `Two ways: left and right of the parked car. ${methodOf(ghost)} gives weight to both, and the plan ` +
+      `between them leads into the car. ${methodOf(car)} chooses one.`,
   },
   {
     layers: 3,
     due: (both) => both.some(contacts),
     text: (both) =>
-      `${both.filter(contacts).map(method).join(" and ")} has hit the parked car, at the cross.`,
+      `${both.filter(contacts).map(methodOf).join(" and ")} has hit the parked car, at the cross.`,
   },
   {
     layers: 3,
@@ -87,109 +91,103 @@ const steps: Step[] = [
       "Now drag the parked car yourself: both plan again at once.",
   },
 ];
-const decision = 5; // step at which the two differ
-const last = steps.length - 1;
+const decision = 5; // caption at which the two differ
+const last = captions.length - 1;
 
-/** The first thing that a new user sees: two controllers before one obstacle. The viewer ends each step. */
-export class Introduction {
-  private readonly box = get("introduction");
-  private step = 0;
-  private isWaiting = false; // for the viewer
-  private hasStopped = false; // the drive, since the step was due
-  private ticks: number[] = []; // at which the steps were due
-  private frames: Frame[] = []; // frame of the car, and of the ghost
+const box = get("introduction");
+let shown = 0; // caption
+let isWaiting = false; // for the viewer
+let hasStopped = false; // the drive, since the caption was due
+const ticks: number[] = []; // at which the captions were due
+let frames: Frame[] = []; // frame of the car, and of the ghost
+let isFirst = isNew && !isReplay; // whether the next state is the first
+/** Where a car has collided; `isGhost`: in the world of the second controller. */
+export let marks: { x: number; y: number; isGhost: boolean }[] = [];
 
-  /** `close` shows the ordinary view. */
-  constructor(
-    private readonly scene: SceneView,
-    private readonly close: () => void,
-  ) {
-    get("introduction-next").onclick = () => this.next();
-    get("introduction-drag").onclick = () => {
-      send({ do: "seek", tick: this.ticks[decision] ?? this.ticks[1] });
-      this.hide();
-    };
-    get("introduction-without").onclick = () => {
-      this.hide();
-      for (const key of guideOptions) send({ do: "set", key, value: "false" });
-      send({ do: "restart" });
-      send({ do: "rate", rate: 0.25 });
-      toast(`svg_mppi without guides: ${guideOptions.join(" and ")} are off.`);
-    };
-    get("introduction-again").onclick = () => send({ do: "restart" });
-    get("introduction-close").onclick = () => this.end();
-  }
-
-  get isOpen() {
-    return !this.box.hidden;
-  }
-  /** Opens, with a camera that turns with the car, if motion is welcome, and sees about 7 m. */
-  open() {
-    const { camera } = this.scene;
-    this.box.hidden = false;
-    for (const name of hidden) setLayer(name, false);
-    get<HTMLDetailsElement>("layers").open = false;
-    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) camera.follow = "heading";
-    camera.zoom = Math.max(30, camera.room / 7);
-  }
-  end() {
-    if (!this.isOpen) return;
-    this.hide();
-    this.close();
-  }
-  private hide() {
-    this.box.hidden = true;
-    this.scene.marks = [];
-    for (const name of [...hidden, ...explained]) setLayer(name, true);
-  }
-
-  /** Takes a frame: stops the drive at a step that is due, and shows what belongs to the frame. */
-  show(frame: Frame) {
-    if (!this.isOpen || !frame.ghostFrame) return;
-    this.frames = [frame, frame.ghostFrame];
-    const tick = scalar("tick");
-    while (this.step > 0 && tick < this.ticks[this.step]) this.tell(this.step - 1, false);
-    // Frames that were under way come after the stop; later ones mean that the viewer has gone on.
-    if (!page.state?.paused) this.isWaiting &&= !this.hasStopped;
-    else if (page.state.tick === this.ticks[this.step]) this.hasStopped = true;
-    const due = steps.findIndex((each, i) => i > this.step && each.due?.(this.frames));
-    if (!this.isWaiting && due > 0 && get("take-over").hidden) {
-      for (let i = this.step + 1; i <= due; ++i) this.ticks[i] = tick;
-      send({ do: "seek", tick });
-      this.hasStopped = false;
-      this.tell(due, true);
-    } else this.tell(this.step, this.isWaiting);
-  }
-
-  /** Goes to the next step: at once, or drives until one is due. */
-  private next() {
-    if (this.step < last && !steps[this.step + 1].due) {
-      this.ticks[this.step + 1] = this.ticks[this.step];
-      return this.tell(this.step + 1, true);
-    }
-    this.tell(this.step, false);
-    send({ do: "play" });
-  }
-
-  private tell(step: number, isWaiting: boolean) {
-    if (step !== this.step) explained.forEach((name, i) => setLayer(name, i < steps[step].layers));
-    this.step = step;
-    this.isWaiting = isWaiting;
-    const number = step > 0 && step < last ? `${step} of ${last - 1}. ` : "";
-    const text = number + steps[step].text(this.frames);
-    if (get("introduction-text").textContent !== text) get("introduction-text").textContent = text;
-    get("introduction-next").hidden = !isWaiting || step === last;
-    for (const id of ["drag", "without", "again"]) get(`introduction-${id}`).hidden = step !== last;
-    const hit = this.frames.map((each) => (contacts(each) > 0 ? each.bodies[0] : undefined));
-    if (!hit.some(Boolean)) this.scene.marks = [];
-    else if (!this.scene.marks.length)
-      this.scene.marks = hit.flatMap((car, i) =>
-        car ? [{ x: car.x, y: car.y, shown: true, isGhost: i > 0 }] : [],
-      );
-  }
+/** Opens, with a camera that turns with the car, if motion is welcome, and sees about 7 m. */
+function open() {
+  box.hidden = false;
+  setSplit(true);
+  for (const name of hidden) show(name, false);
+  get<HTMLDetailsElement>("layers").open = false;
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) camera.follow = "heading";
+  camera.zoom = Math.max(30, camera.room / 7);
+}
+function close() {
+  box.hidden = true;
+  marks = [];
+  for (const name of [...hidden, ...explained]) show(name, true);
+}
+/** Shows the ordinary view. */
+function end() {
+  if (box.hidden) return;
+  close();
+  setSplit(false);
 }
 
-function setLayer(name: string, on: boolean) {
-  const box = all<HTMLInputElement>(`[data-layer="${name}"]`)[0];
-  if (box.checked !== on) box.click();
+click("introduction-next", next);
+click("introduction-drag", () => {
+  send({ do: "seek", tick: ticks[decision] ?? ticks[1] });
+  close();
+});
+click("introduction-without", () => {
+  close();
+  for (const key of guideOptions) send({ do: "set", key, value: "false" });
+  send({ do: "restart" });
+  send({ do: "rate", rate: 0.25 });
+  toast(`svg_mppi without guides: ${guideOptions.join(" and ")} are off.`);
+});
+click("introduction-again", () => send({ do: "restart" }));
+click("introduction-close", end);
+click("split", () => {
+  if (!box.hidden) end();
+  else if (page.frame?.ghostFrame) setSplit(!isSplit);
+});
+
+on("state", ({ introduction }) => {
+  if (isFirst && introduction) open();
+  isFirst = false;
+  if (!introduction) end();
+});
+
+// Stops the drive at a caption that is due, and shows what belongs to the frame.
+on("frame", (frame) => {
+  if (box.hidden || !frame.ghostFrame) return;
+  frames = [frame, frame.ghostFrame];
+  const tick = scalar("tick");
+  while (shown > 0 && tick < ticks[shown]) tellViewer(shown - 1, false);
+  // Frames that were under way come after the stop; later ones mean that the viewer has gone on.
+  if (!page.state?.paused) isWaiting &&= !hasStopped;
+  else if (page.state.tick === ticks[shown]) hasStopped = true;
+  const due = captions.findIndex((each, i) => i > shown && each.due?.(frames));
+  if (isWaiting || due <= 0 || !page.role?.drives) return tellViewer(shown, isWaiting);
+  for (let i = shown + 1; i <= due; ++i) ticks[i] = tick;
+  send({ do: "seek", tick });
+  hasStopped = false;
+  tellViewer(due, true);
+});
+
+/** Goes to the next caption: at once, or drives until one is due. */
+function next() {
+  if (shown < last && !captions[shown + 1].due) {
+    ticks[shown + 1] = ticks[shown];
+    return tellViewer(shown + 1, true);
+  }
+  tellViewer(shown, false);
+  send({ do: "play" });
+}
+
+function tellViewer(caption: number, waits: boolean) {
+  if (caption !== shown) explained.forEach((name, i) => show(name, i < captions[caption].layers));
+  shown = caption;
+  isWaiting = waits;
+  const number = shown > 0 && shown < last ? `${shown} of ${last - 1}. ` : "";
+  const text = number + captions[shown].text(frames);
+  if (get("introduction-text").textContent !== text) get("introduction-text").textContent = text;
+  get("introduction-next").hidden = !isWaiting || shown === last;
+  for (const id of ["drag", "without", "again"]) get(`introduction-${id}`).hidden = shown !== last;
+  const hit = frames.map((each) => (contacts(each) > 0 ? drivenOf(each) : undefined));
+  if (!hit.some(Boolean)) marks = [];
+  else if (!marks.length)
+    marks = hit.flatMap((car, i) => (car ? [{ x: car.x, y: car.y, isGhost: i > 0 }] : []));
 }

@@ -1,5 +1,5 @@
 import { make } from "./dom";
-import { scalar } from "./page";
+import { drivenOf, page, scalar } from "./page";
 import type { Body, Frame } from "./protocol";
 
 /** On which side of an obstacle something passes: left, right, or into it. */
@@ -12,18 +12,18 @@ interface Modes {
   right: number;
 }
 
-interface Place {
+interface Point {
   x: number;
   y: number;
 }
-const halfCar = 0.155; // m, half the width of the car
+const beside = 1.5; // lengths of the body from an obstacle to a plan that passes it
 
 /** The offset to the left (m) at which a trajectory passes an obstacle; undefined if it ends before. */
-function offset(trajectory: Place[], from: Place, obstacle: Place): number | undefined {
+function offset(trajectory: Point[], from: Point, obstacle: Point): number | undefined {
   const yaw = Math.atan2(obstacle.y - from.y, obstacle.x - from.x);
   const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
-  const ahead = (p: Place) => c * (p.x - obstacle.x) + s * (p.y - obstacle.y);
-  const left = (p: Place) => c * (p.y - obstacle.y) - s * (p.x - obstacle.x);
+  const ahead = (p: Point) => c * (p.x - obstacle.x) + s * (p.y - obstacle.y);
+  const left = (p: Point) => c * (p.y - obstacle.y) - s * (p.x - obstacle.x);
   const i = trajectory.findIndex((p, k) => k > 0 && ahead(p) >= 0);
   if (i < 0) return undefined;
   const [a, b] = [trajectory[i - 1], trajectory[i]];
@@ -31,36 +31,40 @@ function offset(trajectory: Place[], from: Place, obstacle: Place): number | und
   return left(a) + share * (left(b) - left(a));
 }
 
-/** The nearest obstacle ahead that the plan passes within `beside` m. */
-function nextObstacle({ bodies, plan }: Frame, beside: number): Body | undefined {
-  const car = bodies[0];
-  if (!car || !plan) return undefined;
-  const distance = (p: Place, q: Place) => Math.hypot(p.x - q.x, p.y - q.y);
-  const isAhead = ({ x, y }: Place) => Math.cos(car.yaw) * (x - car.x) + Math.sin(car.yaw) * (y - car.y) > 0;
+const distance = (p: Point, q: Point) => Math.hypot(p.x - q.x, p.y - q.y);
+
+/** The nearest obstacle ahead that the plan passes. */
+function nextObstacle(from: Body, { bodies, plan = [] }: Frame): Body | undefined {
+  const isAhead = ({ x, y }: Point) =>
+    Math.cos(from.yaw) * (x - from.x) + Math.sin(from.yaw) * (y - from.y) > 0;
+  const isNear = (b: Body) => {
+    const reach = beside * from.length + b.length / 2;
+    return plan.some((p) => distance(p, b) < reach);
+  };
   return bodies
-    .filter((b) => b.kind !== 0 && b.kind !== 4 && isAhead(b) && plan.some((p) => distance(p, b) < beside))
-    .sort((a, b) => distance(a, car) - distance(b, car))[0];
+    .filter((b) => ![0, 4, 6].includes(b.kind) && isAhead(b) && isNear(b))
+    .sort((a, b) => distance(a, from) - distance(b, from))[0];
 }
 
 /** Returns how the controller of a frame passes the next obstacle; undefined if the plan reaches none. */
 export function modesOf(frame: Frame): Modes | undefined {
-  const obstacle = nextObstacle(frame, 1.2);
-  const plan = frame.plan;
-  const candidates = frame.candidates;
+  const { plan, candidates } = frame;
+  const from = drivenOf(frame);
+  const obstacle = from && nextObstacle(from, frame);
   if (!obstacle || !plan || !candidates) return undefined;
-  const from = frame.bodies[0];
-  const reach = (obstacle.kind === 3 ? obstacle.length / 2 : obstacle.width / 2) + halfCar;
+  const size = obstacle.kind === 3 ? obstacle.length : obstacle.width;
+  const reach = (size + page.hello!.body.width) / 2;
   const side = (at: number): Side => (Math.abs(at) < reach ? "into" : at > 0 ? "left" : "right");
   const planned = offset(plan, from, obstacle);
   if (planned === undefined) return undefined;
   const weights = { left: 0, right: 0, into: 0 };
   const { count, points, xy, terms, width } = candidates;
   for (let k = 0; k < count; ++k) {
-    const place = (_: unknown, i: number) => ({
+    const pointAt = (_: unknown, i: number) => ({
       x: xy[2 * (k * points + i)],
       y: xy[2 * (k * points + i) + 1],
     });
-    const at = offset(Array.from({ length: points }, place), from, obstacle);
+    const at = offset(Array.from({ length: points }, pointAt), from, obstacle);
     if (at !== undefined) weights[side(at)] += terms[width * (k + 1) - 1];
   }
   const all = weights.left + weights.right + weights.into || 1;

@@ -1,32 +1,35 @@
-import type { Handlers, Link } from "./link";
-import { recordings, type Command } from "./page";
-import { decode, type Frame, type State, type Text } from "./protocol";
+import { recordings } from "./page";
+import type { State, Text } from "./protocol";
 
 async function unpacked(script: Element): Promise<ArrayBuffer> {
   const text = atob(script.textContent!.trim());
-  const packed = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
+  const packed = Uint8Array.from(text, (c) => c.charCodeAt(0));
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
 
-/** A frame's figures alone: its first block. */
-function scalarsOf(frame: ArrayBuffer): Float64Array {
-  return new Float64Array(frame.slice(12, 12 + new DataView(frame).getUint32(8, true)));
-}
+const head = 12; // bytes of a message before the payload of its first block
+/** The scalars of a frame, its first block. */
+const scalarsOf = (frame: ArrayBuffer) =>
+  new Uint8Array(frame, head, new DataView(frame).getUint32(head - 4, true));
+const pastScalars = 22; // kind of block
 
-/** Plays a recording: takes the place of a server, and handles the commands that concern time. */
-export class Player implements Link {
-  readonly waiting = 0;
+/** Plays a recording: takes the place of a connection, and handles the commands that concern time. */
+export class Player {
+  readyState: number = WebSocket.CONNECTING;
+  binaryType = "arraybuffer";
+  onopen?: () => void;
+  onmessage?: (event: { data: string | ArrayBuffer }) => void;
+  onclose?: () => void;
   private readonly frames: ArrayBuffer[] = [];
   private readonly states: { from: number; state: State }[] = []; // each holds from this frame on
   private at = 0; // frames, with a share of the next
   private shown = -1;
   private paused = false;
   private rate = 1;
-  private last = 0;
+  private last = 0; // ms, time of the last turn
   private loading = true;
 
-  constructor(private readonly handlers: Handlers) {
+  constructor() {
     void this.load();
     requestAnimationFrame((now) => this.turn(now));
   }
@@ -35,13 +38,15 @@ export class Player implements Link {
     try {
       for (const script of recordings) this.take(await unpacked(script));
     } catch (error) {
-      this.handlers.text({ type: "error", message: `The recording cannot be read: ${error}` });
+      this.say({ type: "error", message: `The recording cannot be read: ${error}` });
     }
     this.loading = false;
     this.tell();
   }
 
+  /** Takes messages, each behind its kind (0: text) and length. Frames are counted in place of ticks. */
   private take(bytes: ArrayBuffer) {
+    this.readyState = WebSocket.OPEN;
     const view = new DataView(bytes);
     for (let at = 0; at + 5 <= bytes.byteLength;) {
       const kind = view.getUint8(at);
@@ -49,9 +54,9 @@ export class Player implements Link {
       const content = bytes.slice(at + 5, at + 5 + length);
       at += 5 + length;
       if (kind === 0) this.takeText(JSON.parse(new TextDecoder().decode(content)) as Text);
-      else if (new DataView(content).getUint16(4, true) >= 20) this.handlers.scene(decode(content));
+      else if (new DataView(content).getUint16(4, true) >= 20) this.onmessage!({ data: content });
       else {
-        this.handlers.past(scalarsOf(content), this.frames.length);
+        new DataView(content).setFloat64(head, this.frames.length, true);
         this.frames.push(content);
       }
     }
@@ -60,7 +65,11 @@ export class Player implements Link {
 
   private takeText(message: Text) {
     if (message.type === "state") this.states.push({ from: this.frames.length, state: message });
-    else this.handlers.text(message);
+    else this.say(message);
+  }
+
+  private say(message: Text) {
+    this.onmessage!({ data: JSON.stringify(message) });
   }
 
   private tell() {
@@ -69,7 +78,7 @@ export class Player implements Link {
     if (!held) return;
     const now = { paused: this.paused, real_time: false, rate: this.rate, pace: 0 };
     const ticks = { tick: index, newest: this.frames.length - 1, oldest: 0 };
-    this.handlers.text({ ...held.state, ...now, ...ticks });
+    this.say({ ...held.state, ...now, ...ticks });
   }
 
   private show() {
@@ -77,7 +86,7 @@ export class Player implements Link {
     if (index === this.shown || !this.frames[index]) return;
     const before = this.shown;
     this.shown = index;
-    this.handlers.frame(decode(this.frames[index]) as Frame, index);
+    this.onmessage!({ data: this.frames[index] });
     if (this.paused || index % 10 === 0 || Math.abs(index - before) > 1) this.tell();
   }
 
@@ -99,34 +108,40 @@ export class Player implements Link {
     requestAnimationFrame((then) => this.turn(then));
   }
 
-  ask(command: Command) {
-    this.send(command);
-    return Promise.resolve();
-  }
-
-  drawn() {
-    // Nobody waits for it: frames come from this page.
-  }
-
-  send(command: Command) {
+  send(data: string | DataView) {
+    if (typeof data !== "string") return; // nobody waits for what is drawn
+    const command = JSON.parse(data) as Record<string, number> & { do: string };
     const end = this.frames.length - 1;
     const places: Record<string, number> = {
       play: this.at >= end ? 0 : this.at,
       pause: this.at,
       restart: 0,
-      step: Math.floor(this.at) + Number(command.ticks ?? 1),
-      seek: Number(command.tick),
+      step: Math.floor(this.at) + (command.ticks ?? 1),
+      seek: command.tick,
     };
-    const what = command.do as string;
-    if (what in places) {
-      this.at = Math.min(end, Math.max(0, places[what]));
-      this.paused = what !== "play" && what !== "restart";
-    } else if (what === "rate") this.rate = Number(command.rate) || 4;
+    if (command.do === "past") return this.sendPast(command.from, command.to);
+    if (command.do in places) {
+      this.at = Math.min(end, Math.max(0, places[command.do]));
+      this.paused = command.do !== "play" && command.do !== "restart";
+    } else if (command.do === "rate") this.rate = command.rate || 4;
     else {
       const message = "This is a recording, which cannot be changed.";
-      return this.handlers.text({ type: "error", message });
+      return this.say({ type: "error", message, id: command.id });
     }
+    if (command.id) this.say({ type: "done", id: command.id });
     this.show();
     this.tell();
+  }
+
+  /** Sends the scalars of some frames. */
+  private sendPast(from: number, to: number) {
+    const rows = this.frames.slice(from, to + 1).map(scalarsOf);
+    const length = rows.reduce((sum, row) => sum + row.length, 0);
+    const message = new Uint8Array(head + length);
+    message.set(new Uint8Array(this.frames[0], 0, 4));
+    new DataView(message.buffer).setUint16(4, pastScalars, true);
+    new DataView(message.buffer).setUint32(8, length, true);
+    rows.forEach((row, i) => message.set(row, head + i * row.length));
+    this.onmessage!({ data: message.buffer });
   }
 }

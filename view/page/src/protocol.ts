@@ -62,7 +62,7 @@ const blocks = {
   },
   /**
    * `terms`: of each trajectory its costs by term, the solver's cost and the weight, `width` values.
-   * `collided`: 0, or 1 + the index of the first state that collides.
+   * `collided`: 0, or 1 + the index of the first state that collides; 255 if that is not known.
    */
   candidates: (r: Reader) => {
     const size = r.end - r.at;
@@ -120,11 +120,6 @@ const blocks = {
       return { id, kind, touched, x, y, yaw, length, width };
     }),
   covariance: (r: Reader) => r.f32s((r.end - r.at) / 4),
-  ghost: (r: Reader) => {
-    const pose = r.pose();
-    const [steer, speed, laps, lapTime] = [r.f64(), r.f64(), r.f64(), r.f64()];
-    return { ...pose, steer, speed, laps, lapTime, plan: r.points(r.u32()) };
-  },
   /** Cars that are tracked: the box of now, and the places where each is expected, for each hypothesis. */
   others: (r: Reader) =>
     Array.from({ length: r.u32() }, () => {
@@ -160,10 +155,10 @@ const blocks = {
 };
 /** The names of the blocks by their kinds; "-" where there is none. */
 const kinds =
-  "- scalars scan costMap candidates guides nominal plan bodies covariance ghost - others figure " +
+  "- scalars scan costMap candidates guides nominal plan bodies covariance - - others figure " +
   "polygons - stepCosts inputs effectiveSamples lines grid path past - - - - - - - file";
 const names = kinds.split(" ") as (keyof typeof blocks)[];
-type Blocks = { [Name in keyof typeof blocks]: ReturnType<(typeof blocks)[Name]> };
+export type Blocks = { [Name in keyof typeof blocks]: ReturnType<(typeof blocks)[Name]> };
 
 /** A binary message. `ghostFrame`: the frame of the ghost's controller, in the ghost's world. */
 export type Message = Partial<Blocks> & { ghostFrame?: Frame };
@@ -212,23 +207,20 @@ export interface OptionDeclaration extends Texts<"name" | "symbol" | "unit" | "h
 }
 export interface Hello extends Numbers<"protocol" | "history_seconds" | "control_period"> {
   type: "hello";
+  title: string;
+  can: string[]; // place, move, add, scenario, real_time, save, ghost, undo
   scalars: string[];
   statuses: string[];
-  symptoms?: Texts<"name" | "explanation">[]; // recordings of earlier versions have none
+  symptoms: Texts<"name" | "explanation">[];
   courses: string[];
   methods: string[];
   configurations: string[];
-  terms?: string[]; // names of the cost terms
-  car?: Numbers<"length" | "width" | "front" | "rear">;
+  terms: string[]; // names of the cost terms
+  states: string[];
+  inputs: string[]; // with their units: "speed, m/s"
+  /** Sizes of the driven body, and the distances of its axles from its middle: 0 without wheels. */
+  body: Numbers<"length" | "width" | "front" | "rear">;
   lidar?: Numbers<"angle_min" | "angle_increment" | "range_max">;
-  /** A problem of the user's own, in place of a car on a course. */
-  problem?: Numbers<"length" | "width"> & {
-    title: string;
-    states: string[];
-    inputs: string[];
-    can_place: boolean;
-    can_move: boolean;
-  };
 }
 export interface LapRow extends Numbers<"lap" | "time" | "contacts"> {
   method: string;
@@ -243,32 +235,19 @@ export interface State extends Texts<Names>, Numbers<Counts | Ticks> {
   real_time: boolean;
   edited: boolean;
   introduction?: boolean;
-  bounds?: [number, number, number, number]; // m, around all that a problem has drawn
+  bounds: [number, number, number, number]; // m, around all that is drawn
   laps: LapRow[];
-  contact?: Numbers<"experiment" | "lap" | "contact" | "tick">;
 }
 export interface Options extends Numbers<"undo" | "redo">, Texts<"command_line" | "yaml"> {
   type: "options";
   sections: { name: string; options: OptionDeclaration[] }[];
   changed: string[];
 }
-export interface EvaluationLap extends Numbers<"experiment" | "lap" | "time" | "contacts"> {
-  seed: string;
-  finished: boolean;
-  points: [number, number][];
-}
-export interface Evaluation extends Texts<"folder" | "course"> {
-  type: "evaluation";
-  experiments: { label: string; scenario: string; obstacles: number }[];
-  laps: EvaluationLap[];
-}
 /** A message in JSON. `role` tells a page whether it drives or watches. */
 export type Text =
   | Hello
   | State
   | Options
-  | Evaluation
   | { type: "role"; drives: boolean }
-  | { type: "note"; message: string }
   | { type: "error"; message: string; id?: number }
   | { type: "done"; id: number };

@@ -1,55 +1,57 @@
-import type { BestLap } from "./best_lap";
-import { get } from "./dom";
-import { page, scalar } from "./page";
+import { behindBest, bestNumber } from "./best_lap";
+import { all, get } from "./dom";
+import { methodOf, on, page, scalar } from "./page";
+import type { Hello } from "./protocol";
+
+// The figures over the scene, and the labels of the driven body and of the ghost.
 
 function signed(value: number, digits: number) {
   const amount = Math.abs(value).toFixed(digits);
   return (value >= 0 || Number(amount) === 0 ? "+" : "−") + amount;
 }
-
-const fixed = (value: number, digits: number) => (Number.isFinite(value) ? value.toFixed(digits) : "–");
-
 const words = (name: string) => name.replace(/_/g, " ");
 
-/** Sets the value of a figure, which stands before its unit. */
-const figure = (id: string, text: string) => (get(id).firstChild!.textContent = text);
-
-/** The figures over the scene, and the labels of car and ghost. */
-export class Readout {
-  show(best: BestLap) {
-    figure("speed", fixed(scalar("speed"), 1));
-    figure("lap-time", fixed(scalar("lap_time"), 1));
-    figure("clearance", fixed(scalar("clearance"), 2));
-    figure("solve", fixed(scalar("tick_ms"), 2));
-    figure("cost", fixed(scalar("plan_cost"), Math.abs(scalar("plan_cost")) < 100 ? 2 : 0));
-    figure("contacts", fixed(scalar("contacts"), 0));
-    get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
-    get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
-    this.label();
-    const behind = best.behind(scalar("progress"), scalar("lap_time"));
-    get("best").hidden = get("best-label").hidden = behind === undefined;
-    get("best-label").textContent = `to best lap (${best.number})`;
-    if (behind !== undefined) figure("best", signed(behind, 2));
-    const ghost = page.frame?.ghost;
-    get("gap").hidden = get("gap-label").hidden = !ghost;
-    if (!ghost || !page.state) return;
-    const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * page.state.length;
-    figure("gap", signed(ahead, 1));
-    get("ghost-label").textContent = "ghost · " + (page.state.ghost_label || page.state.ghost);
-  }
-
-  private label() {
-    const { statuses, symptoms, methods } = page.hello!;
-    const label = get("label");
-    const status = statuses[scalar("status")] ?? "";
-    const symptom = symptoms?.[scalar("symptom")];
-    // A car that drives steadily has the sign of "no_progress".
-    const isShown = !!symptom?.explanation && symptom.name !== "no_progress";
-    const parts = [methods[scalar("method")] ?? ""];
-    if (status && status !== "ok") parts.push(words(status));
-    if (isShown) parts.push(words(symptom.name));
-    label.textContent = parts.join(" · ");
-    label.title = isShown ? symptom.explanation : "";
-    label.classList.toggle("blocked", status === "blocked");
-  }
+/** Shows a figure before its unit, with its name; hides both where there is none. */
+function show(value: HTMLElement, text: string | undefined) {
+  value.hidden = (value.previousElementSibling as HTMLElement).hidden = text === undefined;
+  value.firstChild!.textContent = text ?? "";
 }
+
+function showFigures() {
+  for (const each of all("[data-scalar]")) {
+    const value = scalar(each.dataset.scalar!);
+    show(each, Number.isFinite(value) ? value.toFixed(Number(each.dataset.digits)) : undefined);
+  }
+  get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
+  const behind = behindBest();
+  show(get("best"), behind === undefined ? undefined : signed(behind, 2));
+  get("best-label").textContent = `to best lap (${bestNumber()})`;
+  const ghost = page.frame?.ghostFrame?.scalars;
+  const driven = (of?: Float64Array) => scalar("lap", of) + scalar("progress", of); // laps
+  const ahead = ghost && page.state ? (driven() - driven(ghost)) * page.state.length : NaN;
+  show(get("gap"), Number.isFinite(ahead) ? signed(ahead, 1) : undefined);
+}
+
+function showLabels({ statuses, symptoms }: Hello) {
+  const label = get("label");
+  const status = statuses[scalar("status")] ?? "";
+  const symptom = symptoms[scalar("symptom")];
+  // A car that drives steadily has the sign of "no_progress".
+  const isShown = !!symptom?.explanation && symptom.name !== "no_progress";
+  const parts = [methodOf(page.frame)];
+  if (status && status !== "ok") parts.push(words(status));
+  if (isShown) parts.push(words(symptom.name));
+  label.textContent = parts.join(" · ");
+  label.title = isShown ? symptom.explanation : "";
+  label.classList.toggle("blocked", status === "blocked");
+  const { ghost_label, ghost } = page.state ?? {};
+  get("ghost-label").textContent = `ghost · ${ghost_label || ghost}`;
+}
+
+for (const what of ["frame", "state", "past"] as const)
+  on(what, () => {
+    if (!page.hello || !page.frame) return;
+    get("readout").hidden = false;
+    showFigures();
+    showLabels(page.hello);
+  });

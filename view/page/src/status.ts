@@ -1,22 +1,30 @@
-import { counted, get, make } from "./dom";
-import { icon } from "./layout";
-import { isReplay } from "./page";
+import { send } from "./connection";
+import { all, click, get, make } from "./dom";
+import { can, isReplay, on } from "./page";
 import type { State } from "./protocol";
+import { toast } from "./toast";
 
-/** Shows whether there is a server, and for how many attempts there has been none. */
-export function showConnection(connected: boolean, attempts: number) {
-  get("lost").hidden = connected || attempts === 0;
+click("take-over", () => send({ do: "take_over" }));
+
+on("connection", ({ isOpen, attempts }) => {
+  get("lost").hidden = isOpen || attempts === 0;
   const what = `Reconnecting … (attempt ${attempts}).`;
   get("lost-text").textContent = `${what} The drive continues without this page.`;
-  get("connection").className = "pill" + (connected ? "" : " bad");
-  get("connection-text").textContent = connected ? "connected" : "connection lost";
-}
+  get("connection").className = "pill" + (isOpen ? "" : " bad");
+  get("connection-text").textContent = isOpen ? "connected" : "connection lost";
+});
 
-/** Shows whether this page drives, or watches and can take over. */
-export function showRole(drives: boolean) {
+on("role", ({ drives }) => {
   get("take-over").hidden = drives;
   for (const id of ["primary", "scenario-menu", "options", "bar"]) get(id).inert = !drives;
-}
+});
+
+on("error", ({ message }) => toast(message, true));
+
+// Controls of what a drive cannot do are hidden.
+on("hello", () => {
+  for (const each of all("[data-can]")) each.hidden = !can(each.dataset.can!);
+});
 
 /** Returns the name of the way in which the time of a drive passes, and its meaning. */
 function modeOf(state: State): [name: string, meaning: string] {
@@ -36,29 +44,22 @@ function progressOf(state: State): string {
   return state.rate === 1 ? "" : ` · ${rate}`;
 }
 
-/** Shows whether the drive is paused, how time passes, and the laps driven. */
-export function showStatus(state: State) {
-  get("play").innerHTML =
-    `${icon(state.paused ? "play" : "pause")}<span>${state.paused ? "Play" : "Pause"}</span>`;
-  get("play").classList.toggle("primary", state.paused);
+// Shows whether the drive is paused, how time passes, and the laps driven.
+on("state", (state) => {
   const [mode, meaning] = modeOf(state);
   get("mode").className = "pill" + (state.paused ? " warn" : "");
   get("mode").title = meaning;
   get("mode-text").textContent = mode + progressOf(state);
+  get("tab-laps").hidden = !state.length;
   get("laps").hidden = !state.laps.length;
   get("no-laps").hidden = state.laps.length > 0;
-  get("laps")
-    .querySelector("tbody")!
-    .replaceChildren(...lapRows(state));
+  get("lap-rows").replaceChildren(...lapRows(state));
   const rules =
     state.evaluation === "published" ? "evaluation of the published program" : "physical evaluation";
   const edited = state.edited ? ", edited" : "";
   const description = state.description.replace(/([^.])$/, "$1."); // a sentence of course.yaml
   get("about").textContent = `${description} ${state.length.toFixed(1)} m, ${rules}${edited}.`;
-  const parts = [state.course, state.method, `seed ${state.seed}`, counted(state.obstacles, "obstacle")];
-  if (state.opponents) parts.push(counted(state.opponents, "opponent"));
-  if (isReplay) get("caption").textContent = parts.join(" · ");
-}
+});
 
 /** The rows of a table of the laps, the newest first. */
 function lapRows(state: State): HTMLElement[] {

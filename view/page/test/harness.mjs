@@ -52,9 +52,9 @@ export class Tab {
   placeOf({ x, y }) {
     return this.page.evaluate(
       ([x, y]) => {
-        slalom.scene.draw();
+        slalom.scene.drawScene();
         const box = document.getElementById("scene").getBoundingClientRect();
-        const [px, py] = slalom.scene.camera.toScreen(x, y);
+        const [px, py] = slalom.stage.camera.toScreen(x, y);
         return [box.left + px, box.top + py];
       },
       [x, y],

@@ -54,7 +54,7 @@ const opponent = () =>
 async function drawOvertake() {
   const tile = { width: 460, height: 300 };
   const every = 22; // control steps
-  await page.evaluate(() => slalom.scene.visible.clear()); // faster, while nobody looks
+  await page.evaluate(() => slalom.layers.visible.clear()); // faster, while nobody looks
   // The overtake is over when the opponent that was ahead is 1.5 m behind.
   let wasAhead = false;
   for (let last = {}; !(wasAhead && last.apart < 2.5 && last.ahead < -1.5); last = await opponent()) {
@@ -67,14 +67,13 @@ async function drawOvertake() {
   for (let tick = newest - 5 * every; tick <= newest; tick += every) {
     await h.seek(tick);
     const clip = await page.evaluate(({ width, height }) => {
-      const { scene } = slalom;
-      const { camera } = scene;
+      const { camera } = slalom.stage;
       const layers = ["path", "driven", "candidates", "plan", "obstacles", "opponents"];
-      for (const layer of layers) scene.visible.add(layer);
+      for (const layer of layers) slalom.layers.visible.add(layer);
       const { x, y, yaw } = slalom.frame.bodies[0];
       const place = { x: x + 1.2 * Math.cos(yaw), y: y + 1.2 * Math.sin(yaw) };
       Object.assign(camera, { follow: "free", turn: -yaw, zoom: 80, ...place });
-      scene.draw();
+      slalom.scene.drawScene();
       const stage = document.querySelector("#scene").getBoundingClientRect();
       const [left, top] = [stage.left + camera.middleX - width / 2, stage.top + camera.middleY - height / 2];
       return { x: left, y: top, width, height };

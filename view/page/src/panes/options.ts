@@ -1,5 +1,6 @@
-import { get, make } from "../dom";
-import { page, send } from "../page";
+import { send } from "../connection";
+import { click, get, make } from "../dom";
+import { can, on, page } from "../page";
 import type { OptionDeclaration } from "../protocol";
 import { copy } from "../toast";
 
@@ -35,99 +36,99 @@ const symbol = (name: string) =>
 const short = `samples horizon temperature variance guides restart_variance adapt_covariance use_nominal
   vehicle.body_margin planner.max_speed`.split(/\s+/);
 
-/** Controls made from the options' declarations. */
-export class OptionsPane {
-  private filter = "";
-  private showsAll = false;
+export const undo = () => send({ do: "undo" });
+export const redo = () => send({ do: "redo" });
+click("undo", undo);
+click("redo", redo);
+click("reset", () => send({ do: "reset_options" }));
+click("copy-yaml", () => page.options && copy(page.options.yaml, "YAML"));
+click("copy-command", () => page.options && copy(page.options.command_line, "command line"));
 
-  constructor() {
-    const on = (id: string, act: () => void) => (get(id).onclick = act);
-    on("undo", () => send({ do: "undo" }));
-    on("redo", () => send({ do: "redo" }));
-    on("reset", () => send({ do: "reset_options" }));
-    on("copy-yaml", () => page.options && copy(page.options.yaml, "YAML"));
-    on("copy-command", () => page.options && copy(page.options.command_line, "command line"));
-    on("all-options", () => {
-      this.showsAll = !this.showsAll;
-      this.show();
-    });
-    const filter = get<HTMLInputElement>("filter");
-    filter.oninput = () => {
-      this.filter = filter.value.toLowerCase();
-      this.show();
-    };
-  }
+let showsAll = false;
+click("all-options", () => {
+  showsAll = !showsAll;
+  show();
+});
+let filter = "";
+const search = get<HTMLInputElement>("filter");
+search.oninput = () => {
+  filter = search.value.toLowerCase();
+  show();
+};
+on("options", show);
 
-  show() {
-    const { options } = page;
-    if (!options) return;
-    get<HTMLButtonElement>("undo").disabled = options.undo === 0;
-    get<HTMLButtonElement>("redo").disabled = options.redo === 0;
-    get<HTMLButtonElement>("reset").disabled = options.changed.length === 0;
-    get("command").textContent = options.command_line;
-    const parts = options.sections.flatMap(({ name, options }) => {
-      const shown = options.filter((o) => this.shows(name, o)).map((o) => this.row(name, o));
-      return shown.length ? [make("div", { className: "section" }, name), ...shown] : [];
-    });
-    if (!parts.length) parts.push(make("div", {}, `No option matches '${this.filter}'.`));
-    const count = options.sections.reduce((n, s) => n + s.options.length, 0);
-    const more = get("all-options");
-    more.hidden = this.filter !== "";
-    more.textContent = this.showsAll ? "Fewer options" : `All ${count} options`;
-    more.setAttribute("aria-expanded", String(this.showsAll));
-    const pane = get("pane-options");
-    const scrolled = pane.scrollTop;
-    get("option-list").replaceChildren(...parts);
-    pane.scrollTop = scrolled;
-  }
+/** Shows the controls that are made from the declarations of the options. */
+function show() {
+  const { options } = page;
+  if (!options) return;
+  get<HTMLButtonElement>("undo").disabled = options.undo === 0;
+  get<HTMLButtonElement>("redo").disabled = options.redo === 0;
+  get<HTMLButtonElement>("reset").disabled = options.changed.length === 0;
+  for (const id of ["command", "copy-command"]) get(id).hidden = !options.command_line;
+  get("command").textContent = options.command_line;
+  get("option-list").inert = !can("live");
+  const parts = options.sections.flatMap(({ name, options }) => {
+    const shown = options.filter((o) => isShown(name, o)).map((o) => rowOf(name, o));
+    return shown.length ? [make("div", { className: "section" }, name), ...shown] : [];
+  });
+  if (!parts.length) parts.push(make("div", {}, `No option matches '${filter}'.`));
+  const count = options.sections.reduce((n, s) => n + s.options.length, 0);
+  const more = get("all-options");
+  more.hidden = filter !== "";
+  more.textContent = showsAll ? "Fewer options" : `All ${count} options`;
+  more.setAttribute("aria-expanded", String(showsAll));
+  const pane = get("pane-options");
+  const scrolled = pane.scrollTop;
+  get("option-list").replaceChildren(...parts);
+  pane.scrollTop = scrolled;
+}
 
-  private shows(section: string, o: OptionDeclaration) {
-    if (this.filter) return `${section} ${o.name} ${o.help} ${o.symbol}`.toLowerCase().includes(this.filter);
-    const isOfMethod = section !== "vehicle" && section !== "planner";
-    const isShort = short.includes(`${section}.${o.name}`) || (isOfMethod && short.includes(o.name));
-    return this.showsAll || o.value !== o.default || isShort;
-  }
+function isShown(section: string, o: OptionDeclaration) {
+  if (filter) return `${section} ${o.name} ${o.help} ${o.symbol}`.toLowerCase().includes(filter);
+  const isOfMethod = section !== "vehicle" && section !== "planner";
+  const isShort = short.includes(`${section}.${o.name}`) || (isOfMethod && short.includes(o.name));
+  return showsAll || o.value !== o.default || isShort;
+}
 
-  private row(section: string, o: OptionDeclaration): HTMLElement {
-    const key = `${section}.${o.name}`;
-    const aside = [symbol(o.symbol), o.unit && `[${o.unit.replace("^2", "²")}]`].filter(Boolean).join(" ");
-    const isBounded = [o.min, o.max].some((v) => v !== undefined && Math.abs(v) < 1e6);
-    const upper = o.max !== undefined && o.max < 1e9 ? o.max : "∞";
-    const range = isBounded ? ` (${o.min ?? "−∞"} … ${upper})` : "";
-    const row = make(
-      "div",
-      { className: "option" + (o.value !== o.default ? " changed" : "") },
-      make("label", { htmlFor: key }, o.name, make("small", {}, aside)),
-      ...this.controls(key, o),
-      make("p", {}, o.help + range),
-    );
-    row.dataset.key = key;
-    return row;
-  }
+function rowOf(section: string, o: OptionDeclaration): HTMLElement {
+  const key = `${section}.${o.name}`;
+  const aside = [symbol(o.symbol), o.unit && `[${o.unit.replace("^2", "²")}]`].filter(Boolean).join(" ");
+  const isBounded = [o.min, o.max].some((v) => v !== undefined && Math.abs(v) < 1e6);
+  const upper = o.max !== undefined && o.max < 1e9 ? o.max : "∞";
+  const range = isBounded ? ` (${o.min ?? "−∞"} … ${upper})` : "";
+  const row = make(
+    "div",
+    { className: "option" + (o.value !== o.default ? " changed" : "") },
+    make("label", { htmlFor: key }, o.name, make("small", {}, aside)),
+    ...controlsOf(key, o),
+    make("p", {}, o.help + range),
+  );
+  row.dataset.key = key;
+  return row;
+}
 
-  private controls(key: string, o: OptionDeclaration): HTMLElement[] {
-    const set = (value: string) => send({ do: "set", key, value });
-    if (o.type === "flag") {
-      const box = make("input", { type: "checkbox", id: key, checked: o.value === "true" });
-      box.onchange = () => set(String(box.checked));
-      return [box];
-    }
-    if (o.type === "choice") {
-      const choices = (o.choices ?? []).map((c) => new Option(c, c, false, c === o.value));
-      const select = make("select", { id: key }, ...choices);
-      select.onchange = () => set(select.value);
-      return [select];
-    }
-    const text = make("input", { type: "text", id: key, value: o.value, className: "numbers" });
-    text.inputMode = "decimal";
-    text.onchange = () => set(text.value);
-    const value = Number(o.value.replace(/[[\]]/g, ""));
-    if (!Number.isFinite(value)) return [text];
-    const t = travel(o);
-    const slider = make("input", { type: "range", min: "0", max: "1", step: "0.001", ariaLabel: o.name });
-    slider.value = String(t.to(value));
-    slider.oninput = () => (text.value = String(t.from(Number(slider.value))));
-    slider.onchange = () => set(text.value);
-    return [text, slider];
+function controlsOf(key: string, o: OptionDeclaration): HTMLElement[] {
+  const set = (value: string) => send({ do: "set", key, value });
+  if (o.type === "flag") {
+    const box = make("input", { type: "checkbox", id: key, checked: o.value === "true" });
+    box.onchange = () => set(String(box.checked));
+    return [box];
   }
+  if (o.type === "choice") {
+    const choices = (o.choices ?? []).map((c) => new Option(c, c, false, c === o.value));
+    const select = make("select", { id: key }, ...choices);
+    select.onchange = () => set(select.value);
+    return [select];
+  }
+  const text = make("input", { type: "text", id: key, value: o.value, className: "numbers" });
+  text.inputMode = "decimal";
+  text.onchange = () => set(text.value);
+  const value = Number(o.value.replace(/[[\]]/g, ""));
+  if (!Number.isFinite(value)) return [text];
+  const t = travel(o);
+  const slider = make("input", { type: "range", min: "0", max: "1", step: "0.001", ariaLabel: o.name });
+  slider.value = String(t.to(value));
+  slider.oninput = () => (text.value = String(t.from(Number(slider.value))));
+  slider.onchange = () => set(text.value);
+  return [text, slider];
 }

@@ -1,7 +1,10 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { make } from "../dom";
+import { page } from "../page";
 import type { Line } from "./strips";
+
+const bins = 30; // bars of a histogram
 
 /** The value of a CSS variable. */
 export function css(name: string) {
@@ -15,6 +18,7 @@ export class Chart {
   readonly values: HTMLElement[];
   readonly shown: boolean[]; // lines
   plot?: uPlot;
+  private made = ""; // as what the plot was made
 
   constructor(root: HTMLElement, title: string, lines: Pick<Line, "colour" | "dash">[]) {
     this.values = lines.map(() => make("span", { className: "numbers" }));
@@ -41,29 +45,40 @@ export class Chart {
     root.append(this.box);
   }
 
-  /** Replaces the plot; `unit` stands beside the values of the x axis. */
-  draw(unit: string, data: uPlot.AlignedData, options: Partial<uPlot.Options>) {
+  /**
+   * Draws data; `unit` stands beside the values of the x axis. The plot is made anew where its size, the theme,
+   * the number of lines or `variant` has changed.
+   */
+  draw(unit: string, data: uPlot.AlignedData, options: Partial<uPlot.Options>, variant = "") {
+    const width = Math.floor(this.holder.clientWidth);
+    if (width < 50) return;
+    const made = [width, page.theme!.dark, data.length, variant].join();
+    if (this.made === made) return this.plot!.setData(data);
+    this.made = made;
     this.plot?.destroy();
     const bottom = axis({
       size: 18,
       space: 50,
       values: (_u, all) => all.map((v) => (v === null ? "" : `${v} ${unit}`)),
     });
-    const usual = {
-      cursor: { show: false },
-      legend: { show: false },
-      series: [],
-      ...options,
-      axes: [bottom, axis(), ...(options.axes ?? [])],
-    };
-    this.plot = new uPlot({ width: this.width, height: 96, ...usual }, data, this.holder);
+    const usual = { cursor: { show: false }, legend: { show: false }, height: 96, width, ...options };
+    const scales = { x: { time: false }, y: { range: padded }, ...options.scales };
+    const axes = [bottom, axis(), ...(options.axes ?? [])];
+    const series = [{}, ...(options.series ?? [])].map((each) => ({ points: { show: false }, ...each }));
+    this.plot = new uPlot({ ...usual, scales, axes, series }, data, this.holder);
   }
 
-  get width() {
-    return Math.floor(this.holder.clientWidth);
+  /** Draws how often values occur between two values; those beyond the last count as there. */
+  histogram(unit: string, values: number[], from: number, to: number, hooks: uPlot.Hooks.Arrays = {}) {
+    const width = Math.max(1e-12, to - from) / bins;
+    const counts = new Array<number>(bins).fill(0);
+    for (const v of values) counts[Math.min(bins - 1, Math.floor((v - from) / width))] += 1;
+    const blue = css("--blue");
+    const bars = { stroke: blue, fill: blue + "55", width: 1, paths: uPlot.paths.bars!({ size: [0.9] }) };
+    const x = counts.map((_, k) => from + (k + 0.5) * width);
+    this.draw(unit, [x, counts], { scales: { y: { range: fromZero(4) } }, series: [bars], hooks });
   }
 }
-
 /** An axis; at least three values fit on an upright one. */
 export function axis(over: Partial<uPlot.Axis> = {}): uPlot.Axis {
   const grid = { stroke: css("--line"), width: 1 };
@@ -93,3 +108,7 @@ export function padded(_u: uPlot, a: number | null, b: number | null): [number, 
   const room = Math.max(0.08 * (b - a), b - a < 1e-6 ? 0.1 * Math.max(1, Math.abs(b)) : 0);
   return [a - room, b + room];
 }
+
+/** A range of an axis from zero to at least a value. */
+export const fromZero = (least: number) => (_u: uPlot, _a: number, b: number) =>
+  [0, Math.max(least, b * 1.15)] as [number, number];

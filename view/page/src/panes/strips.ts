@@ -28,23 +28,8 @@ const strip = (title: string, ...lines: Named[]): Strip => ({
   lines: lines.map(([name, label, colour, look]) => ({ name, label, colour: `--${colour}`, ...look })),
 });
 
-const samples = [
-  strip(
-    "Samples",
-    ["effective_samples", "ESS", "blue", { digits: 0 }],
-    ["temperature", "temperature", "warn", { dash, right: true }],
-  ),
-  strip("Collided candidates, %", ["collided_share", "share", "bad", { digits: 0, scale: 100 }]),
-];
-
-// Lines can be told apart with any colour vision: they differ in lightness, too, and some are dashed.
-export const strips: Strip[] = [
-  strip(
-    "Cost of the plan",
-    ["distance_cost", "distance", "blue"],
-    ["yaw_cost", "yaw", "violet", { dash: [6, 3] }],
-    ["collision_cost", "collision", "bad", { dash: [2, 2] }],
-  ),
+/** Charts of figures that not all drives have. */
+const known: Strip[] = [
   strip(
     "Steering, rad",
     ["command_steer", "command", "accent", { digits: 3 }],
@@ -72,11 +57,19 @@ export const strips: Strip[] = [
     ["steering_gain_estimate", "gain", "accent", { digits: 3 }],
     ["delay_estimate", "delay, ms", "violet", { dash, right: true, digits: 0, scale: 1000 }],
   ),
-  ...samples,
+  strip(
+    "Samples",
+    ["effective_samples", "ESS", "blue", { digits: 0 }],
+    ["temperature", "temperature", "warn", { dash, right: true }],
+  ),
+  strip("Collided candidates, %", ["collided_share", "share", "bad", { digits: 0, scale: 100 }]),
   strip("Clearance, m", ["clearance", "to wall or obstacle", "accent"]),
 ];
 
-/** The colours of the lines of a chart, with their dashes. */
+/**
+ * The colours of the lines of a chart, with their dashes. Lines can be told apart with any colour vision: they
+ * differ in lightness, too, and some are dashed.
+ */
 export const looks: [colour: string, dash?: number[]][] = [
   ["accent"],
   ["text", dash],
@@ -86,9 +79,9 @@ export const looks: [colour: string, dash?: number[]][] = [
   ["bad", [2, 2]],
 ];
 
-function lineOf(kind: string, name: string, label: string, i: number): Named {
+function lineOf(name: string, label: string, i: number): Named {
   const [colour, dashes] = looks[i % looks.length];
-  return [kind + name, label, colour, { dash: i < looks.length ? dashes : [12, 3] }];
+  return [name, label, colour, { dash: i < looks.length ? dashes : [12, 3] }];
 }
 
 /** Charts of values whose names end with their units, "speed, m/s": those of one unit share a chart. */
@@ -102,21 +95,22 @@ function grouped(kind: string, names: string[]): Strip[] {
     const short = (name: string) => name.replace(`, ${unit}`, "");
     const suffix = all[0] === unit ? "" : `, ${unit.replace("^2", "²")}`;
     const title = all.map(short).join(" · ") + suffix;
-    const lines = all.map((name, i) => lineOf(kind, name, short(name), i));
+    const lines = all.map((name, i) => lineOf(kind + name, short(name), i));
     return strip(title[0].toUpperCase() + title.slice(1), ...lines);
   });
 }
 
-/** The charts of a problem of the user's own: its costs, inputs and states. */
-export const stripsOf = ({ problem, terms }: Hello): Strip[] =>
-  problem
-    ? [
-        strip("Cost of the plan", ...(terms ?? []).map((term, i) => lineOf("cost.", term, term, i))),
-        ...grouped("input.", problem.inputs),
-        ...grouped("state.", problem.states),
-        ...samples,
-      ]
-    : strips;
+/** The charts of a drive: of the figures that it has. */
+export function stripsOf({ scalars, terms, inputs, states }: Hello): Strip[] {
+  const costs = terms.map((term, i) => lineOf(`${term}_cost`, term, i));
+  const all = [
+    strip("Cost of the plan", ...costs),
+    ...grouped("input.", inputs),
+    ...grouped("state.", states),
+    ...known,
+  ];
+  return all.filter(({ lines }) => lines.every(({ name }) => scalars.includes(name)));
+}
 
 /** The unit of a line, at the end of its label or of the title: "rad", "%"; empty if it has none. */
 export const unitOf = ({ title }: Strip, { label }: Line) =>

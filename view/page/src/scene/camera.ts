@@ -25,10 +25,6 @@ export class Camera {
   get room() {
     return Math.min(this.freeWidth, this.freeHeight);
   }
-  /** Pixels per m with which the surroundings of the car are seen: about 9 m. */
-  get drivingZoom() {
-    return Math.min(120, Math.max(30, this.room / 9));
-  }
   get middleX() {
     return this.left + this.covered.left + this.freeWidth / 2;
   }

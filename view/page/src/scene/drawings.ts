@@ -1,4 +1,6 @@
-import type { CostMap, Grid, Guides, Hello, Path, PlanState, Scan } from "../protocol";
+import { page } from "../page";
+import type { CostMap, Grid, Guides, Path, PlanState, Scan } from "../protocol";
+import { theme } from "../theme";
 import { imageOf, type Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
 import { faded, placed, type Point } from "./shapes";
@@ -15,8 +17,8 @@ function freeSpace({ cells, width, height }: Grid): Float32Array {
   return out;
 }
 
-/** The map of a course as an image, finer than its cells. */
-export function mapImage(theme: Theme, grid: Grid): HTMLCanvasElement {
+/** A map as an image, finer than its cells. */
+function mapImage(grid: Grid): HTMLCanvasElement {
   const { width, height } = grid;
   const free = freeSpace(grid);
   const fine = Math.min(4, Math.max(1, Math.floor(Math.sqrt(mapPixels / (width * height)))));
@@ -35,7 +37,14 @@ export function mapImage(theme: Theme, grid: Grid): HTMLCanvasElement {
   });
 }
 
-export function drawCostMap(painter: Painter, theme: Theme, map: CostMap) {
+let map: { grid: Grid; theme: Theme; image: HTMLCanvasElement } | undefined;
+/** Draws a map with an image that is made once for each map and theme. */
+export function drawMap(painter: Painter, grid: Grid) {
+  if (map?.grid !== grid || map.theme !== theme) map = { grid, theme, image: mapImage(grid) };
+  painter.image(map.image, grid, grid.width * grid.resolution, grid.height * grid.resolution);
+}
+
+export function drawCostMap(painter: Painter, map: CostMap) {
   const { rows, columns, resolution, cells } = map;
   const none: Rgba = [0, 0, 0, 0];
   // The image begins with the smallest x and y, with x along a row.
@@ -46,7 +55,7 @@ export function drawCostMap(painter: Painter, theme: Theme, map: CostMap) {
   painter.image(image, { x, y, yaw: map.yaw }, width, height);
 }
 
-export function drawPath(painter: Painter, theme: Theme, { xyv, closed }: Path) {
+export function drawPath(painter: Painter, { xyv, closed }: Path) {
   const n = xyv.length / 3;
   for (let i = 0; i < (closed ? n : n - 1); ++i) {
     if (i % 4 >= 2) continue;
@@ -55,8 +64,13 @@ export function drawPath(painter: Painter, theme: Theme, { xyv, closed }: Path) 
   }
 }
 
+/** Lines to follow. */
+export function drawLines(painter: Painter, lines: Float32Array[]) {
+  for (const xy of lines) painter.dashed(xy, xy.length / 2, theme.path, 1.3);
+}
+
 /** The guide particles in all iterations, and how their ends moved; the last iteration is bright. */
-export function drawGuides(painter: Painter, theme: Theme, { guides, iterations, points, xy }: Guides) {
+export function drawGuides(painter: Painter, { guides, iterations, points, xy }: Guides) {
   for (let k = 0; k < iterations; ++k) {
     const last = k === iterations - 1;
     const line = faded(theme.guide, last ? 1 : 0.1 + (0.3 * (k + 1)) / iterations);
@@ -74,7 +88,7 @@ export function drawGuides(painter: Painter, theme: Theme, { guides, iterations,
 }
 
 /** Two standard deviations to either side of the plan. */
-export function drawSpread(painter: Painter, theme: Theme, plan: PlanState[]) {
+export function drawSpread(painter: Painter, plan: PlanState[]) {
   const edge = (p: PlanState, side: number): Point => [
     p.x - side * 2 * p.spread * Math.sin(p.yaw),
     p.y + side * 2 * p.spread * Math.cos(p.yaw),
@@ -84,13 +98,15 @@ export function drawSpread(painter: Painter, theme: Theme, plan: PlanState[]) {
   painter.fill([...left, ...right.reverse()], theme.spread);
 }
 
-export function drawPlan(painter: Painter, theme: Theme, plan: PlanState[]) {
+export function drawPlan(painter: Painter, plan: PlanState[]) {
   const xy = plan.flatMap((p) => [p.x, p.y]);
   painter.polyline(xy, 0, plan.length, theme.plan, 3.2);
   for (const p of plan) painter.dot(p.x, p.y, 5, theme.plan);
 }
 
-export function drawScan(painter: Painter, theme: Theme, scan: Scan, lidar: NonNullable<Hello["lidar"]>) {
+export function drawScan(painter: Painter, scan: Scan) {
+  const { lidar } = page.hello!;
+  if (!lidar) return;
   const most = lidar.range_max * 1000 - 5;
   for (const [i, range] of scan.ranges.entries()) {
     if (range >= most) continue;

@@ -1,11 +1,15 @@
 import { all, counted, get, make } from "../dom";
-import { page, period, scalar } from "../page";
+import { period, scalar } from "../page";
+import { titleParts } from "../scenario";
+import { theme } from "../theme";
 import type { Camera } from "./camera";
-import { layers, type Layer } from "./layers";
+import { costRange } from "./candidates";
+import { hasData, layers, term, visible, type Layer } from "./layers";
 import { rulerMetres } from "./overlay";
 import { Painter, type Pen } from "./painter";
 import { css, rampColour } from "./palette";
-import type { SceneView } from "./scene";
+import { drawScene, size } from "./scene";
+import { camera, ghostCamera, isSideBySide } from "./stage";
 import { SvgPen } from "./svg_pen";
 
 const margin = 14; // pixels, as all lengths here
@@ -42,15 +46,15 @@ function swatch(colour: string, text: string): Item {
 }
 
 /** The scale of the candidates' colours, between the costs at its ends. */
-function ramp(scene: SceneView): Item {
-  if (scene.term === "density") return words("Candidates, opaque where they are many");
-  const [low, high] = scene.costRange.map((cost) => words(cost.toPrecision(3)));
-  const name = words(`Candidates, by ${scene.term} cost`);
+function ramp(): Item {
+  if (term === "density") return words("Candidates, opaque where they are many");
+  const [low, high] = costRange.map((cost) => words(cost.toPrecision(3)));
+  const name = words(`Candidates, by ${term} cost`);
   const draw = (pen: Pen, x: number, y: number) => {
     low.draw(pen, x, y);
     const from = x + low.width + 6;
     for (let i = 0; i < rampWidth; i += 3) {
-      pen.fillStyle = css(rampColour(scene.theme, i / rampWidth, 1));
+      pen.fillStyle = css(rampColour(theme, i / rampWidth, 1));
       pen.fillRect(from + i, y - 9, 3, 8);
     }
     high.draw(pen, from + rampWidth + 6, y);
@@ -83,29 +87,17 @@ function flowed(items: Item[], gap: number, from: number, width: number) {
   return { places, end: items.length ? y : from };
 }
 
-function titleParts(): string[] {
-  const { state, hello } = page;
-  const time = `${(page.position * period()).toFixed(2)} s`;
-  if (hello?.problem) return [hello.problem.title, state!.method, time];
-  const ghost = state!.ghost ? [`against ${state!.ghost_label || state!.ghost}`] : [];
-  const hits = counted(scalar("contacts"), "collision");
-  return [state!.course, state!.method, ...ghost, `seed ${state!.seed}`, time, hits];
-}
-
 /** The layers that show something, with their colours. */
-function key(scene: SceneView): Item[] {
+function key(): Item[] {
   const isShown = (name: Layer) =>
-    scene.visible.has(name) &&
-    !all(`.empty > [data-layer="${name}"]`).length &&
-    name !== "modes" &&
-    !(name === "ghost" && scene.isSideBySide);
+    visible.has(name) && hasData(name) && name !== "modes" && !(name === "ghost" && isSideBySide());
   return layers
     .filter(([name]) => isShown(name))
     .flatMap(([name, title, , colour]) =>
       name === "candidates"
-        ? [ramp(scene), swatch(css(scene.theme.collided), "Candidates that collide")]
+        ? [ramp(), swatch(css(theme.collided), "Candidates that collide")]
         : colour
-          ? swatch(css(scene.theme[colour]), title)
+          ? swatch(css(theme[colour]), title)
           : [],
     );
 }
@@ -121,15 +113,17 @@ function drawLaneTitle(pen: Pen, text: string, { left, top, middleX }: Camera) {
 }
 
 /** Draws the scene with its names, captions, scale and the meaning of its colours below. */
-export async function picture(scene: SceneView, format: "png" | "svg"): Promise<Blob> {
-  const [width, height] = scene.size;
+export async function picture(format: "png" | "svg"): Promise<Blob> {
+  const [width, height] = size();
+  const time = `${(scalar("tick") * period()).toFixed(2)} s`;
+  const title = [...titleParts(), time, counted(scalar("contacts"), "collision")];
   const captions = [...all(".caption:not([hidden])")].map((each) => each.textContent!.trim());
   const spoken = captions.map((text) => text.split(/\s+/).map((word) => words(word)));
   let end = height;
   const rows = [
-    { items: titleParts().map((part) => words(part, fonts.bold)), gap: 16 },
+    { items: title.map((part) => words(part, fonts.bold)), gap: 16 },
     ...spoken.map((items) => ({ items, gap: 4 })),
-    { items: [scaleBar(scene.camera), ...key(scene)], gap: 16 },
+    { items: [scaleBar(camera), ...key()], gap: 16 },
   ].map(({ items, gap }) => {
     const row = flowed(items, gap, end, width);
     end = row.end;
@@ -140,11 +134,11 @@ export async function picture(scene: SceneView, format: "png" | "svg"): Promise<
   const ratio = format === "png" ? 2 : 1;
   const canvas = make("canvas", { width: ratio * width, height: ratio * end });
   const pen = format === "png" ? canvas.getContext("2d")! : new SvgPen(width, end);
-  scene.draw(new Painter(pen, ratio));
+  drawScene(new Painter(pen, ratio));
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  if (scene.isSideBySide)
-    [scene.camera, scene.stage.ghostCamera].forEach((camera, i) =>
-      drawLaneTitle(pen, get(i ? "ghost-lane-title" : "lane-title").textContent!, camera),
+  if (isSideBySide())
+    [camera, ghostCamera].forEach((each, i) =>
+      drawLaneTitle(pen, get(i ? "ghost-lane-title" : "lane-title").textContent!, each),
     );
   pen.fillStyle = themed("--panel");
   pen.fillRect(0, height, width, end - height);

@@ -1,15 +1,12 @@
+import { drivenOf, page, scalar } from "../page";
+import type { Body, Frame, Other, Pose } from "../protocol";
+import { theme } from "../theme";
 import type { Painter } from "./painter";
-import type { Rgba, Theme } from "./palette";
-import { page } from "../page";
-import type { Body, Other, Pose } from "../protocol";
+import type { Rgba } from "./palette";
 
-/** Cars, obstacles and lines as they are seen from above. */
+// Bodies and obstacles as they are seen from above.
 
 export type Point = [number, number];
-const usualCar = { length: 0.58, width: 0.31, front: 0.159, rear: 0.171 };
-/** The dimensions of a car, usual ones where no server has told others. */
-export const carSize = () => page.hello?.car ?? { ...usualCar, ...page.hello?.problem };
-
 export const faded = (c: Rgba, by: number): Rgba => [c[0], c[1], c[2], c[3] * by];
 
 /** The places of points (m, forwards and to the left) that are seen from a pose. */
@@ -34,7 +31,7 @@ export function circle(x: number, y: number, radius: number, n = 28): Point[] {
   return angles.map((angle) => [x + radius * Math.cos(angle), y + radius * Math.sin(angle)]);
 }
 
-export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected: boolean) {
+export function drawObstacle(painter: Painter, b: Body, isSelected: boolean) {
   const points = b.kind >= 3 ? circle(b.x, b.y, b.length / 2) : corners(b);
   const [r, g, blue] = theme.collided;
   if (b.kind === 6) {
@@ -49,29 +46,65 @@ export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected
   }
 }
 
-export function drawPolygon(painter: Painter, theme: Theme, xy: Float32Array) {
+export function drawPolygon(painter: Painter, xy: Float32Array) {
   const points = Array.from({ length: xy.length / 2 }, (_, i): Point => [xy[2 * i], xy[2 * i + 1]]);
   painter.fill(points, theme.obstacle);
   painter.outline(points, theme.obstacleEdge, 1.2);
 }
 
-/** The body of a problem: its lines, and a box whose front is marked, or a dot where it has no size. */
-export function drawFigure(painter: Painter, theme: Theme, body: Body, lines: Float32Array[]) {
+/** Draws the driven body of a frame: a car where it has axles, else its lines and a box with its front. */
+export function drawDriven(painter: Painter, frame: Frame, colour: Rgba) {
+  const body = drivenOf(frame);
+  if (!body) return;
   const edge = body.touched ? theme.collided : theme.carEdge;
-  for (const xy of lines) painter.polyline(xy, 0, xy.length / 2, theme.car, 4);
+  if (page.hello!.body.front > 0)
+    return drawCar(painter, body, scalar("steer", frame.scalars) || 0, colour, edge);
+  for (const xy of frame.figure ?? []) painter.polyline(xy, 0, xy.length / 2, colour, 4);
   if (!body.length) {
     painter.dot(body.x, body.y, 15, edge);
-    return painter.dot(body.x, body.y, 12, theme.car);
+    return painter.dot(body.x, body.y, 12, colour);
   }
   const [l, w] = [body.length / 2, body.width / 2];
-  painter.fill(corners(body), theme.car);
+  painter.fill(corners(body), colour);
   painter.outline(corners(body), edge, body.touched ? 4 : 1.2);
   const front = placed(body, mirrored(0.8 * l, 0, 0.2 * l, 0.6 * w));
   painter.fill(front, faded(theme.carEdge, 0.85));
 }
 
+/** Draws the second controller's body and plan. */
+export function drawGhost(painter: Painter, frame: Frame) {
+  const plan = (frame.plan ?? []).flatMap(({ x, y }) => [x, y]);
+  painter.dashed(plan, plan.length / 2, faded(theme.ghost, 0.9), 2.4);
+  drawDriven(painter, frame, faded(theme.ghost, 0.75));
+}
+
+export const drawOpponent = (painter: Painter, body: Body) =>
+  drawCar(painter, body, 0, theme.opponent, theme.carEdge);
+
+/** Draws the place of the body that a click adds. */
+export function drawPreview(painter: Painter, { x, y, kind }: { x: number; y: number; kind: number }) {
+  const size = kind === 1 ? page.hello!.body : { length: 0.4, width: 0.4 };
+  const points = kind === 3 ? circle(x, y, 0.15) : corners({ ...size, x, y, yaw: 0 });
+  painter.outline(points, theme.obstacle, 1.5);
+}
+
+/** Draws the outline of the driven body at a pose. */
+export function drawOutline(painter: Painter, at: Pose, colour: Rgba) {
+  painter.outline(corners({ ...page.hello!.body, ...at }), colour, 2);
+  painter.dot(at.x, at.y, 5, colour);
+}
+
+/** Draws a cross with a rim. */
+export function drawCross(painter: Painter, { x, y }: { x: number; y: number }, reach: number) {
+  for (const [width, colour] of [
+    [7, theme.free],
+    [4, theme.mark],
+  ] as const)
+    for (const up of [reach, -reach]) painter.segment(x - reach, y - up, x + reach, y + up, colour, width);
+}
+
 /** Cars that are tracked: outlines, and a dot for each place where they may be, as opaque as it is likely. */
-export function drawTracked(painter: Painter, theme: Theme, others: Other[]) {
+export function drawTracked(painter: Painter, others: Other[]) {
   for (const other of others) {
     painter.outline(corners(other), theme.opponent, 2);
     for (const [k, weight] of other.weights.entries())
@@ -81,8 +114,8 @@ export function drawTracked(painter: Painter, theme: Theme, others: Other[]) {
 }
 
 /** A car with its front wheels turned by `steer` (rad). */
-export function drawCar(painter: Painter, theme: Theme, at: Pose, steer: number, body: Rgba, edge: Rgba) {
-  const size = carSize();
+export function drawCar(painter: Painter, at: Pose, steer: number, body: Rgba, edge: Rgba) {
+  const size = page.hello!.body;
   const [l, w] = [size.length / 2, size.width / 2];
   const wheel = (along: number, left: number, turn: number) => {
     const [[x, y]] = placed(at, [[along, left]]);

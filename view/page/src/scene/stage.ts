@@ -1,53 +1,150 @@
+import { all, get, press } from "../dom";
+import { on, page, redraw } from "../page";
 import { Camera } from "./camera";
 
+// The stage with its cameras: one for the whole stage, or one for the car's lane and one for the ghost's.
+
+export const camera = new Camera();
+export const ghostCamera = new Camera();
+/** Whether the ghost is to be shown beside the car, in a lane of its own. */
+export let isSplit = false;
+/** Whether it is. */
+export const isSideBySide = () => isSplit && page.frame?.ghostFrame !== undefined;
+
+const canvas = get<HTMLCanvasElement>("scene");
+const captionRoom = 44; // pixels, where the caption is as wide as the stage
+const margin = 8; // pixels between a panel and what is fitted
 const room = { top: 40, bottom: 56 }; // pixels of a lane that its title and caption cover
+let size = { width: 1, height: 1, covered: camera.covered };
 
-/** The stage with its cameras: one for the whole stage, or one for the car's lane and one for the ghost's. */
-export class Stage {
-  readonly camera = new Camera();
-  readonly ghostCamera = new Camera();
-  private size = { width: 1, height: 1, covered: this.camera.covered };
-
-  /** Sets the size of the stage and what panels cover of it (pixels). */
-  resize(width: number, height: number, covered: Camera["covered"]) {
-    this.size = { width, height, covered };
-  }
-
-  /** Lets the car's camera see the whole stage. */
-  joinLanes() {
-    Object.assign(this.camera, { left: 0, top: 0, ...this.size });
-  }
-
-  /** Puts the lanes beside one another, or one above the other on a high stage. */
-  splitLanes() {
-    const { width, height, covered } = this.size;
-    if (width >= 0.7 * height) {
-      const middle = Math.round((covered.left + width - covered.right) / 2);
-      const own = { top: 0, height };
-      const free = { top: covered.top + room.top, bottom: room.bottom, left: 0, right: 0 };
-      Object.assign(this.camera, own, { left: 0, width: middle, covered: { ...free, left: covered.left } });
-      const second = { left: middle, width: width - middle, covered: { ...free, right: covered.right } };
-      Object.assign(this.ghostCamera, own, second);
-    } else {
-      const middle = Math.round((covered.top + height) / 2);
-      const own = { left: 0, width };
-      const free = { left: covered.left, right: covered.right, ...room };
-      const first = { top: 0, height: middle, covered: { ...free, top: covered.top + room.top } };
-      Object.assign(this.camera, own, first);
-      Object.assign(this.ghostCamera, own, { top: middle, height: height - middle, covered: free });
-    }
-    const { x, y, zoom, turn, follow } = this.camera;
-    Object.assign(this.ghostCamera, { zoom, turn, follow }, follow === "free" ? { x, y } : {});
-  }
-
-  /** Whether a point of the stage lies in the ghost's lane, while the lanes are split. */
-  isInGhostLane(p: { x: number; y: number }) {
-    return p.x >= this.ghostCamera.left && p.y >= this.ghostCamera.top;
-  }
-
-  /** The point of the car's lane that shows the same place as a point of the ghost's lane. */
-  fromGhostLane(p: { x: number; y: number }) {
-    const [x, y] = this.camera.toScreen(...this.ghostCamera.toMap(p.x, p.y));
-    return { x, y };
-  }
+/** The pixels at the edges of the stage that panels cover: at its sides if there is room, else at its top. */
+function coveredByPanels(): Camera["covered"] {
+  const layers = get<HTMLDetailsElement>("layers");
+  const box = get("stage").getBoundingClientRect();
+  const figures = get("readout").getBoundingClientRect();
+  const right = figures.width ? box.right - figures.left + margin : 0;
+  const panel = layers.getBoundingClientRect();
+  const left = layers.open ? panel.right - box.left + margin : 0;
+  const top =
+    Math.max(figures.width ? figures.bottom : box.top, layers.open ? 0 : panel.bottom) - box.top + margin;
+  if (box.width - left - right > 0.5 * box.width && box.width > box.height)
+    return { left, right, top: left ? 0 : panel.bottom - box.top + margin, bottom: 0 };
+  const aside = left < 0.5 * box.width ? left : 0;
+  return { left: aside, right: 0, top: Math.min(top, 0.4 * box.height), bottom: captionRoom };
 }
+
+/** Measures the stage, and puts the cameras to their places. */
+function layOut() {
+  const { clientWidth: width, clientHeight: height } = get("stage");
+  const covered = coveredByPanels();
+  const { hidden, offsetTop, offsetHeight } = get("introduction");
+  if (!hidden) covered.top = Math.max(covered.top, offsetTop + offsetHeight);
+  size = { width, height, covered };
+  keepFitted(placeCameras);
+  redraw();
+}
+const resized = new ResizeObserver(layOut);
+for (const id of ["stage", "layers", "readout", "introduction"]) resized.observe(get(id));
+
+/** Puts the cameras to the whole stage, or beside one another, or one above the other on a high stage. */
+export function placeCameras() {
+  const { width, height, covered } = size;
+  if (!isSideBySide()) {
+    Object.assign(camera, { left: 0, top: 0, ...size });
+    return;
+  }
+  if (width >= 0.7 * height) {
+    const middle = Math.round((covered.left + width - covered.right) / 2);
+    const free = { top: covered.top + room.top, bottom: room.bottom, left: 0, right: 0 };
+    const own = { top: 0, height };
+    Object.assign(camera, own, { left: 0, width: middle, covered: { ...free, left: covered.left } });
+    const second = { left: middle, width: width - middle, covered: { ...free, right: covered.right } };
+    Object.assign(ghostCamera, own, second);
+  } else {
+    const middle = Math.round((covered.top + height) / 2);
+    const free = { left: covered.left, right: covered.right, ...room };
+    const own = { left: 0, width };
+    Object.assign(camera, own, { top: 0, height: middle, covered: { ...free, top: covered.top + room.top } });
+    Object.assign(ghostCamera, own, { top: middle, height: height - middle, covered: free });
+  }
+  const { x, y, zoom, turn, follow } = camera;
+  Object.assign(ghostCamera, { zoom, turn, follow }, follow === "free" ? { x, y } : {});
+}
+
+/** Shows car and ghost side by side, or in one picture. */
+export function setSplit(on: boolean) {
+  isSplit = on;
+  press(get("split"), on);
+  layOut();
+}
+
+/** The place of a pointer on the stage, in the lane of the car; `isGhost`: it is in that of the ghost. */
+export function placeOf(e: MouseEvent) {
+  const box = canvas.getBoundingClientRect();
+  const p = { x: e.clientX - box.left, y: e.clientY - box.top };
+  const isGhost = isSideBySide() && p.x >= ghostCamera.left && p.y >= ghostCamera.top;
+  const [x, y] = isGhost ? camera.toScreen(...ghostCamera.toMap(p.x, p.y)) : [p.x, p.y];
+  return { x, y, isGhost };
+}
+
+/** A box around all that is drawn, with some room, m. */
+export let bounds = [-5, -5, 5, 5];
+let fitted = "";
+const where = () => (camera.follow === "free" ? [camera.x, camera.y, camera.zoom].join() : "not fitted");
+let isHeld = false;
+/** Keeps the scene where it is while a pointer is pressed on it. */
+export const hold = (on: boolean) => (isHeld = on);
+
+/** Shows all that is drawn. */
+export function fit() {
+  camera.fit(bounds[0], bounds[1], bounds[2], bounds[3]);
+  fitted = where();
+  redraw();
+}
+/** Changes something after which a scene that was fitted is fitted again. */
+function keepFitted(change: () => void) {
+  const isFitted = fitted === where();
+  change();
+  if (isFitted && !isHeld) fit();
+}
+
+export function follow(what: "follow" | "heading") {
+  if (fitted === where()) camera.zoom = drivingZoom();
+  camera.follow = what;
+  redraw();
+}
+/** Pixels per m with which the surroundings of the driven body are seen: about 16 of its lengths. */
+function drivingZoom() {
+  const length = page.hello?.body.length || (bounds[2] - bounds[0]) / 16;
+  return camera.room / (15.5 * length);
+}
+/** Follows the body, with its heading up or not. */
+export const turnFollow = () => follow(camera.follow === "follow" ? "heading" : "follow");
+for (const b of all("[data-follow]"))
+  b.onclick = () => (b.dataset.follow === "fit" ? fit() : follow(b.dataset.follow as "follow"));
+
+const stride = 40; // pixels that an arrow key moves the view
+export function move(x: number, y: number) {
+  camera.pan(x * stride, y * stride);
+  redraw();
+}
+export function zoom(factor: number) {
+  camera.zoomAt(camera.middleX, camera.middleY, factor);
+  redraw();
+}
+
+let isBegun = false;
+on("state", (state) => {
+  const [x0, y0, x1, y1] = state.bounds;
+  const room = 0.12 * Math.max(x1 - x0, y1 - y0, 0.1);
+  keepFitted(() => (bounds = [x0 - room, y0 - room, x1 + room, y1 + room]));
+  if (isBegun) return;
+  isBegun = true;
+  if (page.scene?.path) camera.zoom = drivingZoom();
+  else fit();
+});
+on("drawn", () => {
+  // A drag may have changed what the camera follows.
+  const now = fitted === where() ? "fit" : camera.follow;
+  for (const b of all("[data-follow]")) press(b, b.dataset.follow === now);
+});

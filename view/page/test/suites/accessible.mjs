@@ -77,7 +77,7 @@ export default async function (h) {
     const touch = look.page;
     await look.until(() => window.slalom?.frame?.bodies.length > 1 && slalom.state);
     await look.pause();
-    await touch.evaluate(() => slalom.scene.fit());
+    await touch.evaluate(() => slalom.stage.fit());
     const tools = await touch.context().newCDPSession(touch);
     const bodies = await touch.evaluate(() => slalom.frame.bodies.length);
     const isDeleted = (n) => slalom.frame.bodies.length === n - 1; // the others are numbered anew

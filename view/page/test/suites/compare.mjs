@@ -5,8 +5,9 @@ export default async function (h) {
   const { page } = h;
   /** Whether the ghost is somewhere else than the car. */
   const isApart = () => {
-    const { frame, scalar } = slalom;
-    return frame.ghost && Math.hypot(frame.ghost.x - scalar("x"), frame.ghost.y - scalar("y")) > 0.01;
+    const { bodies, ghostFrame } = slalom.frame;
+    const ghost = ghostFrame?.bodies[0];
+    return ghost && Math.hypot(ghost.x - bodies[0].x, ghost.y - bodies[0].y) > 0.01;
   };
 
   await h.test("forks from an earlier tick; the present method becomes a ghost", async () => {
@@ -28,7 +29,7 @@ export default async function (h) {
     assert.equal(await h.scalar("samples"), 640);
     await h.send({ do: "method", method: "svg_mppi" });
     await h.send({ do: "ghost", method: "" });
-    await h.until(() => !slalom.frame.ghost && slalom.state.method === "svg_mppi");
+    await h.until(() => !slalom.frame.ghostFrame && slalom.state.method === "svg_mppi");
   });
 
   await h.test("a ghost on the same seed starts beside the car", async () => {
@@ -38,9 +39,11 @@ export default async function (h) {
     await h.until(isApart);
     await h.pause();
     await h.seek(40);
-    const gap = await page.evaluate(
-      () => slalom.frame.ghost.laps - slalom.scalar("lap") - slalom.scalar("progress"),
-    );
+    const gap = await page.evaluate(() => {
+      const { frame, scalar } = slalom;
+      const laps = ({ scalars }) => scalar("lap", scalars) + scalar("progress", scalars);
+      return laps(frame) - laps(frame.ghostFrame);
+    });
     assert.ok(Math.abs(gap) < 0.1);
     // The charts have the ghost's lines.
     assert.ok(await page.locator("#faint").isVisible());
@@ -60,11 +63,13 @@ export default async function (h) {
     assert.equal(first.lap, 1);
     assert.equal(first.contacts, 0, "the seed's drive has no collision in its first lap");
     await h.step(20);
-    await h.until(() => slalom.best.number === 1);
+    await h.until(() => slalom.bestLap.bestNumber() === 1);
     const [behind, gap] = await page.evaluate(() => {
-      const { best } = slalom.scene;
-      const ahead = slalom.best.behind(slalom.scalar("progress"), slalom.scalar("lap_time"));
-      return [ahead, Math.hypot(best.x - slalom.scalar("x"), best.y - slalom.scalar("y"))];
+      const best = slalom.bestLap.bestPose();
+      return [
+        slalom.bestLap.behindBest(),
+        Math.hypot(best.x - slalom.scalar("x"), best.y - slalom.scalar("y")),
+      ];
     });
     assert.ok(behind < 0, "a lap that begins at speed is ahead of one that began at rest");
     assert.ok(gap > 0.5, `the best lap is ${gap} m away`);

@@ -32,12 +32,12 @@ function faults([smallest, within]) {
 
 /** The panels that lie on the fitted course. */
 function covering() {
-  slalom.scene.fit();
-  slalom.scene.draw();
-  const [x0, y0, x1, y1] = slalom.scene.bounds;
+  slalom.stage.fit();
+  slalom.scene.drawScene();
+  const [x0, y0, x1, y1] = slalom.stage.bounds;
   const stage = document.getElementById("stage").getBoundingClientRect();
-  const [left, bottom] = slalom.scene.camera.toScreen(x0, y0);
-  const [right, top] = slalom.scene.camera.toScreen(x1, y1);
+  const [left, bottom] = slalom.stage.camera.toScreen(x0, y0);
+  const [right, top] = slalom.stage.camera.toScreen(x1, y1);
   const isOver = (id) => {
     const box = document.getElementById(id).getBoundingClientRect();
     const beside = box.left - stage.left >= right || box.right - stage.left <= left;

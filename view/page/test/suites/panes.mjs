@@ -25,7 +25,7 @@ export default async function (h) {
     await other.drawn();
     const [points, steps] = await other.page.evaluate(() => {
       const { oldest } = slalom.state;
-      return [slalom.scene.driven.length / 2, slalom.scalar("tick") - Math.max(0, oldest) + 1];
+      return [slalom.past.line().length / 2, slalom.scalar("tick") - Math.max(0, oldest) + 1];
     });
     assert.ok(points > 0.9 * steps, `${points} points of ${steps} steps`);
     await other.page.close();
@@ -34,15 +34,15 @@ export default async function (h) {
   await h.test("one cursor shows the same time in charts, scene and slider; a click goes there", async () => {
     await h.seek((await h.state()).newest);
     await h.drawn();
-    const over = await page.locator("#charts .u-over").first().boundingBox();
+    const chart = page.locator("#charts .u-over").first();
+    await chart.scrollIntoViewIfNeeded();
+    const over = await chart.boundingBox();
     const place = [over.x + 0.5 * over.width, over.y + 20];
     await page.mouse.move(...place);
-    await h.until(() => slalom.scene.probe);
+    await h.until(() => slalom.cursor !== undefined);
     const [at, speed] = await page.evaluate(() => {
-      const of = (i, name) => slalom.past.at(i)?.[slalom.hello.scalars.indexOf(name)];
-      let i = slalom.state.newest;
-      while (i >= 0 && of(i, "x") !== slalom.scene.probe.x) --i;
-      return [i, of(i, "speed")];
+      const { cursor } = slalom;
+      return [cursor, slalom.scalar("speed", slalom.past.at(cursor))];
     });
     assert.ok(at > 0 && at < (await h.state()).newest);
     const isShown = (text) =>
@@ -52,7 +52,7 @@ export default async function (h) {
     await page.mouse.click(...place);
     await h.until((t) => slalom.state.paused && slalom.scalar("tick") === t, at);
     await page.mouse.move(5, 5);
-    await h.until(() => !slalom.scene.probe);
+    await h.until(() => slalom.cursor === undefined);
   });
 
   await h.test("the charts are saved as CSV", async () => {

@@ -11,7 +11,7 @@ export default async function (h) {
   await h.test("the navigator of a robot in a room is shown, and goes around a pallet", async () => {
     const state = await page.evaluate(() => ({
       lines: slalom.frame.lines.length,
-      grid: slalom.hello.problem.title,
+      grid: slalom.hello.title,
       candidates: slalom.frame.candidates.count,
     }));
     assert.deepEqual([state.lines, state.grid], [1, "pallet-on-path"]);
