@@ -21,7 +21,8 @@ option(SLALOM_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 option(SLALOM_INSTALL "Generate the install and export targets" ${PROJECT_IS_TOP_LEVEL})
 option(SLALOM_GROUP_SOURCES "Compile sources in groups and tests with precompiled headers, which takes less time" ON)
 set(SLALOM_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, for example address,undefined")
-# A wheel of the Python package leaves out what it cannot call, unless it is built with cars, robots and courses.
+# A wheel of the Python package leaves out what it cannot call, unless it is built with cars, robots and
+# courses.
 set(SLALOM_PYTHON_ALONE OFF)
 if(SLALOM_PYTHON_WHEEL AND NOT (SLALOM_BUILD_NAVIGATION OR SLALOM_BUILD_TRACKING OR SLALOM_BUILD_VEHICLE OR SLALOM_BUILD_SIM))
   set(SLALOM_PYTHON_ALONE ON)

@@ -1,5 +1,5 @@
-# Debian packages: cpack -G DEB in the build folder. slalom-dev (headers, libraries, CMake and pkg-config files),
-# slalom-tools (the program, courses and configurations), python3-slalom.
+# Debian packages: cpack -G DEB in the build folder. slalom-dev (headers, libraries, CMake and pkg-config
+# files), slalom-tools (the program, courses and configurations), python3-slalom.
 set(CPACK_PACKAGE_NAME slalom)
 set(CPACK_PACKAGE_CONTACT "The Slalom authors <slalom@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "real-time sampling-based stochastic optimal control")

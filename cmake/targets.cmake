@@ -44,8 +44,9 @@ function(slalom_compile_for_this_machine target)
   endif()
 endfunction()
 
-# Flags of the targets of this project; none is exported. Tests set SLALOM_UNHARDENED: they are not installed. Functions take wide packs by reference, so the warning about
-# their calling convention (-Wpsabi) does not apply.
+# Flags of the targets of this project; none is exported. Tests set SLALOM_UNHARDENED: they are not installed.
+# Functions take wide packs by reference, so the warning about their calling convention (-Wpsabi) does not
+# apply.
 function(slalom_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi)
   if(SLALOM_WARNINGS_AS_ERRORS)
@@ -54,8 +55,8 @@ function(slalom_compile_options target)
   if(SLALOM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${SLALOM_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${SLALOM_SANITIZE})
-    # With sanitizers, g++ takes initialised members for uninitialised ones, for instance those of <regex>, and warns of
-    # the memory fences of Boost.Asio, which the thread sanitizer does not see.
+    # With sanitizers, g++ takes initialised members for uninitialised ones, for instance those of <regex>,
+    # and warns of the memory fences of Boost.Asio, which the thread sanitizer does not see.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
       if(SLALOM_SANITIZE STREQUAL "thread")
@@ -67,8 +68,9 @@ function(slalom_compile_options target)
   endif()
 endfunction()
 
-# Options of code that holds kernels: it reads no input, and the check of the stack would take 1.5 % of a solve. Fuzzers do
-# not follow it: to instrument code that is compiled for every instruction set takes half an hour.
+# Options of code that holds kernels: it reads no input, and the check of the stack would take 1.5 % of a
+# solve. Fuzzers do not follow it: to instrument code that is compiled for every instruction set takes half an
+# hour.
 function(slalom_kernel_options variable)
   set(options -fno-stack-protector)
   if(SLALOM_SANITIZE MATCHES fuzzer)
@@ -89,9 +91,9 @@ function(slalom_set_kernel_sources)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "${options}")
 endfunction()
 
-# Where a program or library looks for slalom's own shared libraries, in the build tree and in the install tree alike:
-# below its own place. Otherwise CMake writes another path at install, and ends that of the build tree with a colon,
-# which makes the loader search the current directory.
+# Where a program or library looks for slalom's own shared libraries, in the build tree and in the install
+# tree alike: below its own place. Otherwise CMake writes another path at install, and ends that of the build
+# tree with a colon, which makes the loader search the current directory.
 function(slalom_set_rpath target path)
   set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH_USE_LINK_PATH ON)
   if(BUILD_SHARED_LIBS)
@@ -99,8 +101,8 @@ function(slalom_set_rpath target path)
   endif()
 endfunction()
 
-# For code whose time is spent in what it calls, or that runs once in an evaluation: less optimisation, which takes a
-# quarter to a third of the compile time away. Applies to optimised builds alone.
+# For code whose time is spent in what it calls, or that runs once in an evaluation: less optimisation, which
+# takes a quarter to a third of the compile time away. Applies to optimised builds alone.
 function(slalom_optimise_lightly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
@@ -109,9 +111,9 @@ function(slalom_optimise_sources_lightly)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# Compiles the sources of a target in groups of eight: most of their compile time is spent in headers that they share.
-# Sources with options of their own stay alone. The presets dev, clang and tidy compile each source alone, which shows what
-# a source forgets to include.
+# Compiles the sources of a target in groups of eight: most of their compile time is spent in headers that
+# they share. Sources with options of their own stay alone. The presets dev, clang and tidy compile each
+# source alone, which shows what a source forgets to include.
 function(slalom_compile_in_groups target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SLALOM_GROUP_SOURCES} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()

@@ -1,5 +1,5 @@
-# Cross-compiles for AArch64 with the compiler of Debian; tests run under the user-mode emulation of qemu. The packages
-# that the tests need are beside this file.
+# Cross-compiles for AArch64 with the compiler of Debian; tests run under the user-mode emulation of qemu. The
+# packages that the tests need are beside this file.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)

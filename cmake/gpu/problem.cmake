@@ -1,6 +1,6 @@
 # slalom_gpu_problem(<target> HEADER <file> PROBLEM <type> ARCHITECTURES <87 90 ...> [INCLUDE <folders>])
-# A library with the code of a problem for GPUs; a program that uses `slalom::gpu::Mppi<type>` links it. Needs a CUDA
-# toolkit (NVRTC) where it is built.
+# A library with the code of a problem for GPUs; a program that uses `slalom::gpu::Mppi<type>` links it. Needs
+# a CUDA toolkit (NVRTC) where it is built.
 
 function(slalom_gpu_problem target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADER;PROBLEM" "ARCHITECTURES;INCLUDE")

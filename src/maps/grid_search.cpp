@@ -45,6 +45,16 @@ bool GridSearch::reached(int cell) const noexcept {
   return cost(cell) < unreached;
 }
 
+void GridSearch::close(const ClosedDisc& place) noexcept {
+  visit_around(place.middle, place.radius, [&](std::size_t cell) { prices_[cell] = 0; });
+}
+
+void GridSearch::open_around(const Point& point, double reach) noexcept {
+  visit_around(point, reach, [&](std::size_t cell) {
+    if (!(prices_[cell] > 0)) prices_[cell] = dearest;
+  });
+}
+
 void GridSearch::spread(int from) noexcept {
   std::fill(costs_.begin(), costs_.end(), unreached);
   queue_.assign(1, {0, from});

@@ -86,20 +86,28 @@ bool PathCurve::is_boundary(std::size_t i, bool turns_on_the_spot) const noexcep
   return true;
 }
 
-/// Moves a point to the given pose that is nearest along the path, if one is within a step.
+/// Moves a point to the given pose within a step at which the direction changes most; of equal ones, to the
+/// nearest along the path.
 void PathCurve::snap(std::size_t i, std::span<const Pose> poses) noexcept {
   const double wanted = step_ * static_cast<double>(i);
-  double along = 0, least = step_;
-  Pose found = points_[i];
+  double along = 0, best = -1, before = 0;
   for (std::size_t k = 0; k < poses.size() && along <= wanted + step_; ++k) {
-    if (std::abs(along - wanted) <= least) {
-      least = std::abs(along - wanted);
-      found = poses[k];
+    std::size_t next = k + 1;  // beyond poses at the same position
+    while (next < poses.size() && distance(position(poses[k]), position(poses[next])) == 0) ++next;
+    const bool ends = next >= poses.size();
+    const double after = ends ? before : direction(poses[k], poses[next]);
+    const double turn = k > 0 ? std::abs(wrap_angle(after - before)) : 0,
+                 off = std::abs(along - wanted) / step_;
+    if (off <= 1 && turn + 0.1 * (1 - off) > best) {
+      best = turn + 0.1 * (1 - off);
+      points_[i].x = poses[k].x;
+      points_[i].y = poses[k].y;
     }
-    if (k + 1 < poses.size()) along += distance(position(poses[k]), position(poses[k + 1]));
+    if (ends) break;
+    along += distance(position(poses[k]), position(poses[next]));
+    before = after;
+    k = next - 1;
   }
-  points_[i].x = found.x;
-  points_[i].y = found.y;
 }
 
 /// Adds the leg to a point, with the yaws on it, and before it the turn into its direction.

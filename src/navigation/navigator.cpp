@@ -190,7 +190,6 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
   since_solve_ += elapsed;
   if (way_.empty() || costmap.geometry().row(now.x) < 0 || costmap.geometry().column(now.y) < 0)
     return stand(NavigationStatus::no_path, told, elapsed);
-  if (way_.is_stuck()) return stand(NavigationStatus::stuck, told, elapsed);
   const bool ignored = watch_commands(told, elapsed);
   // Decisions are made for the place where they take effect.
   delay_.pass(told, elapsed);
@@ -203,7 +202,9 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
     const bool is_there = way_.has_ended(now);
     return stand(is_there ? NavigationStatus::goal_reached : NavigationStatus::following, velocity, elapsed);
   }
-  if (!way_.keep(pose, costmap, others_, elapsed)) return stand(NavigationStatus::blocked, velocity, elapsed);
+  const bool has_way = way_.keep(pose, velocity, costmap, others_, elapsed);
+  if (way_.is_stuck()) return stand(NavigationStatus::stuck, velocity, elapsed);
+  if (!has_way) return stand(NavigationStatus::blocked, velocity, elapsed);
   way_.advance(pose, velocity, costmap, 0);
   if (way_.is_at_stop()) return stand(NavigationStatus::goal_occupied, velocity, elapsed);
   NavigationResult result = plan(pose, velocity, costmap, elapsed);

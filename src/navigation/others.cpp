@@ -68,8 +68,9 @@ bool Others::are_near(const maps::Point& robot) const noexcept {
   });
 }
 
-std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, double step) const noexcept {
-  std::optional<ClosedPlace> first;
+std::optional<maps::ClosedDisc> Others::meeting(std::span<const maps::Pose> path,
+                                                double step) const noexcept {
+  std::optional<maps::ClosedDisc> first;
   std::size_t last =
       std::min(path.size(), saturate_cast<std::size_t>(foresight * speed_ / std::max(step, 1e-3)));
   for (const maps::PredictedObstacle* const other : obstacles_.taken()) {
@@ -89,7 +90,7 @@ std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, dou
     if (nearest == 0 || nearest + 1 >= last || least >= room) continue;
     const maps::Pose at = pose_at(nearest);
     if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < along_path) continue;
-    first = ClosedPlace{{at.x, at.y}, room + passing_room};
+    first = maps::ClosedDisc{{at.x, at.y}, room + passing_room};
     last = nearest;
   }
   return first;

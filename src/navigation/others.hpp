@@ -33,7 +33,7 @@ class Others {
   /// Finds the place where a robot that follows a path, with its points `step` (m) apart, meets an object
   /// that comes towards it or goes ahead of it, and the room that passing there takes. Objects that cross the
   /// path are left to the plans: they are gone soon.
-  std::optional<ClosedPlace> meeting(std::span<const maps::Pose> path, double step) const noexcept;
+  std::optional<maps::ClosedDisc> meeting(std::span<const maps::Pose> path, double step) const noexcept;
   /// Whether the plan, up to the pose with this index, comes into the margins of an object or collides with
   /// one. A robot that is within the margins already may leave them, and one that collides may move away, but
   /// a robot within the margins must not collide, nor come nearer to where the object is now.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/maps/pose_limits.hpp"
@@ -15,16 +16,32 @@ constexpr double longest_path = 1e6;    // steps of a path
 constexpr double search_period = 0.1;   // s between searches while there is no way
 constexpr double nearest_unseen = 0.5;  // m, beside those of braking, before a closed place whose end is seen
 constexpr double least_period = 1e-3;   // s
-constexpr double progress_step = 0.1;   // m of progress after which the robot is not stuck
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
 constexpr double near_goal = 1;         // m before the goal, where a robot without progress approaches anew
-constexpr double real_progress = 0.5;   // m of progress after which former attempts do not count
-constexpr int max_attempts = 5;         // times without progress until the robot is stuck
 constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place
-constexpr double retry_after = 10;      // s without a way after which ways that were closed are tried again
 constexpr double around_joint = 0.2;    // m behind the end of a detour, where the path may have a corner
 constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
 constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
+
+maps::LegOptions leg_options(const NavigatorOptions& options) {
+  return {.near = 0.75 * options.goal_distance,
+          .beside = options.goal_distance,
+          .standing = 0.02,
+          .standing_turn = 0.05,
+          .stops = false};
+}
+
+/// A robot without progress tries another way, five times. Then it stands for a while.
+maps::RecoveryLengths recovery_lengths(const NavigatorOptions& options) {
+  return {.progress = 0.1,
+          .relief = 0.5,
+          .jump = std::numeric_limits<double>::infinity(),
+          .standing = 0.02,
+          .stand_still = options.stuck_after,
+          .patience = options.stuck_after,
+          .wait = 10,
+          .attempts = 5};
+}
 
 }  // namespace
 
@@ -34,11 +51,20 @@ Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps
       footprint_(footprint),
       guide_(reach),
       planner_(geometry, footprint.half_width()),
-      legs_(options, footprint) {}
+      approach_(options, footprint),
+      legs_(leg_options(options)),
+      recovery_(recovery_lengths(options)) {}
 
-bool Way::is_stuck() noexcept {
-  is_done_ = is_done_ || attempts_ >= max_attempts;
-  return attempts_ >= max_attempts;
+void Way::advance(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap,
+                  double elapsed) noexcept {
+  const auto turn = [&] {
+    return guide_.leg().turns ? approach_.turn_to(robot, guide_.leg().yaw, costmap) : 0;
+  };
+  if (std::exchange(is_new_, false)) {
+    approach_.place(guide_, robot, costmap, poses_);
+    legs_.begin(robot, turn());
+  }
+  legs_.update(guide_, robot, {std::hypot(velocity.forward, velocity.left), velocity.turn}, elapsed, turn);
 }
 
 bool Way::has_ended(const maps::Pose& robot) noexcept {
@@ -56,7 +82,7 @@ void Way::set_path(std::span<const maps::Pose> path) {
   const auto same = [](const maps::Pose& a, const maps::Pose& b) {
     return a.x == b.x && a.y == b.y && a.yaw == b.yaw;
   };
-  if (!guide_.empty() && !is_done_ &&
+  if (!guide_.empty() && !is_done_ && !is_stuck() &&
       std::equal(path.begin(), path.end(), given_.begin(), given_.end(), same))
     return;
   if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > min_rejoin) {
@@ -74,9 +100,9 @@ void Way::set_path(std::span<const maps::Pose> path) {
   poses_.assign(path.begin(), path.end());
   set_yaws(poses_, options_.base);
   follow(poses_);
-  detour_left_ = lowest_remaining_ = infinity;
-  without_way_ = since_search_ = without_progress_ = 0;
-  attempts_ = 0;
+  detour_left_ = infinity;
+  without_way_ = since_search_ = 0;
+  recovery_.reset();
 }
 
 void Way::clear() noexcept {
@@ -84,17 +110,17 @@ void Way::clear() noexcept {
   given_.clear();
   chosen_.clear();
   closed_.forget_dead_ends();
-  detour_left_ = min_remaining_ = lowest_remaining_ = infinity;
-  without_way_ = since_search_ = since_meeting_ = without_progress_ = 0;
-  attempts_ = 0;
+  detour_left_ = infinity;
+  without_way_ = since_search_ = since_meeting_ = 0;
+  recovery_.reset();
   stop_ = no_stop;
 }
 
 /// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth` m.
 void Way::follow(std::span<const maps::Pose> path, double smooth) noexcept {
   guide_.set(path, turns_on_the_spot(options_.base), smooth);
-  legs_.restart();
-  min_remaining_ = infinity;
+  is_new_ = true;
+  recovery_.watch_from(-infinity);
   stop_ = no_stop;
 }
 
@@ -188,9 +214,9 @@ void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Ot
   closed_.end_meeting();
 }
 
-bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& others,
+bool Way::keep(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap, const Others& others,
                double elapsed) noexcept {
-  watch_progress(pose, costmap, others, elapsed);
+  watch_progress(pose, velocity, others, elapsed);
   stop_ = no_stop;
   if (!options_.find_detours) return true;
   const std::size_t closed = first_closed(costmap);
@@ -219,10 +245,6 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
     return true;
   }
   without_way_ += std::max(elapsed, least_period);
-  if (without_way_ > retry_after && closed_.has_dead_ends()) {
-    closed_.forget_dead_ends();
-    without_way_ = 0;
-  }
   return without_way_ < options_.patience;
 }
 
@@ -236,35 +258,33 @@ bool Way::waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept {
   return true;
 }
 
-/// Where the robot makes no progress, it goes on to the next leg, approaches the goal anew, or takes the
-/// place ahead for a dead end.
-void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
+void Way::watch_progress(const maps::Pose& robot, const Velocity& velocity, const Others& others,
                          double elapsed) noexcept {
-  const double remaining = guide_.remaining() + progress_turn * std::abs(legs_.turn_left());
-  const bool waits = without_way_ > 0 || stop_ != no_stop || others.are_near(position(robot));
-  if (remaining < lowest_remaining_ - real_progress) {
-    lowest_remaining_ = remaining;
-    attempts_ = 0;
-  }
-  if (waits || remaining < min_remaining_ - progress_step) {
-    min_remaining_ = std::min(min_remaining_, remaining);
-    without_progress_ = 0;
-    return;
-  }
-  without_progress_ += elapsed;
-  if (without_progress_ < options_.stuck_after) return;
-  without_progress_ = 0;
-  min_remaining_ = infinity;
-  ++attempts_;
-  if (guide_.leg().turns && !guide_.on_last_leg()) {
-    legs_.skip(guide_, robot, costmap);
+  const double left = guide_.remaining() + progress_turn * std::abs(legs_.turn_left());
+  recovery_.update({.arc = -left,
+                    .speed = std::hypot(velocity.forward, velocity.left),
+                    .waits = without_way_ > 0 || stop_ != no_stop || others.are_near(position(robot))},
+                   elapsed);
+  if (recovery_.begins() && recovery_.retries() && !is_stuck()) try_another_way(robot);
+}
+
+/// Where the robot makes no progress, it goes on to the next leg, approaches the goal anew, or takes the
+/// place ahead for a dead end. Where there is no way, those that were dead ends may be open.
+void Way::try_another_way(const maps::Pose& robot) noexcept {
+  if (without_way_ > 0) {
+    closed_.forget_dead_ends();
+    without_way_ = 0;
+  } else if (guide_.leg().turns && !guide_.on_last_leg()) {
+    guide_.next_leg();
+    legs_.begin(robot);
   } else if (guide_.remaining() < near_goal) {
     set_straight(poses_, robot, guide_.goal(), options_.base);
     follow(poses_);
   } else {
     const std::size_t ahead = guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);
     const std::span<const maps::Pose> path = guide_.points();
-    closed_.add_dead_end(position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]));
+    closed_.add_dead_end(
+        {position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]), PathPlanner::dead_end_radius});
   }
 }
 

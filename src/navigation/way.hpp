@@ -1,50 +1,18 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <limits>
 #include <span>
 
-#include "navigation/leg_change.hpp"
+#include "navigation/approach.hpp"
 #include "navigation/others.hpp"
 #include "navigation/path_guide.hpp"
 #include "slalom/core/reserved_vector.hpp"
+#include "slalom/maps/leg_follower.hpp"
+#include "slalom/maps/recovery.hpp"
+#include "slalom/navigation/navigator.hpp"
 #include "slalom/navigation/path_planner.hpp"
 
 namespace slalom::navigation::detail {
-
-/// Places that count as closed although the costmap shows room: dead ends, and the place of a meeting.
-class ClosedPlaces {
- public:
-  bool has_dead_ends() const noexcept { return dead_ends_ > 0; }
-  void forget_dead_ends() noexcept { dead_ends_ = 0; }
-  /// Adds a dead end; the last four count.
-  void add_dead_end(const maps::Point& middle) noexcept {
-    if (dead_ends_ == max_dead_ends) {
-      std::copy(places_.begin() + 1, places_.begin() + max_dead_ends, places_.begin());
-      --dead_ends_;
-    }
-    places_[dead_ends_++] = {middle, PathPlanner::dead_end_radius};
-  }
-  /// Closes a place until `end_meeting`.
-  void begin_meeting(const ClosedPlace& place) noexcept {
-    places_[dead_ends_] = place;
-    meetings_ = 1;
-  }
-  void end_meeting() noexcept { meetings_ = 0; }
-
-  std::span<const ClosedPlace> all() const noexcept { return {places_.data(), dead_ends_ + meetings_}; }
-  bool contain(const maps::Point& point) const noexcept {
-    const auto places = all();
-    return std::any_of(places.begin(), places.end(),
-                       [&](const ClosedPlace& each) { return distance(point, each.middle) < each.radius; });
-  }
-
- private:
-  static constexpr std::size_t max_dead_ends = 4;
-  std::array<ClosedPlace, max_dead_ends + 1> places_{};
-  std::size_t dead_ends_ = 0, meetings_ = 0;
-};
 
 /// The path that the robot follows, with detours where it is blocked, and the progress on it.
 class Way {
@@ -59,16 +27,16 @@ class Way {
 
   /// Moves on along the path.
   void advance(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap,
-               double elapsed) noexcept {
-    legs_.update(guide_, robot, velocity, costmap, elapsed, poses_);
-  }
+               double elapsed) noexcept;
   /// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
-  bool keep(const maps::Pose& robot, const Costmap& costmap, const Others& others, double elapsed) noexcept;
+  bool keep(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap, const Others& others,
+            double elapsed) noexcept;
 
   /// Whether the robot is at the end of the path, within the tolerances. Then the same path may be set again.
   bool has_ended(const maps::Pose& robot) noexcept;
   bool ends_at(const maps::Pose& robot) const noexcept;  ///< whether a robot there would be
-  bool is_stuck() noexcept;  ///< whether the robot has made no progress for so long that it gives up
+  /// Whether the robot has made no progress for so long that it stands for a while before it tries again.
+  bool is_stuck() const noexcept { return recovery_.state() == maps::DriveState::stuck; }
   bool is_detour() const noexcept { return guide_.remaining() > detour_left_; }
   /// Whether the robot has come as near to an occupied goal as it may.
   bool is_at_stop() const noexcept {
@@ -93,8 +61,9 @@ class Way {
   void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
                      double elapsed) noexcept;
   bool waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept;
-  void watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
+  void watch_progress(const maps::Pose& robot, const Velocity& velocity, const Others& others,
                       double elapsed) noexcept;
+  void try_another_way(const maps::Pose& robot) noexcept;
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -102,21 +71,20 @@ class Way {
   Footprint footprint_;
   PathGuide guide_;
   PathPlanner planner_;
-  LegChange legs_;
+  Approach approach_;
+  maps::LegFollower legs_;
+  maps::Recovery recovery_;
   ReservedVector<maps::Pose> given_;   ///< the path that was set
   ReservedVector<maps::Pose> poses_;   ///< a path that is being made
   ReservedVector<maps::Pose> chosen_;  ///< the last detour, which later searches prefer
-  ClosedPlaces closed_;
-  double detour_left_ = infinity;       ///< m of path left where the detour ends
-  double without_way_ = 0;              ///< s since the path is blocked and no way round was found
-  double since_search_ = 0;             ///< s
-  double since_meeting_ = 0;            ///< s
-  double min_remaining_ = infinity;     ///< m
-  double without_progress_ = 0;         ///< s
-  double lowest_remaining_ = infinity;  ///< m, at the last real progress
-  int attempts_ = 0;                    ///< times without progress since then
-  bool is_done_ = false;                ///< whether the end was reached, or the robot is stuck
-  std::size_t stop_ = no_stop;          ///< point of the path before an occupied goal
+  maps::ClosedDiscs closed_;
+  double detour_left_ = infinity;  ///< m of path left where the detour ends
+  double without_way_ = 0;         ///< s since the path is blocked and no way round was found
+  double since_search_ = 0;        ///< s
+  double since_meeting_ = 0;       ///< s
+  bool is_new_ = true;             ///< the next update places the robot on the path
+  bool is_done_ = false;           ///< whether the end was reached
+  std::size_t stop_ = no_stop;     ///< point of the path before an occupied goal
 };
 
 }  // namespace slalom::navigation::detail

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 
@@ -93,7 +94,7 @@ void ControllerCore::connect(const ControlledProblem& problem) {
   const auto inputs = static_cast<std::size_t>(problem.inputs());
   inputs_.resize(static_cast<std::size_t>(solver_->horizon()) * inputs);
   previous_.resize(inputs);
-  given_ = before_ = previous_;
+  given_ = before_ = reach_ = previous_;
   rest(problem);
 }
 
@@ -148,7 +149,8 @@ void ControllerCore::finish(const ControlledProblem& problem) noexcept {
   std::copy(result.inputs.begin(), result.inputs.end(), inputs_.begin());
   problem.hold_rates(previous_, inputs_);
   std::copy(previous_.begin(), previous_.end(), before_.begin());
-  const auto reach = [&](std::size_t input) { return problem.input_step(static_cast<int>(input)); };
+  for (std::size_t i = 0; i < reach_.size(); ++i) reach_[i] = problem.input_step(static_cast<int>(i));
+  const auto reach = [this](std::size_t input) { return reach_[input]; };
   for (std::size_t at = 0; at < inputs_.size(); at += before_.size())
     corrections_ += check_inputs(std::span(inputs_).subspan(at, before_.size()), before_, bounds_, reach);
 }

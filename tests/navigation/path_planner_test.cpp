@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "navigation/grids.hpp"
-#include "navigation/way.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -60,7 +59,7 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   const std::vector<maps::Pose> chosen = plan_path(costmap, body, {1, 3.2, 0}, {7, 3.2, 0});
   ASSERT_GT(crossing(chosen), 4) << "a little nearer";
   PathPlanner planner(costmap.geometry(), body.half_width());
-  const auto crossed = [&](std::span<const maps::Pose> kept, std::span<const ClosedPlace> closed) {
+  const auto crossed = [&](std::span<const maps::Pose> kept, std::span<const maps::ClosedDisc> closed) {
     planner.read(costmap, kept, closed);
     EXPECT_TRUE(planner.search_from({1, 2.8}));
     for (const maps::Point& point : planner.path_to({7, 2.8}))
@@ -69,31 +68,8 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   };
   EXPECT_LT(crossed({}, {}), 2) << "the other one is nearer now";
   EXPECT_GT(crossed(chosen, {}), 4);
-  const ClosedPlace dead_end[] = {{{4, 4.5}, PathPlanner::dead_end_radius}};
+  const maps::ClosedDisc dead_end[] = {{{4, 4.5}, PathPlanner::dead_end_radius}};
   EXPECT_LT(crossed(chosen, dead_end), 2);
-}
-
-TEST(ClosedPlaces, KeepsTheLastFourOfManyDeadEnds) {
-  detail::ClosedPlaces places;
-  for (int i = 0; i < 7; ++i) {
-    places.add_dead_end({10.0 * i, 0});
-    for (int k = 0; k <= i; ++k) EXPECT_EQ(places.contain({10.0 * k, 0}), k > i - 4) << k << " of " << i;
-  }
-  EXPECT_EQ(places.all().size(), 4u);
-  places.forget_dead_ends();
-  EXPECT_FALSE(places.has_dead_ends());
-  EXPECT_FALSE(places.contain({60, 0}));
-}
-
-TEST(ClosedPlaces, AMeetingIsClosedWhileItLasts) {
-  detail::ClosedPlaces places;
-  for (int i = 0; i < 4; ++i) places.add_dead_end({10.0 * i, 0});
-  places.begin_meeting({{50, 0}, 1});
-  EXPECT_TRUE(places.contain({50.9, 0}));
-  EXPECT_TRUE(places.contain({30, 0}));
-  places.end_meeting();
-  EXPECT_FALSE(places.contain({50, 0}));
-  EXPECT_TRUE(places.contain({30, 0}));
 }
 
 }  // namespace

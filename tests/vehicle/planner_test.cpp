@@ -10,7 +10,6 @@
 
 #include "support/lane.hpp"
 #include "support/thrown_words.hpp"
-#include "vehicle/planner/back_up.hpp"
 #include "vehicle/planner/lane_scan.hpp"
 
 namespace slalom::vehicle {
@@ -173,23 +172,6 @@ TEST(Planner, ReversesFromAnObstacleInCollision) {
       slowest = std::min(slowest, planner.update({scan.view(), {{5, 0, 0}, 0}}).command.speed);
     EXPECT_EQ(slowest < 0, back_up);
   }
-}
-
-TEST(PlannerReversing, WaitsThenReversesUntilTheWayIsFree) {
-  detail::BackUp back_up;
-  const double period = 0.025;
-  for (int i = 0; i < 40; ++i) EXPECT_FALSE(back_up.update(true, 0, period));
-  for (int i = 0; i < 40; ++i) EXPECT_FALSE(back_up.update(false, 2, period)) << "it moves";
-  int waited = 0, gone = 0;
-  while (!back_up.update(false, 0, period)) ++waited;
-  EXPECT_NEAR(waited * period, 0.3, 2 * period);
-  while (back_up.update(true, -0.5, period)) ++gone;
-  EXPECT_NEAR(gone * period, 0.6, 2 * period);
-  while (!back_up.update(false, 0, period)) {
-  }
-  gone = 0;
-  while (back_up.update(false, -0.5, period)) ++gone;
-  EXPECT_NEAR(gone * period, 2, 2 * period) << "not for ever";
 }
 
 /// An input from which no plan can be made: a status, and a car that stops with its wheels held.

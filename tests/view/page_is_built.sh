@@ -1,5 +1,6 @@
 #!/bin/sh
-# Whether the page that ships was made from the sources that lie beside it, and is small enough. Needs no Node.
+# Whether the page that ships was made from the sources that lie beside it, and is small enough. Needs no
+# Node.
 set -eu
 cd "$1"
 sha256sum --check --quiet built/sources.sha256

@@ -58,7 +58,7 @@ class Playback {
   virtual void tell() = 0;     ///< tells all pages the state, and the options if they have changed
   /// Does a part of the work that the first change after a pause would wait for. Returns whether all is done.
   virtual bool prepare_change() { return approach(0); }
-  virtual Packing packing() const { return {}; }  ///< of stored frames
+  virtual Packing packing() const { return {}; }  ///< form of stored frames
 
   /// Executes the commands that concern time, and those that pages may give that watch; false for others.
   /// Throws std::invalid_argument unless the client drives.

@@ -48,7 +48,7 @@ struct DrivenTick {
   void keep_scalars(std::size_t count) { scalars = frame->substr(FrameWriter::head_bytes, 8 * count); }
   void pack(const Packing& packing);
   std::shared_ptr<const std::string> message(const Packing& packing) const;
-  std::size_t bytes() const noexcept;  ///< of the stored frame
+  std::size_t bytes() const noexcept;  ///< size of the stored frame
 };
 
 /// The past of a drive: the frame of each tick, the actions of the user, and copies of the drives, from which
@@ -57,8 +57,8 @@ struct DrivenTick {
 template <class Drives>
 class TimelineOf {
  public:
-  static constexpr std::size_t max_frame_bytes = 128u << 20;  ///< of all stored frames
-  static constexpr std::size_t max_copy_bytes = 64u << 20;    ///< of all copies, if there are more than three
+  static constexpr std::size_t max_frame_bytes = 128u << 20;  ///< limit of all stored frames
+  static constexpr std::size_t max_copy_bytes = 64u << 20;    ///< limit of all copies, if there are more than three
 
   /// An action of a user between two ticks.
   using Action = std::function<void(Drives&)>;

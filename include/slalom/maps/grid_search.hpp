@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "slalom/core/reserved_vector.hpp"
+#include "slalom/maps/closed_discs.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::maps {
@@ -27,6 +30,36 @@ class GridSearch {
 
   /// The prices of the cells for driving 1 m, to be set before `spread`; not above 0: closed.
   std::span<float> prices() noexcept { return prices_; }
+  /// Sets the prices for a body whose room (m) in the middle of a cell is `room(point)`: 1 where it is
+  /// `cautious` (m) or more, up to 5 where it is less. Where it is below 0, the cell is closed.
+  template <class Room>
+  void set_prices(Room&& room, double cautious) noexcept {
+    for (int cell = 0; cell < size(); ++cell) {
+      const double here = room(centre_of(cell));
+      const double nearness = std::clamp(1 - here / cautious, 0.0, 1.0);
+      prices_[static_cast<std::size_t>(cell)] =
+          here < 0 ? 0.0F : 1 + (dearest - 1) * static_cast<float>(nearness);
+    }
+  }
+  /// Closes the cells in a place.
+  void close(const ClosedDisc& place) noexcept;
+  /// Opens the closed cells within `reach` (m) of a point, at the highest price.
+  void open_around(const Point& point, double reach) noexcept;
+  /// Calls `visit(cell)` with every cell whose middle is within `reach` (m) of a point.
+  template <class Visit>
+  void visit_around(const Point& point, double reach, Visit&& visit) const noexcept {
+    const auto index = [&](double offset, int most) {
+      return std::clamp(offset / cell_size_, 0.0, most - 1.0);
+    };
+    const Point from{point.x - reach - corner_.x, point.y - reach - corner_.y};
+    const auto last_column = static_cast<int>(index(from.x + 2 * reach, columns_)),
+               last_row = static_cast<int>(index(from.y + 2 * reach, rows_));
+    for (auto row = static_cast<int>(index(from.y, rows_)); row <= last_row; ++row)
+      for (auto column = static_cast<int>(index(from.x, columns_)); column <= last_column; ++column) {
+        const int cell = row * columns_ + column;
+        if (distance(centre_of(cell), point) <= reach) visit(static_cast<std::size_t>(cell));
+      }
+  }
   /// Computes the costs of all cells that can be reached from one, which may be closed itself.
   void spread(int from) noexcept;
   /// The cost of reaching a cell; infinite where it cannot be reached.
@@ -44,6 +77,8 @@ class GridSearch {
     int cell;
     bool operator<(const Reached& other) const noexcept { return cost > other.cost; }
   };
+
+  static constexpr float dearest = 5;  ///< price beside an obstacle
 
   bool is_clear(int from, int to) const noexcept;
   void smooth() noexcept;

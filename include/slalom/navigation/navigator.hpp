@@ -59,10 +59,10 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.look_ahead, {"look_ahead", "m", "length of path that is checked for obstacles", 0, 100});
   visit(o.patience,
         {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
-  visit(o.stuck_after,
-        {"stuck_after", "s",
-         "time without progress after which the robot tries another way; after five of them it is stuck", 0.1,
-         3600});
+  visit(o.stuck_after, {"stuck_after", "s",
+                        "time without progress after which the robot tries another way; after five of them "
+                        "it is stuck for 10 s",
+                        0.1, 3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
 }
 
@@ -73,7 +73,7 @@ enum class NavigationStatus {
   braking,           ///< the plan soon meets a fixed or moving obstacle: the robot brakes
   blocked,           ///< the path is blocked and there is no way round: the robot stands
   goal_occupied,     ///< something is on the goal: the robot has driven up to it, and stands
-  stuck,             ///< no progress for five times `stuck_after`: the robot stands until there is a new path
+  stuck,             ///< no progress for five times `stuck_after`: the robot stands for 10 s, and tries again
   commands_ignored,  ///< the velocity stays near 0 although the commands do not: the robot or its odometry
                      ///< stands
   goal_reached,      ///< the robot stands at the goal

@@ -9,14 +9,9 @@
 
 namespace slalom::navigation {
 
-/// A disc through which no way leads.
-struct ClosedPlace {
-  maps::Point middle;  ///< m
-  double radius = 0;   ///< m
-};
-
-/// Finds cheapest paths over a costmap for a body that needs a corridor of a given width. Cells within 0.3 m
-/// of the edge of that corridor cost up to five times as much. After construction nothing allocates.
+/// Finds cheapest paths over a costmap for a body that needs a corridor of a given width. Cells beside that
+/// corridor, within 1.2 times its half width, cost up to five times as much. After construction nothing
+/// allocates.
 class PathPlanner {
  public:
   static constexpr std::size_t max_points = 4000;  ///< most points of a path
@@ -32,11 +27,12 @@ class PathPlanner {
   bool has_room(const Costmap& costmap, const maps::Point& point) const noexcept;
 
   /// Takes the cells of a costmap, which must have the size given, for the next search. `kept` is a path
-  /// that was followed before: cells further than 0.4 m from it cost 1.3 times as much, so that the search
-  /// prefers the way that was chosen. No way leads through the `closed` places.
+  /// that was followed before: cells further than 1.6 half widths from it cost 1.3 times as much, so that the
+  /// search prefers the way that was chosen. No way leads through the `closed` discs.
   void read(const Costmap& costmap, std::span<const maps::Pose> kept,
-            std::span<const ClosedPlace> closed) noexcept;
-  /// Searches from a position. Returns false if it is off the costmap. Cells within 0.3 m count as free.
+            std::span<const maps::ClosedDisc> closed) noexcept;
+  /// Searches from a position. Returns false if it is off the costmap. Cells within 1.2 half
+  /// widths count as free.
   bool search_from(const maps::Point& start) noexcept;
   /// The cost of a way to a position, m of free space; infinite if there is none.
   double cost_to(const maps::Point& point) const noexcept;

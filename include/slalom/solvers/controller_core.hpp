@@ -96,12 +96,12 @@ class ControllerCore {
 
   InputBounds bounds_;
   Polymorphic<Solver> solver_;
-  std::vector<double> inputs_;  ///< [step][input]
-  std::vector<double>
-      previous_;                ///< input applied before the last solve, within the bounds, or the remainder
-  std::vector<double> given_;   ///< argument of the last set_previous_input
-  std::vector<double> before_;  ///< inputs of a step, for the check of the next one
-  bool told_ = true;            ///< whether the next solve uses `given_`
+  std::vector<double> inputs_;    ///< [step][input]
+  std::vector<double> previous_;  ///< valid input applied before the last solve, or the remainder
+  std::vector<double> given_;     ///< argument of the last set_previous_input
+  std::vector<double> before_;    ///< inputs of a step, for the check of the next one
+  std::vector<double> reach_;     ///< largest change of each input in a step
+  bool told_ = true;              ///< whether the next solve uses `given_`
   Status status_ = Status::ok;
   int corrections_ = 0;
 };

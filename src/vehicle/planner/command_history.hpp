@@ -1,10 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 
 namespace slalom::vehicle::detail {
@@ -14,57 +11,23 @@ namespace slalom::vehicle::detail {
 class CommandHistory {
  public:
   /// All times in s, wheelbase in m; `delay` is at most 32 periods, `time_constant` that of the steering.
-  CommandHistory(double period, double delay, double time_constant, double wheelbase)
-      : period_(period), delay_(delay), time_constant_(time_constant), wheelbase_(wheelbase) {}
+  CommandHistory(double period, double delay, double time_constant, double wheelbase);
 
-  void reset() noexcept {
-    sent_.fill(0);
-    steer_ = 0;
-  }
+  void reset() noexcept;
 
   /// The wheels' angle now, rad.
   double steer() const noexcept { return steer_; }
 
   /// Records a command that is sent now, and advances by one period.
-  void send(double steer) noexcept {
-    for (std::size_t i = sent_.size() - 1; i > 0; --i) sent_[i] = sent_[i - 1];
-    sent_[0] = steer;
-    for_each_acting(-delay_, period_ - delay_, 1,
-                    [&](double command, double duration) { turn_wheels(steer_, command, duration); });
-  }
+  void send(double steer) noexcept;
 
   /// Predicts the state when the next command takes effect, at constant speed.
-  VehicleStart lead_ahead(VehicleStart car) const noexcept {
-    for_each_acting(-delay_, 0, 0, [&](double command, double duration) {
-      const int pieces = saturate_cast<int>(std::ceil(duration / 0.01 - 1e-9));
-      for (int i = 0; i < pieces; ++i) {
-        const double dt = duration / pieces, before = car.steer;
-        turn_wheels(car.steer, command, dt);
-        const double turned = car.speed * dt * std::tan(0.5 * (before + car.steer)) / wheelbase_;
-        car.pose.x += car.speed * dt * std::cos(car.pose.yaw + 0.5 * turned);
-        car.pose.y += car.speed * dt * std::sin(car.pose.yaw + 0.5 * turned);
-        car.pose.yaw += turned;
-      }
-    });
-    return car;
-  }
+  VehicleStart lead_ahead(VehicleStart car) const noexcept;
 
  private:
-  /// Calls `act(command, duration)` for the commands sent from `begin` to `end` (s). If `newest` is 1, time 0
-  /// is when the newest command was sent; if it is 0, one period later.
   template <class Act>
-  void for_each_acting(double begin, double end, int newest, Act&& act) const noexcept {
-    const int oldest =
-        std::min(static_cast<int>(sent_.size()) - 1, saturate_cast<int>(std::ceil(-begin / period_) + 1));
-    for (int i = oldest; i >= 0; --i) {
-      const double sent = -(i + 1 - newest) * period_;
-      const double from = std::max(begin, sent), to = std::min(end, sent + period_);
-      if (to > from + 1e-12) act(sent_[i], to - from);
-    }
-  }
-  void turn_wheels(double& steer, double command, double duration) const noexcept {
-    steer += (command - steer) * (1 - std::exp(-duration / time_constant_));
-  }
+  void for_each_acting(double begin, double end, int newest, Act&& act) const noexcept;
+  void turn_wheels(double& steer, double command, double duration) const noexcept;
 
   double period_, delay_, time_constant_, wheelbase_;
   std::array<double, 34> sent_{};

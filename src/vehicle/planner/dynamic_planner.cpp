@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "slalom/maps/recovery.hpp"
 #include "vehicle/planner/car_estimator.hpp"
 #include "vehicle/planner/detour.hpp"
 #include "vehicle/planner/feasible_speeds.hpp"
@@ -9,7 +10,6 @@
 #include "vehicle/planner/map_options.hpp"
 #include "vehicle/planner/passage.hpp"
 #include "vehicle/planner/planner_base.hpp"
-#include "vehicle/planner/recovery.hpp"
 #include "vehicle/planner/sight.hpp"
 #include "vehicle/planner/ways_around.hpp"
 
@@ -27,6 +27,7 @@ class DynamicPlanner final : public PlannerBase {
         speeds_(limited_path(parts.path, options_, traits_), options_.grip_shares.values()),
         sight_(parts.path, speeds_.length() > 0, reach_, options_, traits_.body),
         passage_(parts.path, speeds_.length() > 0, traits_.body),
+        recovery_(maps::RecoveryLengths::of(length_of(traits_.body))),
         detour_(limited_path(parts.path, options_, traits_), speeds_.length() > 0, traits_.body),
         manoeuvre_(parts.path, speeds_.length() > 0, traits_.body, traits_.wheelbase, options_.steer_limit),
         ways_(parts.path, speeds_.length() > 0, solver_->horizon(), solver_->inputs(), traits_,
@@ -76,7 +77,7 @@ class DynamicPlanner final : public PlannerBase {
     output_.command = model().command(chosen.inputs, speed_ahead, options_.control_period);
     output_.command.steer = std::clamp(output_.command.steer, -options_.steer_limit, options_.steer_limit);
     choice_.sent(chosen.inputs);
-    if (chosen.cost.collided || recovery_.reversing()) output_.status = PlannerStatus::blocked;
+    if (chosen.cost.collided || recovery_.reverses()) output_.status = PlannerStatus::blocked;
   }
 
   /// Sets the friction of the ground for plans. The speeds of the path change only if it changes by more than
@@ -120,23 +121,24 @@ class DynamicPlanner final : public PlannerBase {
   /// Decides whether plans reverse, how urgent they are, and whether they follow a detour.
   void recover(const Odometry& odometry, const maps::Pose& start) noexcept {
     const int nearest = field_.nearest();
-    const double end = speeds_.arc(static_cast<int>(path_.size()) - 1);
-    const bool at_end = speeds_.length() == 0 && end - speeds_.arc(nearest) < end_reach;
-    if (at_end) recovery_.watch_from(speeds_.arc(nearest));
-    recovery_.update(speeds_.arc(nearest), speeds_.length(), odometry.speed,
-                     speeds_.speeds()[static_cast<std::size_t>(nearest)], options_.control_period,
-                     obstacles_.one_drives_ahead(odometry.pose, origin_));
+    const double end = speeds_.arc(static_cast<int>(path_.size()) - 1), here = speeds_.arc(nearest);
+    const bool at_end = speeds_.length() == 0 && end - here < 2 * recovery_.lengths().progress;
+    if (at_end) recovery_.watch_from(here);
+    recovery_.update({.arc = here,
+                      .speed = odometry.speed,
+                      .free_speed = speeds_.speeds()[static_cast<std::size_t>(nearest)],
+                      .closed_length = speeds_.length(),
+                      .waits = obstacles_.one_drives_ahead(odometry.pose, origin_)},
+                     options_.control_period);
     detour_.note(recovery_, odometry.pose);
-    conditions_.reverse = recovery_.reversing() ? Recovery::speed : 0;
+    conditions_.reverse = recovery_.reverses() ? recovery_.lengths().reverse : 0;
     conditions_.margin_share = std::min(conditions_.margin_share, recovery_.margin_share());
-    on_detour_ =
-        recovery_.tries_again() && detour_.search(obstacles_.clearance_map(), odometry.pose, nearest);
+    on_detour_ = recovery_.retries() && detour_.search(obstacles_.clearance_map(), odometry.pose, nearest);
     if (on_detour_) {
       detour_.update_field({start.x, start.y});
       conditions_.urgency = Urgency::detour;
     } else {
-      const bool passes =
-          (recovery_.leaving() || seen_.obstacle < PathInSight::all) && !recovery_.reversing();
+      const bool passes = (recovery_.leaving() || seen_.obstacle < PathInSight::all) && !recovery_.reverses();
       conditions_.urgency = passes ? Urgency::passing : Urgency::usual;
     }
   }
@@ -144,29 +146,37 @@ class DynamicPlanner final : public PlannerBase {
   /// Drives a manoeuvre where the car stands without a way on, or is turned away from the path. Returns
   /// whether the command is that of a manoeuvre.
   bool manoeuvres(const PlannerInput& input, const maps::Pose& pose) noexcept {
-    const maps::ReferencePoint& path = path_[static_cast<std::size_t>(field_.nearest())];
-    const bool turned = std::abs(maps::wrap_angle(pose.yaw - path.yaw)) > most_turned;
-    const bool stands = std::abs(input.odometry.speed) < standing;
-    const bool begins = recovery_.begins_to_reverse() || (turned && stands);
+    const maps::RecoveryLengths& lengths = recovery_.lengths();
+    const int nearest = field_.nearest();
+    const double speed = input.odometry.speed, yaw = path_[static_cast<std::size_t>(nearest)].yaw;
+    const bool turned = std::abs(maps::wrap_angle(pose.yaw - yaw)) > most_turned;
+    const bool stands = std::abs(speed) < lengths.standing;
+    const bool was_active = recovery_.state() == maps::DriveState::manoeuvring;
+    const bool begins = (recovery_.reverses() && recovery_.begins()) || (turned && stands);
+    if (traits_.obstacle_map != ObstacleMap::clearance || (!was_active && !begins)) return false;
     const maps::ClearanceMap& obstacles = obstacles_.clearance_map();
-    if (traits_.obstacle_map != ObstacleMap::clearance || (!manoeuvre_.active() && !begins)) return false;
-    const double sight = std::abs(input.scan.angle_min);
     const auto find = [&] {
-      return manoeuvre_.search(obstacles, pose, field_.nearest(), turned ? -1e3 : way_past, sight);
+      return manoeuvre_.search(obstacles, pose, nearest, turned ? -1e3 : 3 * lengths.progress,
+                               std::abs(input.scan.angle_min));
     };
-    const bool was_active = manoeuvre_.active();
+    const auto follow = [&] {
+      return manoeuvre_.follow(obstacles, pose, speed, steer_estimate(), options_.control_period);
+    };
     if (!was_active && !find()) return false;
-    std::optional<Command> command =
-        manoeuvre_.follow(obstacles, pose, input.odometry.speed, steer_estimate());
-    if (!command && manoeuvre_.active()) {
-      const bool found = stands && find();
-      if (found) command = manoeuvre_.follow(obstacles, pose, input.odometry.speed, steer_estimate());
-      if (!command && stands) manoeuvre_.cancel();
-      if (!command && !stands) command = Command{car_.state().now().steer, 0};
+    std::optional<Command> command = follow();
+    if (!command && was_active && manoeuvre_.active()) {  // it has left the way, or an obstacle is on it
+      if (!stands) {
+        command = Command{steer_estimate(), 0};
+      } else if (find()) {
+        command = follow();
+      }
     }
-    // A manoeuvre that cannot begin leaves the car to the recovery.
-    if (command || was_active) recovery_.watch_from(speeds_.arc(field_.nearest()));
-    if (!command) return false;
+    if (!command) {  // one that cannot begin leaves the car to the recovery
+      manoeuvre_.cancel();
+      if (was_active) recovery_.end_manoeuvre(speeds_.arc(nearest));
+      return false;
+    }
+    if (!was_active) recovery_.begin_manoeuvre();
     stop(manoeuvre_.reverses() ? PlannerStatus::blocked : PlannerStatus::fallback_plan);
     brakes_ = false;
     output_.command = *command;
@@ -177,14 +187,14 @@ class DynamicPlanner final : public PlannerBase {
   void choose(const VehicleStart& start) noexcept {
     const SequenceChoice::Choice& chosen = choice_.best();
     const bool solution_collides = chosen.cost.collided;
-    if (!recovery_.reversing()) {
+    if (!recovery_.reverses()) {
       ways_.draw(start, field_.nearest(), speeds_.speeds(), path_friction_);
       if (traits_.seeks_lap_time) choice_.consider_last(options_.control_period);
       choice_.consider_slower();
       choice_.consider(ways_.cheapest(model_->evaluator()));
     }
     if (chosen.cost.collided) choice_.consider_samples();
-    if (chosen.cost.collided) choice_.stop(recovery_.reversing());
+    if (chosen.cost.collided) choice_.stop(recovery_.reverses());
     if (solution_collides && !chosen.cost.collided) output_.status = PlannerStatus::fallback_plan;
   }
 
@@ -207,7 +217,8 @@ class DynamicPlanner final : public PlannerBase {
   }
   double steer_estimate() const noexcept override { return car_.state().now().steer; }
   double slowest() const noexcept override {
-    return recovery_.reversing() || manoeuvre_.active() ? -1.5 * Recovery::speed : 0;
+    const bool drives_back = recovery_.reverses() || recovery_.state() == maps::DriveState::manoeuvring;
+    return drives_back ? -1.5 * recovery_.lengths().reverse : 0;
   }
   GridView<4> followed() const noexcept override {
     return on_detour_ ? detour_.field().view() : field_.view();
@@ -216,9 +227,6 @@ class DynamicPlanner final : public PlannerBase {
   DynamicVehicleModel& model() noexcept { return static_cast<DynamicVehicleModel&>(*model_); }
 
   static constexpr double most_turned = 1.8;  ///< rad from the path, beyond which the car turns first
-  static constexpr double standing = 0.15;    ///< m/s
-  static constexpr double end_reach = 1;      ///< m before the end of an open path, where the car may stop
-  static constexpr double way_past = 1.5;     ///< m along the path, past the place where the car stands
 
   std::vector<maps::ReferencePoint> path_;
   CarEstimator car_;
@@ -226,7 +234,7 @@ class DynamicPlanner final : public PlannerBase {
   Sight sight_;
   Passage passage_;
   PathInSight seen_;  ///< set only with `sight_deceleration`
-  Recovery recovery_;
+  maps::Recovery recovery_;
   Detour detour_;
   Manoeuvre manoeuvre_;
   WaysAround ways_;

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
-#include "vehicle/planner/back_up.hpp"
+#include "slalom/maps/recovery.hpp"
 #include "vehicle/planner/command_history.hpp"
 #include "vehicle/planner/planner_base.hpp"
 
@@ -16,7 +16,8 @@ class KinematicPlanner final : public PlannerBase {
   explicit KinematicPlanner(PlannerParts& parts)
       : PlannerBase(parts),
         history_(options_.control_period, options_.latency + traits_.dead_time,
-                 options_.observer_time_constant, traits_.wheelbase) {}
+                 options_.observer_time_constant, traits_.wheelbase),
+        recovery_(maps::RecoveryLengths::of(traits_.body.front + traits_.body.rear)) {}
   std::unique_ptr<PlannerBase> clone() const override { return std::make_unique<KinematicPlanner>(*this); }
 
  private:
@@ -72,8 +73,12 @@ class KinematicPlanner final : public PlannerBase {
   void slow_down(const PredictedCost& cost, double speed) noexcept {
     constexpr double creep = 0.5;  // m/s
     const bool too_near = model_->start_collides();
-    if (options_.back_up && back_up_.update(!cost.collided && !too_near, speed, options_.control_period)) {
-      output_.command = {0, -BackUp::speed};
+    const bool is_free = !cost.collided && !too_near;
+    driven_ += speed * options_.control_period;
+    recovery_.update({.arc = driven_, .speed = speed, .waits = is_free, .is_free = is_free},
+                     options_.control_period);
+    if (options_.back_up && recovery_.reverses()) {
+      output_.command = {0, -recovery_.lengths().reverse};
     } else if (too_near && speed < 2 * creep) {
       output_.command.speed = std::min(output_.command.speed, creep);
     } else if (cost.collided && !too_near) {
@@ -92,10 +97,11 @@ class KinematicPlanner final : public PlannerBase {
   }
   void forget() noexcept override {
     history_.reset();
-    back_up_.reset();
+    recovery_.reset();
+    driven_ = 0;
   }
   double steer_estimate() const noexcept override { return history_.steer(); }
-  double slowest() const noexcept override { return -BackUp::speed; }
+  double slowest() const noexcept override { return -recovery_.lengths().reverse; }
 
   double limited(double steer) const noexcept {
     return std::clamp(steer, -options_.steer_limit, options_.steer_limit);
@@ -107,7 +113,8 @@ class KinematicPlanner final : public PlannerBase {
   }
 
   CommandHistory history_;
-  BackUp back_up_;
+  maps::Recovery recovery_;
+  double driven_ = 0;         ///< m, forward less backward
   double planned_steer_ = 0;  ///< rad, before it was limited
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "slalom/core/final_check.hpp"
+#include "slalom/maps/pose_limits.hpp"
 #include "vehicle/planner/map_options.hpp"
 #include "vehicle/planner/planner_base.hpp"
 
@@ -37,7 +38,7 @@ void check_parts(const PlannerOptions& options, const VehicleModel* model,
 /// The planner works relative to this point. Subtracting it from a coordinate is exact, whereas sums of UTM
 /// coordinates (5e6 m, which double resolves to 1e-9 m) would round differently from sums near (0, 0).
 maps::Point grid_origin(std::span<const maps::ReferencePoint> path) {
-  constexpr double grid = 1e5;
+  const double grid = maps::PoseLimits::position / 100;
   return {grid * std::round(path[0].x / grid), grid * std::round(path[0].y / grid)};
 }
 
@@ -51,8 +52,7 @@ void shift(std::span<PredictedState> states, const maps::Point& origin) noexcept
 
 /// Whether odometry is finite and within the limits of `Odometry`.
 bool plausible(const Odometry& o) {
-  return std::abs(o.pose.x) <= Odometry::furthest && std::abs(o.pose.y) <= Odometry::furthest &&
-         std::abs(o.pose.yaw) <= Odometry::max_yaw && std::abs(o.speed) <= Odometry::fastest;
+  return maps::is_plausible(o.pose) && std::abs(o.speed) <= Odometry::fastest;
 }
 
 /// Moves a value into a range; one that is not finite becomes `otherwise`. Returns 1 if it changed, else 0.
@@ -165,7 +165,7 @@ int PlannerBase::check_command(const Odometry& odometry, double wheels) noexcept
 /// not finite to 0. If a cost or an input is not finite, the output has no prediction, and a status that
 /// claims a plan becomes `solver_degenerate`. Such costs become the largest double, such inputs are left out.
 void PlannerBase::check_output(const Odometry& odometry) noexcept {
-  constexpr double most = std::numeric_limits<double>::max();
+  const double most = std::numeric_limits<double>::max();
   PlannerOutput& out = output_;
   out.corrections += check_command(odometry, out.steer_estimate);
   for (double* const estimate :

@@ -8,7 +8,7 @@
 #include "slalom/core/polymorphic.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
-#include "vehicle/planner/obstacles.hpp"
+#include "vehicle/planner/obstacles/obstacles.hpp"
 #include "vehicle/planner/sequence_choice.hpp"
 
 namespace slalom::vehicle::detail {

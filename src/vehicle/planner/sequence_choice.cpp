@@ -5,6 +5,7 @@
 
 #include "slalom/core/math.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "vehicle/planner/car_scale.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -12,12 +13,6 @@ namespace {
 
 /// Deceleration while braking in curves, and acceleration, as shares of the largest deceleration.
 constexpr double braking_share = 0.8, accelerating_share = 0.4;
-
-/// m, by which a body that begins in a collision may go deeper.
-constexpr double deeper = 0.03;
-
-/// m, between a wall and the nearest of many noisy readings of it.
-constexpr double reading_error = 0.02;
 
 /// The body without margin, or smaller by `less` (m), for look-ups in the map of these traits.
 BodyOptions bare(const VehicleTraits& traits, double less) {
@@ -60,7 +55,7 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
       path_(states_.size()),
       margin_is_cost_(traits.seeks_lap_time && traits.body.margin > 0 &&
                       traits.obstacle_map == ObstacleMap::clearance),
-      body_(bare(traits, margin_is_cost_ ? reading_error : 0)) {}
+      body_(bare(traits, margin_is_cost_ ? SensorErrors::reading : 0)) {}
 
 void SequenceChoice::sees(const VehicleMaps& maps) noexcept {
   body_.set_map(maps.obstacles, maps.robot);
@@ -88,7 +83,7 @@ bool SequenceChoice::body_collides(std::span<const PredictedState> states) const
   const auto touches = [&](std::size_t k, std::size_t next) {
     return body_.collides_before(states[k].pose, states[next].pose);
   };
-  const double least_room = std::min(body_.room(states[0].pose), 0.0) - deeper;
+  const double least_room = std::min(body_.room(states[0].pose), 0.0) - SensorErrors::body;
   std::size_t k = 0;
   for (; k < states.size() && touches(k, k); ++k)
     if (body_.room(states[k].pose) < least_room) return true;
@@ -151,6 +146,8 @@ void SequenceChoice::consider_last(double elapsed) noexcept {
 
 void SequenceChoice::consider_slower() noexcept {
   std::copy(states_.begin(), states_.end(), path_.begin());
+  // Each is at most twice as long as the one before, so that one of them brakes at most twice as long as it
+  // must. In 16 steps of 0.05 s the usable grip takes 6.7 m/s off the speed of the car.
   for (const int steps : {0, 3, 6, 10, 16}) {
     follow_slower(steps);
     if (consider(candidate_)) candidate_.swap(slower_);

@@ -67,20 +67,6 @@ TEST(Proposals, TheyAreTheLastSamplesInTheirOrder) {
   EXPECT_NE(result.samples->at(0, 0, count - 1), 2.0f) << "they count for one solve only";
 }
 
-TEST(Proposals, MoreThanSamples) {
-  const auto evaluator = far_away();
-  std::vector<float> values(40 * steps);
-  for (int p = 0; p < 40; ++p) std::fill_n(values.begin() + p * steps, steps, 0.05f * static_cast<float>(p));
-  for (const char* method : taking) {
-    SolverOptions options = solver_options(method);
-    testing::set(options, "horizon", steps);
-    testing::set(options, "samples", 5);
-    const auto solver = make_solver(options, 1);
-    for (int i = 0; i < 2; ++i)
-      EXPECT_EQ(solver->solve(evaluator, {.proposals = {values, 40}}).status, Status::ok) << method;
-  }
-}
-
 TEST(Proposals, AreRejectedByOtherMethods) {
   const auto evaluator = far_away();
   const std::vector<float> values(steps, 3.0f);

@@ -20,8 +20,7 @@ struct Drawn {
     const FunctionEvaluator evaluator(1, [cost](const SequenceBatch& batch, int k) {
       return std::pair<double, bool>(cost(static_cast<double>(batch.at(0, 0, k))), false);
     });
-    statistics = samples.draw_and_evaluate(evaluator, {7, 1}, {&mean, &deviation, &low, &high, 1000}, nullptr,
-                                           pool, Deadline());
+    samples.draw_and_evaluate(evaluator, {7, 1}, {&mean, &deviation, &low, &high, 1000}, nullptr, pool, {});
   }
   /// Weighs the samples with an adapted temperature. `linear` is the coefficient of the control term.
   WeightSums<double> seek(Weighting& weighting, float linear = 0) {
@@ -39,34 +38,7 @@ struct Drawn {
 
   ThreadPool pool;
   SampleSet samples;
-  BatchStatistics statistics;
 };
-
-TEST(Weighting, WeightsAreExponentials) {
-  Drawn drawn([](double v) { return 10 + 2 * v * v; });
-  Weighting weighting(1.7, 0);
-  const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
-  double total = 0;
-  for (std::size_t k = 0; k < 1000; ++k) {
-    const auto least = static_cast<double>(drawn.statistics.minimum_total);
-    const double w = drawn.samples.weights()[k];
-    EXPECT_NEAR(w, std::exp((least - static_cast<double>(drawn.samples.costs()[k])) / 1.7), 1e-5) << k;
-    total += w;
-  }
-  EXPECT_NEAR(sums.weight, total, 1e-4 * total);
-}
-
-TEST(Weighting, InfiniteCostsHaveNoWeight) {
-  Drawn drawn([](double v) { return v > 0 ? std::numeric_limits<double>::infinity() : v * v; });
-  Weighting weighting(1, 0);
-  const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
-  EXPECT_TRUE(std::isfinite(sums.weight) && std::isfinite(sums.cost));
-  for (std::size_t k = 0; k < 1000; ++k) {
-    if (!std::isfinite(drawn.samples.costs()[k])) {
-      EXPECT_EQ(drawn.samples.weights()[k], 0);
-    }
-  }
-}
 
 TEST(Weighting, FindsTheTemperatureForAnEffectiveSampleSize) {
   for (const double scale : {1e-3, 1.0, 1e5}) {
@@ -78,17 +50,6 @@ TEST(Weighting, FindsTheTemperatureForAnEffectiveSampleSize) {
           << "costs of " << scale << ", lambda " << weighting.temperature();
     }
   }
-}
-
-TEST(Weighting, CostsTimesAPowerOfTwoGiveTheSameWeights) {
-  const auto weights = [](double factor) {
-    Drawn drawn([factor](double v) { return factor * (std::abs(v - 1) + (v < 0 ? 100 : 0)); });
-    Weighting weighting(1, 0.05);
-    drawn.seek(weighting, 0.3f);
-    drawn.seek(weighting, 0.2f);  // starts at the temperature that was found
-    return std::vector<float>(drawn.samples.weights().begin(), drawn.samples.weights().end());
-  };
-  for (const int k : {-20, -3, 1, 20}) EXPECT_EQ(weights(std::ldexp(1, k)), weights(1)) << "2^" << k;
 }
 
 TEST(Weighting, ControlTermIsInUnitsOfTheTemperature) {

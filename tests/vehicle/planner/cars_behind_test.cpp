@@ -1,5 +1,5 @@
 // Cars behind are expected to give way to the own car.
-#include "vehicle/planner/cars_behind.hpp"
+#include "vehicle/planner/obstacles/cars_behind.hpp"
 
 #include <gtest/gtest.h>
 

@@ -50,13 +50,18 @@ double crossing(std::span<const maps::ReferencePoint> path) {
   return std::nan("");
 }
 
+/// Lets a car at `car` do what it does at this speed until the state changes to or from reversing.
+void drive(maps::Recovery& recovery, double speed) {
+  const bool before = recovery.reverses();
+  while (recovery.reverses() == before)
+    recovery.update({.arc = car.x, .speed = speed, .free_speed = 5}, period);
+}
+
 /// A recovery that has reversed at `car` and drives on.
-Recovery trying_again() {
-  Recovery recovery;
-  while (!recovery.update(car.x, 0, 0, 5, period)) {
-  }
-  while (recovery.update(car.x, 0, -0.45, 5, period)) {
-  }
+maps::Recovery retrying() {
+  maps::Recovery recovery(maps::RecoveryLengths::of(body.front + body.rear));
+  drive(recovery, 0);
+  drive(recovery, -0.45);
   return recovery;
 }
 
@@ -117,15 +122,13 @@ TEST(Detour, FindsNoWayWhereThereIsNoneOrItIsTooNarrow) {
 TEST(Detour, TriesAnotherWayWhereTheCarHadToReverse) {
   const Walls walls{{-9, -2.5}, {-1.5, 0.8}, {1.5, 9}};
   Detour detour(testing::lane(5), false, body);
-  Recovery recovery = trying_again();
+  maps::Recovery recovery = retrying();
   detour.note(recovery, car);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   const double first = crossing(detour.path());
-  while (!recovery.update(car.x, 0, 0, 5, period)) {
-  }
+  drive(recovery, 0);
   detour.note(recovery, {car.x + 2 - body.front, first, 0});  // stuck in the first gap
-  while (recovery.update(car.x, 0, -0.45, 5, period)) {
-  }
+  drive(recovery, -0.45);
   detour.note(recovery, car);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   EXPECT_LT(crossing(detour.path()), 0);
@@ -135,7 +138,7 @@ TEST(Detour, TriesAnotherWayWhereTheCarHadToReverse) {
   EXPECT_NEAR(crossing(detour.path()), first, 0.1);
 
   // Past the place, the dead end is forgotten.
-  detour.note(Recovery(), car);
+  detour.note(maps::Recovery({}), car);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   EXPECT_NEAR(crossing(detour.path()), first, 0.1);
 }

@@ -40,7 +40,7 @@ class Lane {
 maps::Pose driven(Manoeuvre& manoeuvre, Lane& lane, maps::Pose pose) {
   double speed = 0, steer = 0;
   for (int k = 0; k < 2000 && manoeuvre.active(); ++k) {
-    auto command = manoeuvre.follow(lane.seen_from(pose), pose, speed, steer);
+    auto command = manoeuvre.follow(lane.seen_from(pose), pose, speed, steer, period);
     if (!command && !manoeuvre.active()) break;
     if (!command) {  // beside the way: it stops and searches again
       command = Command{steer, 0};
@@ -86,7 +86,7 @@ TEST(Manoeuvre, AWayThatIsFoundCanBeBegun) {
       const maps::ClearanceMap& map = lane.seen_from(start);
       if (!manoeuvre.search(map, start, 100, -1e3, sight)) continue;
       ++found;
-      EXPECT_TRUE(manoeuvre.follow(map, start, 0, 0)) << "from y " << y << ", yaw " << yaw;
+      EXPECT_TRUE(manoeuvre.follow(map, start, 0, 0, period)) << "from y " << y << ", yaw " << yaw;
     }
   EXPECT_GT(found, 500);
 }

@@ -13,7 +13,7 @@
 #include "support/lane.hpp"
 #include "support/predicted.hpp"
 #include "vehicle/planner/lane_scan.hpp"
-#include "vehicle/planner/obstacles.hpp"
+#include "vehicle/planner/obstacles/obstacles.hpp"
 
 namespace slalom::vehicle {
 namespace {

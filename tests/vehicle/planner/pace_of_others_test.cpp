@@ -1,4 +1,4 @@
-#include "vehicle/planner/pace_of_others.hpp"
+#include "vehicle/planner/obstacles/pace_of_others.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ struct Car : testing::Predicted {
 /// The steps lost behind one car after it was seen for some time (s), by a car at the field's origin.
 double lost_behind(const Car& car, double seconds, const maps::Pose& own = {0, 0, 0}) {
   const maps::ReferenceField field = straight_field();
-  PaceOfOthers pace(steps_behind, period);
+  PaceOfOthers pace(steps_behind, period, {});
   const maps::PredictedObstacle* const all[] = {&car.obstacle};
   double lost = 0;
   for (double t = 0; t < seconds; t += period) lost = pace.steps_lost(all, field, origin, own)[0];
@@ -64,7 +64,7 @@ TEST(PaceOfOthers, ASpeedIsBelievedOnlyAfterSomeSeconds) {
 
 TEST(PaceOfOthers, ACarThatGetsUpToSpeedHasNotShownItsPace) {
   const maps::ReferenceField field = straight_field();
-  PaceOfOthers pace(steps_behind, period);
+  PaceOfOthers pace(steps_behind, period, {});
   double lost = 0;
   const auto drive = [&](double seconds, auto&& speed_after) {
     for (double t = 0; t < seconds; t += period) {
@@ -91,7 +91,7 @@ TEST(PaceOfOthers, CarsThatAreNotFollowedCostNothing) {
 
 TEST(PaceOfOthers, EveryCarIsRememberedByItself) {
   const maps::ReferenceField field = straight_field();
-  PaceOfOthers pace(steps_behind, period);
+  PaceOfOthers pace(steps_behind, period, {});
   const Car slow(1, {3, 0, 0}, 0.8 * path_speed), fast(2, {5, 0, 0}, path_speed);
   const maps::PredictedObstacle* const both[] = {&slow.obstacle, &fast.obstacle};
   const maps::PredictedObstacle* const swapped[] = {&fast.obstacle, &slow.obstacle};
@@ -105,7 +105,7 @@ TEST(PaceOfOthers, EveryCarIsRememberedByItself) {
 
 TEST(PaceOfOthers, TheCarSeenLongestAgoGivesItsPlaceToANewOne) {
   const maps::ReferenceField field = straight_field();
-  PaceOfOthers pace(steps_behind, period);
+  PaceOfOthers pace(steps_behind, period, {});
   const Car kept(1, {3, 0, 0}, 0.8 * path_speed);
   const maps::PredictedObstacle* const one[] = {&kept.obstacle};
   for (int i = 0; i < 1200; ++i) pace.steps_lost(one, field, origin, {0, 0, 0});

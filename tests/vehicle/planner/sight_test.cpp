@@ -41,12 +41,14 @@ testing::LaneScan scan_of(const std::vector<Box>& boxes, double first = -2.35) {
   return testing::LaneScan(walls, 1081, first);
 }
 
-Sight sight(double reach = 12) {
+/// Of a car that is `size` times as long as that of 1/10 scale.
+Sight sight(double reach = 12, double size = 1) {
   PlannerOptions options;
   options.laser_x = laser_x;
   options.control_period = period;
   options.sight_deceleration = 6;
   BodyOptions body;
+  body.rear = size * (body.front + body.rear) - front;
   body.front = front;
   return {left_turn(), false, reach, options, body};
 }
@@ -124,6 +126,13 @@ TEST(Sight, ACarStopsFromTheStoppingSpeed) {
   }
   EXPECT_GT(made.stopping_speed(0), 0) << "it looks around the corner";
   EXPECT_TRUE(std::isinf(made.stopping_speed(PathInSight::all)));
+}
+
+TEST(Sight, ALongerCarKeepsLongerGaps) {
+  const Sight small = sight(12, 1), large = sight(12, 4);
+  const auto way_of = [](double speed) { return speed * 2 * period + speed * speed / 12; };
+  EXPECT_NEAR(way_of(small.stopping_speed(9)) - way_of(large.stopping_speed(9)), 0.3, 1e-9);
+  EXPECT_DOUBLE_EQ(large.stopping_speed(0), 2 * small.stopping_speed(0)) << "the square root of the lengths";
 }
 
 }  // namespace

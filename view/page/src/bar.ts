@@ -1,11 +1,13 @@
-import { send } from "./connection";
+import { ask, send } from "./connection";
 import { all, click, get, showIcon } from "./dom";
 import { isReplay, on, page, period, scalar, tell } from "./page";
 import { past } from "./past";
+import { toast } from "./toast";
 
 // The bar of time: the buttons of the drive, its speed, and the slider over the stored steps.
 
 let isPaused = false; // as it will be once the server has executed what was asked
+let pending = 0; // questions that it has not answered
 function showPlay() {
   showIcon(get("play"), isPaused ? "play" : "pause");
   get("play").lastChild!.textContent = isPaused ? "Play" : "Pause";
@@ -13,9 +15,16 @@ function showPlay() {
 }
 export function play() {
   if (!page.state) return;
-  send({ do: isPaused ? "play" : "pause" });
+  const answer = ask({ do: isPaused ? "play" : "pause" });
   isPaused = !isPaused;
+  pending += 1;
   showPlay();
+  const refuse = (error: Error) => {
+    toast(error.message, true);
+    isPaused = !isPaused;
+    showPlay();
+  };
+  void answer.catch(refuse).finally(() => (pending -= 1));
 }
 export const step = () => send({ do: "step" });
 export const restart = () => send({ do: "restart" });
@@ -69,7 +78,7 @@ function showTime() {
 }
 
 on("state", (state) => {
-  isPaused = state.paused;
+  if (!pending) isPaused = state.paused;
   showPlay();
   rate.value = String(state.rate);
   showTime();

@@ -1,6 +1,5 @@
 import { page, solver, tell, isReplay } from "./page";
 import { Player } from "./player";
-import { toFrame, toText } from "./old_format";
 import { decode, type Frame, type Text } from "./protocol";
 import { WorkerSocket } from "./worker_socket";
 
@@ -55,7 +54,7 @@ export function connect() {
     tell("connection", { isOpen: true, attempts });
   };
   socket.onmessage = ({ data }: { data: string | ArrayBuffer }) =>
-    typeof data === "string" ? readText(toText(JSON.parse(data))) : readMessage(data);
+    typeof data === "string" ? readText(JSON.parse(data) as Text) : readMessage(data);
   socket.onclose = () => {
     attempts += 1;
     for (const { fail } of questions.values()) fail(new Error("The connection was lost."));
@@ -88,6 +87,6 @@ function readMessage(data: ArrayBuffer) {
   else if (message.scalars) {
     arrived += 1;
     waiting += 1;
-    if (page.hello) tell("frame", toFrame(message as Frame));
+    if (page.hello) tell("frame", message as Frame);
   }
 }

@@ -20,7 +20,7 @@ interface News extends Texts {
   cursor: number | undefined; // the tick under the pointer, over a chart or the slider
   shown: "charts" | "options" | "inspect" | "laps"; // pane
   theme: Theme;
-  drawn: true; // what has come is to be drawn now
+  drawn: true; // draw the page now
 }
 
 const newest: { [What in keyof News]?: News[What] } = {};

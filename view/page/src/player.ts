@@ -128,6 +128,7 @@ export class Player {
       const message = "This is a recording, which cannot be changed.";
       return this.say({ type: "error", message, id: command.id });
     }
+    if (command.id) this.say({ type: "done", id: command.id });
     this.show();
     this.tell();
   }

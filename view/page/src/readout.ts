@@ -51,6 +51,7 @@ function showLabels({ statuses, symptoms }: Hello) {
 for (const what of ["frame", "state", "past"] as const)
   on(what, () => {
     if (!page.hello || !page.frame) return;
+    get("readout").hidden = false;
     showFigures();
     showLabels(page.hello);
   });

@@ -45,11 +45,11 @@ function show(state: State) {
   field("real-time").checked = state.real_time;
 }
 
-/** What drives where, in a few words. */
+/** Names of course, method, ghost, seed and obstacles, in a few words. */
 export function titleParts(): string[] {
   const { state } = page;
   if (!state) return [];
-  const parts = [page.hello!.title, state.method];
+  const parts = [state.course || page.hello!.title, state.method];
   if (state.ghost) parts.push(`against ${state.ghost_label || state.ghost}`);
   if (state.course) parts.push(`seed ${state.seed}`, counted(state.obstacles, "obstacle"));
   if (state.opponents) parts.push(counted(state.opponents, "opponent"));
@@ -57,7 +57,7 @@ export function titleParts(): string[] {
 }
 
 /** The beginning of the names of files that are saved. */
-export const fileName = () => `slalom-${page.hello?.title}-${page.state?.tick}`;
+export const fileName = () => `slalom-${titleParts()[0]}-${page.state?.tick}`;
 
 // Course, method and ghost are in the header where there is room, else in the sheet of the scenario.
 const narrow = matchMedia("(max-width: 1099px)");

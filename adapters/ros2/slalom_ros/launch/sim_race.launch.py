@@ -31,8 +31,8 @@ ARGUMENTS = (
     ("cars", "1", "f1tenth_gym: 1 or 2, each with its planner"),
 )
 
-# As in f1tenth_gym_ros, the frame base_link moves with the centre of gravity, 0.17145 m ahead of the rear axle,
-# and the scans come at 250 Hz.
+# As in f1tenth_gym_ros, the frame base_link moves with the centre of gravity, 0.17145 m ahead of the rear
+# axle, and the scans come at 250 Hz.
 GYM_CARS = (
     {"namespace": "", "scan": "scan", "odom": "ego_racecar/odom", "drive": "drive", "base_frame": "ego_racecar/base_link"},
     {"namespace": "opp", "scan": "/opp_scan", "odom": "/opp_racecar/odom", "drive": "/opp_drive",

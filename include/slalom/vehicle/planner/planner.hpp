@@ -35,12 +35,10 @@ using PoseCovariance = std::array<std::array<double, 3>, 3>;
 
 /// Pose of the rear axle and speed, from odometry or localisation.
 struct Odometry {
-  static constexpr double furthest = 1e7;  ///< m, largest magnitude that a planner takes as a coordinate
-  static constexpr double max_yaw = 1e6;   ///< rad, largest magnitude that a planner takes as a yaw
-  static constexpr double fastest = 200;   ///< m/s, largest magnitude that a planner takes as a speed
-  maps::Pose pose;                         ///< m, m, rad, in the map frame
-  double speed = 0;                        ///< m/s
-  PoseCovariance covariance{};             ///< covariance of `pose`; all 0: the pose counts as exact
+  static constexpr double fastest = 200;  ///< m/s, largest magnitude that a planner takes as a speed
+  maps::Pose pose;                        ///< m, m, rad, in the map frame, within maps::PoseLimits
+  double speed = 0;                       ///< m/s
+  PoseCovariance covariance{};            ///< covariance of `pose`; all 0: the pose counts as exact
 };
 
 /// The reason for a command.

@@ -4,7 +4,7 @@ import { make } from "../dom";
 import { page } from "../page";
 import type { Line } from "./strips";
 
-const bins = 30; // of a histogram
+const bins = 30; // bars of a histogram
 
 /** The value of a CSS variable. */
 export function css(name: string) {

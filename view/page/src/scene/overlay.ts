@@ -1,7 +1,7 @@
 import { counted, get } from "../dom";
 import { Caption } from "../modes";
 import { drivenOf, methodOf, on, page, period, scalar } from "../page";
-import type { Pose } from "../protocol";
+import type { Frame, Pose } from "../protocol";
 import type { Camera } from "./camera";
 import { visible } from "./layers";
 import { camera, ghostCamera, isSideBySide } from "./stage";
@@ -20,7 +20,8 @@ const lanes = [
   },
 ];
 
-on("frame", (frame) => {
+/** Shows titles and captions. */
+function showLanes(frame: Frame) {
   get("split").hidden = get("faint").hidden = !frame.ghostFrame;
   const both = isSideBySide() ? [frame, frame.ghostFrame!] : [frame, undefined];
   for (const [i, each] of both.entries()) {
@@ -29,7 +30,10 @@ on("frame", (frame) => {
     const collisions = counted(scalar("contacts", each?.scalars), "collision");
     lanes[i].title.textContent = `${methodOf(each)} · ${collisions}`;
   }
-});
+}
+on("frame", showLanes);
+// A frame is judged again once the drive is paused there.
+on("state", ({ paused }) => paused && page.frame && showLanes(page.frame));
 
 /** The middle of what panels leave free of a lane. */
 function box({ width, covered, middleX }: Camera, stage: HTMLElement) {

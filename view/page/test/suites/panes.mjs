@@ -34,7 +34,9 @@ export default async function (h) {
   await h.test("one cursor shows the same time in charts, scene and slider; a click goes there", async () => {
     await h.seek((await h.state()).newest);
     await h.drawn();
-    const over = await page.locator("#charts .u-over").first().boundingBox();
+    const chart = page.locator("#charts .u-over").first();
+    await chart.scrollIntoViewIfNeeded();
+    const over = await chart.boundingBox();
     const place = [over.x + 0.5 * over.width, over.y + 20];
     await page.mouse.move(...place);
     await h.until(() => slalom.cursor !== undefined);

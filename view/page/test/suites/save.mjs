@@ -71,7 +71,7 @@ export default async function (h) {
   /** Checks that a replay plays, at the speed that is chosen, and can be scrubbed. */
   async function plays(address) {
     const replay = await h.open(address);
-    await replay.until(() => window.slalom?.replay && slalom.frame && slalom.state.newest > 40);
+    await replay.until(() => window.slalom?.isReplay && slalom.frame && slalom.state.newest > 40);
     const first = (await replay.state()).tick;
     await replay.until((t) => slalom.state.tick > t, first);
     await replay.page.click("#play");

@@ -1,0 +1,91 @@
+#include "navigation/command_delay.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slalom::navigation::detail {
+
+CommandDelay::CommandDelay(const BaseOptions& base) noexcept
+    : forward_(base.delay_forward), left_(base.delay_sideways), turn_(base.delay_turn) {
+  longest_ = std::max(forward_, turn_);
+  if (base.kind == BaseKind::omnidirectional) longest_ = std::max(longest_, left_);
+  estimates_ = longest_ == 0;
+  per_speed_ = 1 / base.max_forward;
+  per_turn_ = 1 / std::max(base.max_turn, 0.01);
+}
+
+void CommandDelay::clear() noexcept {
+  count_ = 0;
+  decided_ = {};
+  errors_.fill(0);
+  motion_ = 0;
+  if (estimates_) longest_ = 0;
+}
+
+void CommandDelay::pass(const Velocity& measured, double elapsed) noexcept {
+  next_ = (next_ + 1) % entries_.size();
+  count_ = std::min(count_ + 1, entries_.size());
+  entries_[next_] = {decided_, elapsed};
+  if (estimates_) estimate(measured, elapsed);
+}
+
+maps::Pose CommandDelay::predict(maps::Pose pose) const noexcept {
+  std::size_t used = 0;
+  double covered = 0;
+  while (used < count_ && covered < longest_) covered += entry(used++).duration;
+  double first = std::max(covered - longest_, 0.0);  // s of the oldest entry that are over
+  for (std::size_t age = used; age-- > 0; first = 0) {
+    const auto& [command, duration] = entry(age);
+    const double time = std::max(duration - first, 0.0), yaw = pose.yaw + 0.5 * time * command.turn;
+    const double c = std::cos(yaw), s = std::sin(yaw);
+    pose = {pose.x + time * (c * command.forward - s * command.left),
+            pose.y + time * (s * command.forward + c * command.left), pose.yaw + time * command.turn};
+  }
+  return pose;
+}
+
+Velocity CommandDelay::send(const Velocity& decision) noexcept {
+  decided_ = decision;
+  if (estimates_) return decision;
+  return {before(longest_ - forward_).forward, before(longest_ - left_).left, before(longest_ - turn_).turn};
+}
+
+/// The entry of this age; 0 is the last one.
+const CommandDelay::Entry& CommandDelay::entry(std::size_t age) const noexcept {
+  return entries_[(next_ + entries_.size() - age) % entries_.size()];
+}
+
+/// The decision that was in force so long (s) ago.
+Velocity CommandDelay::before(double age) const noexcept {
+  const double rounding = 1e-9;  // s
+  for (std::size_t i = 0; age > rounding; ++i) {
+    if (i == count_) return {};
+    age -= entry(i).duration;
+    if (age <= rounding) return entry(i).command;
+  }
+  return decided_;
+}
+
+void CommandDelay::estimate(const Velocity& measured, double elapsed) noexcept {
+  const double kept = std::exp(-elapsed / memory);
+  std::size_t age = 0, best = 0;
+  double end = 0;  // s ago, until which the entry was in force
+  for (std::size_t k = 0; k < errors_.size(); ++k) {
+    while (age < count_ && end + entry(age).duration < delay_step * (static_cast<double>(k) + 0.5))
+      end += entry(age++).duration;
+    const Velocity command = age < count_ ? entry(age).command : Velocity{};
+    errors_[k] = kept * errors_[k] + elapsed * difference(measured, command);
+    if (errors_[k] < errors_[best]) best = k;
+  }
+  motion_ = kept * motion_ + elapsed * difference(measured, {});
+  const bool is_clear = errors_[best] < clear_share * errors_[0];
+  if (is_clear && errors_[0] > least_error && motion_ > least_error) longest_ = delay_step * best;
+}
+
+double CommandDelay::difference(const Velocity& a, const Velocity& b) const noexcept {
+  const double forward = per_speed_ * (a.forward - b.forward), left = per_speed_ * (a.left - b.left),
+               turn = per_turn_ * (a.turn - b.turn);
+  return forward * forward + left * left + turn * turn;
+}
+
+}  // namespace slalom::navigation::detail
