@@ -113,8 +113,8 @@ class CarSource final : public FrameSource {
         const double distance = sum.distance - before.distance;
         all.states.insert(all.states.end(),
                           {state.pose.x, state.pose.y, state.pose.yaw, state.speed, state.steer});
-        all.costs.insert(all.costs.end(), {distance, sum.state - before.state - distance,
-                                           sum.collision - before.collision});
+        all.costs.insert(all.costs.end(),
+                         {distance, sum.state - before.state - distance, sum.collision - before.collision});
         if (sum.collided && all.collisions.back() < 0) all.collisions.back() = static_cast<int>(k);
         before = sum;
       }
@@ -156,8 +156,8 @@ class CarSource final : public FrameSource {
     const StageTimes times = out.solve ? out.solve->times : StageTimes{};
     const sim::LapTimer& laps = *world.laps(0);
     const int lap = laps.laps();
-    std::vector<double> all{car.speed, car.steer, car.yaw_rate, car.slip, out.command.steer,
-                            out.command.speed, out.steer_estimate};
+    std::vector<double> all{car.speed,         car.steer,         car.yaw_rate,      car.slip,
+                            out.command.steer, out.command.speed, out.steer_estimate};
     for (const double time : {times.draw, times.evaluate, times.guide, times.update, times.total})
       all.push_back(1e3 * time);
     all.insert(all.end(), {static_cast<double>(lap), step_.time - laps.lap_start_time(),

@@ -8,7 +8,7 @@
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
 
-/// What the live view shows of a car on a course.
+/// Frames and messages of a car on a course.
 namespace slalom::view {
 
 /// Returns the facts of a car, without the map and line of the course unless there is one.

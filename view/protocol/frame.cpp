@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "view/protocol/frame_writer.hpp"
+#include "view/protocol/scene_blocks.hpp"
 #include "view/protocol/solve_blocks.hpp"
 
 namespace slalom::view {
@@ -12,8 +13,8 @@ namespace {
 
 constexpr std::size_t most_candidates = 160, least_candidates = 20;
 constexpr std::size_t most_step_costs = 100000;  // values in a frame
-constexpr int unknown_place = 255;               // of a candidate that collides
-constexpr float nudge = 0.01f;                   // of an input, for the derivative of the plan
+constexpr int unknown_place = 255;               // code of a candidate that collides, but not where
+constexpr float nudge = 0.01f;                   // change of an input, for the derivative of the plan
 constexpr double course_room = 1.5;              // m beside the line of a course
 
 using Poses = std::span<const maps::Pose>;
@@ -34,56 +35,8 @@ void put_points(FrameWriter& to, Poses poses, double most) {
   for (const maps::Pose& p : poses) to.put_point({p.x, p.y});
 }
 
-void put_lines(FrameWriter& to, Block block, const std::vector<Line>& lines) {
-  if (lines.empty()) return;
-  to.begin(block);
-  to.put(static_cast<std::uint32_t>(lines.size()));
-  for (const Line& line : lines) {
-    to.put(static_cast<std::uint32_t>(line.size()));
-    for (const maps::Point& p : line) to.put_f32({p.x, p.y});
-  }
-  to.end();
-}
-
-/// The number of a shape's kind in the block `bodies`.
-int kind_of(const Shape& shape) {
-  switch (shape.kind) {
-    case ShapeKind::parked_car: return 1;
-    case ShapeKind::opponent: return 4;
-    case ShapeKind::mover: return 5;
-    case ShapeKind::goal: return 6;
-    case ShapeKind::obstacle: break;
-  }
-  return shape.is_disc ? 3 : 2;
-}
-
-void put_body(FrameWriter& to, std::size_t id, int kind, const Shape& shape) {
-  to.put(static_cast<std::uint16_t>(id));
-  to.put(static_cast<std::uint8_t>(kind));
-  to.put(static_cast<std::uint8_t>(shape.touched));
-  to.put_f32({shape.pose.x, shape.pose.y, shape.pose.yaw, shape.length, shape.width});
-}
-
-/// Writes the body, 0, and the shapes, whose numbers are their indices + 1; polygons apart.
-void put_bodies(FrameWriter& to, const Shape& body, const std::vector<Shape>& shapes) {
-  std::vector<Line> polygons;
-  to.begin(Block::bodies);
-  const auto count =
-      std::count_if(shapes.begin(), shapes.end(), [](const Shape& s) { return s.corners.empty(); });
-  to.put(static_cast<std::uint32_t>(1 + count));
-  put_body(to, 0, 0, body);
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (shapes[i].corners.empty())
-      put_body(to, i + 1, kind_of(shapes[i]), shapes[i]);
-    else
-      polygons.push_back(shapes[i].corners);
-  }
-  to.end();
-  put_lines(to, Block::polygons, polygons);
-}
-
-/// Encodes one control step. The control sequences are rolled out together: plan, nominal, candidates, guides,
-/// then the plan with each of its inputs changed a little.
+/// Encodes one control step. The control sequences are rolled out together: plan, nominal, candidates,
+/// guides, then the plan with each of its inputs changed a little.
 class StepEncoder {
  public:
   StepEncoder(FrameSource& source, const SolveResult& solve, const StepFacts& step)
@@ -96,8 +49,8 @@ class StepEncoder {
         points_(solve.inputs.size() / inputs_ + 1),
         now_(source.poses(step.state).front()) {
     if (!solve.inputs.empty()) roll_out();
-    frame_.collides =
-        source.measures() ? step.measures.collides : !rolled_.collisions.empty() && rolled_.collisions[0] == 0;
+    frame_.collides = source.measures() ? step.measures.collides
+                                        : !rolled_.collisions.empty() && rolled_.collisions[0] == 0;
   }
 
   Frame encode() {
@@ -106,7 +59,8 @@ class StepEncoder {
     find_bounds(shapes, figure, lines);
     put_scalars();
     to_.append(source_.blocks());
-    const Shape body{.pose = now_, .length = facts_.length, .width = facts_.width, .touched = frame_.collides};
+    const Shape body{
+        .pose = now_, .length = facts_.length, .width = facts_.width, .touched = frame_.collides};
     put_bodies(to_, body, shapes);
     put_lines(to_, Block::figure, figure);
     put_lines(to_, Block::lines, lines);
@@ -131,8 +85,7 @@ class StepEncoder {
       const std::size_t k = i * samples / count;
       candidates_.push_back(k);
       for (int row = 0; row < static_cast<int>(solve_.inputs.size()); ++row)
-        sequences_.push_back(
-            batch->at(row / batch->inputs(), row % batch->inputs(), static_cast<int>(k)));
+        sequences_.push_back(batch->at(row / batch->inputs(), row % batch->inputs(), static_cast<int>(k)));
     }
   }
 
@@ -222,7 +175,7 @@ class StepEncoder {
     put_points(to_, poses(1), reach);
     to_.end();
     put_plan();
-    to_.begin(Block::covariance);  // of the first input
+    to_.begin(Block::covariance);  // variances of the first input
     for (std::size_t i = 0; i < solve_.variances.size(); i += inputs_) to_.put(solve_.variances[i]);
     to_.end();
     put_inputs(to_, solve_, inputs_);
@@ -245,7 +198,8 @@ class StepEncoder {
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       for (std::size_t t = 0; t < terms_; ++t) {
         double sum = 0;
-        for (std::size_t k = 0; k < points_; ++k) sum += rolled_.costs[((first + i) * points_ + k) * terms_ + t];
+        for (std::size_t k = 0; k < points_; ++k)
+          sum += rolled_.costs[((first + i) * points_ + k) * terms_ + t];
         to_.put_f32(sum);
       }
       const std::size_t sample = candidates_[i];
@@ -313,11 +267,11 @@ class StepEncoder {
   const StepFacts& step_;
   std::size_t terms_, inputs_, points_;
   maps::Pose now_;
-  std::vector<float> sequences_;          ///< [sequence][step][input]
-  std::vector<std::size_t> candidates_;   ///< index in the batch of each
-  std::size_t guides_ = 0;                ///< sequences of guides, in all iterations
+  std::vector<float> sequences_;         ///< [sequence][step][input]
+  std::vector<std::size_t> candidates_;  ///< index in the batch of each
+  std::size_t guides_ = 0;               ///< sequences of guides, in all iterations
   Trajectories rolled_;
-  std::vector<maps::Pose> poses_;         ///< [sequence][point]
+  std::vector<maps::Pose> poses_;  ///< [sequence][point]
   FrameWriter to_;
   Frame frame_;
 };
@@ -346,28 +300,6 @@ std::vector<std::string> scalar_names(const SubjectFacts& facts) {
 
 Frame encode_frame(FrameSource& source, const SolveResult& solve, const StepFacts& step) {
   return StepEncoder(source, solve, step).encode();
-}
-
-std::string encode_ghost_frame(std::string_view frame) {
-  FrameWriter to;
-  to.begin(Block::ghost_frame);
-  to.append(frame);
-  to.end();
-  return to.take_blocks();
-}
-
-std::string encode_scene(const SubjectFacts& facts) {
-  if (!facts.map && facts.course.empty()) return {};
-  FrameWriter to;
-  if (facts.map) to.put_grid(*facts.map);
-  if (!facts.course.empty()) {
-    to.begin(Block::path);
-    to.put(static_cast<std::uint32_t>(facts.course.size()));
-    to.put(static_cast<std::uint32_t>(facts.is_closed));
-    for (const maps::ReferencePoint& p : facts.course) to.put_f32({p.x, p.y, p.speed});
-    to.end();
-  }
-  return to.take();
 }
 
 }  // namespace slalom::view

@@ -19,7 +19,7 @@ struct ScenarioNames {
   std::uint64_t seed = 0;
   int obstacles = 0;
   int opponents = 0;
-  std::string description{}, evaluation{};  ///< of the course; rules of the drive
+  std::string description{}, evaluation{};  ///< words about the course; rules of the drive
   double length = 0;                        ///< m, of the course
 };
 

@@ -75,9 +75,8 @@ void put_candidates(FrameWriter& to, PayloadReader candidates) {
 std::string small_frame(std::string_view frame) {
   const FrameReader reader(frame);
   FrameWriter to;
-  for (const Block kind :
-       {Block::scalars, Block::scan, Block::candidates, Block::nominal, Block::plan, Block::bodies,
-        Block::covariance, Block::ghost_frame, Block::others}) {
+  for (const Block kind : {Block::scalars, Block::scan, Block::candidates, Block::nominal, Block::plan,
+                           Block::bodies, Block::covariance, Block::ghost_frame, Block::others}) {
     const std::string_view block = reader.block(kind);
     if (block.empty()) continue;
     to.begin(kind);

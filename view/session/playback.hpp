@@ -26,7 +26,8 @@ class Playback {
   /// Executes the commands that have come, and drives one step if it is due; waits for one, for `at_most` at
   /// most.
   void turn(std::chrono::nanoseconds at_most = {}) {
-    const auto wait = is_prepared_ ? std::min<Clock::duration>(until_due(), at_most) : Clock::duration::zero();
+    const auto wait =
+        is_prepared_ ? std::min<Clock::duration>(until_due(), at_most) : Clock::duration::zero();
     if (wait > Clock::duration::zero()) server_.wait(wait);
     audience_.turn(
         [this](auto client) { join(client); },

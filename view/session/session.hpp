@@ -25,7 +25,7 @@ struct SessionOptions {
   ScenarioNames scenario;
   std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws errors for the user
   Choices choices;
-  std::string further_arguments;  ///< arguments of the equivalent command line; begins with a space
+  std::string further_arguments;   ///< arguments of the equivalent command line; begins with a space
   std::string against{};           ///< method of a ghost from the start, if any
   bool introduction = false;       ///< in slow motion until the first obstacle has been passed
   bool record_all = false;         ///< recordings and replays contain everything
@@ -94,8 +94,8 @@ class Session final : public Playback<Drives> {
   std::size_t scalars() const override { return car_scalars().size(); }
 
   SessionOptions options_;
-  vehicle::Configuration loaded_;             ///< the configuration of the scenario, without changes
-  OptionTexts loaded_texts_;                  ///< the same as text
+  vehicle::Configuration loaded_;  ///< the configuration of the scenario, without changes
+  OptionTexts loaded_texts_;       ///< the same as text
   std::shared_ptr<const SubjectFacts> facts_;
   std::shared_ptr<const std::string> scene_;  ///< message with the course
   int acted_ = 0;                             ///< ticks before the last change

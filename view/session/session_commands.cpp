@@ -100,7 +100,8 @@ bool is_among(std::initializer_list<std::string_view> names, const std::string& 
 
 void Session::obey(std::uint64_t client, const std::string& what, const Json& command) {
   if (what == "save") return save(client, field::text(command, "what"));
-  if (!obey_transport(client, what, command) && !obey_edit(what, command) && !obey_scenario(what, command) && !obey_options(what, command))
+  if (!obey_transport(client, what, command) && !obey_edit(what, command) && !obey_scenario(what, command) &&
+      !obey_options(what, command))
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command");
   // Another scenario or another rate ends the introduction.
   const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);

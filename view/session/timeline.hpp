@@ -58,7 +58,8 @@ template <class Drives>
 class TimelineOf {
  public:
   static constexpr std::size_t max_frame_bytes = 128u << 20;  ///< limit of all stored frames
-  static constexpr std::size_t max_copy_bytes = 64u << 20;    ///< limit of all copies, if there are more than three
+  static constexpr std::size_t max_copy_bytes = 64u
+                                                << 20;  ///< limit of all copies, if there are more than three
 
   /// An action of a user between two ticks.
   using Action = std::function<void(Drives&)>;
@@ -127,7 +128,8 @@ class TimelineOf {
     return sum;
   }
 
-  /// Returns the message with the figures of past ticks, of as many as a message holds and as are still known.
+  /// Returns the message with the figures of past ticks, of as many as a message holds and as are still
+  /// known.
   std::string past(int from, int to) const {
     FrameWriter past;
     past.begin(Block::past);
@@ -138,8 +140,8 @@ class TimelineOf {
     return past.take();
   }
 
-  /// Brings drives nearer to the beginning of a stored tick: to the copy before it if that is nearer, else one
-  /// tick further. `drives` may be empty at first. Returns whether they are as they were then, with the
+  /// Brings drives nearer to the beginning of a stored tick: to the copy before it if that is nearer, else
+  /// one tick further. `drives` may be empty at first. Returns whether they are as they were then, with the
   /// actions before it.
   bool approach(std::optional<Drives>& drives, int tick) const {
     if (drives && drives->ticks() == tick) return true;

@@ -65,11 +65,11 @@ struct SubjectFacts {
   std::optional<maps::OccupancyGrid> map{};              ///< drawn under the scene
   std::vector<std::string> statuses{};  ///< names of the values of FrameSource::status, if it has its own
 
-  // What only a car on a course has.
-  std::vector<std::string> figures{};        ///< names of FrameSource::figures, which replace states and inputs
-  double front = 0, rear = 0;                ///< m from the position to the axles; 0: it has no wheels
-  int speed = -1, steering = -1;             ///< indices of a state's speed (m/s) and steering (rad); -1: none
-  std::optional<Scanner> scanner{};          ///< of the scans in FrameSource::blocks
+  // Facts that only a car on a course has.
+  std::vector<std::string> figures{};  ///< names of FrameSource::figures, which replace states and inputs
+  double front = 0, rear = 0;          ///< m from the position to the axles; 0: it has no wheels
+  int speed = -1, steering = -1;       ///< indices of a state's speed (m/s) and steering (rad); -1: none
+  std::optional<Scanner> scanner{};    ///< scanner of the scans in FrameSource::blocks
   std::vector<maps::ReferencePoint> course{};  ///< the line to follow, with the speeds on it
   bool is_closed = false;                      ///< whether the end of the course is its beginning
 };
@@ -113,7 +113,7 @@ class FrameSource {
 
   virtual std::vector<double> figures() { return {}; }                 ///< values of SubjectFacts::figures
   virtual std::string blocks() { return {}; }                          ///< further blocks of the message
-  virtual std::optional<StepMeasures> measures() const { return {}; }  ///< of the last plan
+  virtual std::optional<StepMeasures> measures() const { return {}; }  ///< figures of the last plan
 };
 
 /// A controller with its problem, as the live view drives it. `Controller` and the controllers of Python have
