@@ -186,7 +186,7 @@ SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::Vehic
 DrivenPlanner::DrivenPlanner(const vehicle::Configuration& configuration)
     : planner_([&] {
         auto model = vehicle::make_vehicle_model(configuration.vehicle);
-        estimates_ = model->traits().friction > 0;
+        estimates_ = model->traits().tyres.friction > 0;
         return vehicle::Planner(configuration.planner, std::move(model), course_,
                                 make_solver(configuration, "svg_mppi", 1));
       }()) {

@@ -94,7 +94,7 @@ ReferenceWorkload::ReferenceWorkload()
 std::unique_ptr<vehicle::VehicleModel> ReferenceWorkload::model(const vehicle::VehicleOptions& options,
                                                                 simd::Target target) const {
   auto made = vehicle::make_vehicle_model(options, target);
-  const bool discs = made->traits().obstacle_map == vehicle::ObstacleMap::clearance;
+  const bool discs = made->traits().obstacles.map == vehicle::ObstacleMap::clearance;
   made->set_maps({field_.view(), discs ? clearance_map_.view() : cost_map_.view(), robot_});
   made->set_start({{start_.x, start_.y, start_.yaw}, start_.speed, start_.steer}, options.reference_speed);
   return made;

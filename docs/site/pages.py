@@ -15,8 +15,6 @@ DEMO = """<iframe class="demo" src="demo/index.html" title="A robot among discs,
 
 `svg_mppi` drives a robot among discs, and your browser solves each step. Drag a disc or the robot, also while the drive is
 paused: the plan follows. Then choose `mppi`. <a href="demo/index.html">The demonstration with charts and options</a>
-
-![The plan of mppi hits the disc, that of svg_mppi passes it](docs/pictures/modes.png)
 """
 
 

@@ -177,7 +177,8 @@ void LapDrive::State::conclude() {
   result.timeout = !result.finished && !result.cancelled;
   result.collisions = rules->collisions(log);
   result.collided_bodies = log.collisions();
-  result.wall = log.hit_wall();
+  result.success = result.finished && result.collisions == 0;
+  result.hit_wall = log.hit_wall();
   if (driver.hardware()) result.localisation = driver.hardware()->record();
   if (driver.tracking()) result.tracking = driver.tracking()->record();
   if (overtaking) result.overtaking = overtaking->record(result.timeout);

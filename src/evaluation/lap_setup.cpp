@@ -141,7 +141,7 @@ vehicle::Planner make_planner(const LapSetup& setup) {
   vehicle::PlannerOptions options = configuration.planner;
   // A planner that estimates the car's motion must know the time between two updates. The paper's program
   // does not: its planner assumes 0.025 s where its simulator takes steps of 0.01 s.
-  if (model->traits().friction > 0) options.control_period = setup.control_period();
+  if (model->traits().tyres.friction > 0) options.control_period = setup.control_period();
   std::vector<maps::ReferencePoint> path = path_of(setup);
   for (maps::ReferencePoint& point : path) point.speed *= setup.driver.speed_share;
   return {options, std::move(model), path,
@@ -159,7 +159,7 @@ LapSetup setup_of_opponent(const LapSetup& setup, int index) {
   const double share = own.driver.speed_share = setup.settings.opponent_speed[index];
   vehicle::Configuration& configuration = own.driver.configuration;
   configuration.planner.control_period = setup.driver.configuration.planner.control_period;
-  if (vehicle::make_vehicle_model(configuration.vehicle)->traits().seeks_lap_time) {
+  if (vehicle::make_vehicle_model(configuration.vehicle)->traits().tyres.seeks_lap_time) {
     auto& speed_share = configuration.vehicle.own_of<vehicle::SingleTrackOptions>().speed_share;
     speed_share *= share;
     if (speed_share < least_speed_share)

@@ -16,58 +16,16 @@ namespace slalom::evaluation {
 
 namespace {
 
-/// Visits every column after `lap` with its name and field, in order, for the header, writing and reading.
+/// Calls `visit(field, Figure)` for every column after `lap`, in order.
 template <class Row, class Visit>
-void visit_columns(Row& r, const std::vector<Experiment>& experiments, Visit&& visit) {
-  visit("seed", r.seed);
-  visit("success", r.success);
-  visit("collision", r.collisions);
-  visit("timeout", r.timeout);
-  visit("state_cost", r.state_cost);
-  visit("collision_cost", r.collision_cost);
-  visit("input_error", r.input_error);
-  visit("mean_calculation_time", r.mean_calculation_time);
-  visit("max_calculation_time", r.max_calculation_time);
-  visit("min_calculation_time", r.min_calculation_time);
-  visit("lap_time", r.time);
-  visit("finished", r.finished);
-  visit("steps", r.steps);
-  visit("contacts", r.collided_bodies);
-  visit("wall", r.wall);
-  visit("impassable", r.impassable);
-  visit("minimum_clearance", r.min_clearance);
-  visit("mean_speed", r.mean_speed);
-  visit("mean_path_distance", r.mean_path_distance);
-  visit("max_path_distance", r.max_path_distance);
-  visit("mean_variance", r.mean_variance);
-  visit("mean_effective_samples", r.mean_effective_samples);
-  visit("blocked_steps", r.blocked_steps);
-  visit("degenerate_steps", r.degenerate_steps);
-  visit("contact_points", r.contact_points);
-  visit("solve_p50", r.solve_p50);
-  visit("solve_p99", r.solve_p99);
-  visit("wall_time", r.wall_time);
-  if (std::any_of(experiments.begin(), experiments.end(), [](const Experiment& e) { return e.tracks(); })) {
-    visit("tracking_in_view", r.tracking.in_view);
-    visit("tracking_detected", r.tracking.detected);
-    visit("tracking_long_in_view", r.tracking.long_in_view);
-    visit("tracking_long_detected", r.tracking.long_detected);
-    visit("tracking_false", r.tracking.false_objects);
-    visit("tracking_position_error", r.tracking.position_error);
-    visit("tracking_speed_error", r.tracking.speed_error);
-    visit("tracking_yaw_error", r.tracking.yaw_error);
-    visit("wall_tracking_p99", r.tracking.update_p99);
-  }
-  if (std::none_of(experiments.begin(), experiments.end(),
-                   [](const Experiment& e) { return e.has_opponents(); }))
-    return;
-  visit("opponents_met", r.overtaking.met);
-  visit("overtaken", r.overtaking.overtaken);
-  visit("not_overtaken", r.overtaking.not_overtaken);
-  visit("overtaking_time", r.overtaking.duration);
-  visit("opponent_contacts", r.overtaking.contacts);
-  visit("contacts_caused", r.overtaking.caused);
-  visit("side_changes", r.overtaking.side_changes);
+void visit_columns(Row& row, const std::vector<Experiment>& experiments, Visit&& visit) {
+  const auto any = [&](bool (Experiment::*has)() const) {
+    return std::any_of(experiments.begin(), experiments.end(),
+                       [&](const Experiment& e) { return (e.*has)(); });
+  };
+  visit_row(row, visit);
+  if (any(&Experiment::tracks)) visit_figures(row.tracking, visit);
+  if (any(&Experiment::has_opponents)) visit_figures(row.overtaking, visit);
 }
 
 constexpr const char* checksum_column = "checksum";
@@ -102,26 +60,34 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-template <class Field>
-void parse_cell(const std::string& text, const char* column, Field& field) {
-  if constexpr (std::is_same_v<Field, std::string>) {
-    field = text;
-  } else if constexpr (std::is_same_v<Field, bool>) {
-    if (text != "0" && text != "1")
-      throw std::invalid_argument(std::string(column) + ": '" + text + "' must be 0 or 1");
-    field = text == "1";
+template <class Value>
+std::string cell_of(const Value& value) {
+  if constexpr (std::is_same_v<Value, std::string>) {
+    return value;
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return value ? "1" : "0";
   } else {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), field);
-    if (error != std::errc{} || end != text.data() + text.size() || text.empty()) {
-      throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a number");
-    }
-    if constexpr (std::is_floating_point_v<Field>) {
+    return text_of(value);
+  }
+}
+
+template <class Value>
+void parse_cell(const std::string& text, const std::string& column, Value& value) {
+  if constexpr (std::is_same_v<Value, std::string>) {
+    value = text;
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    if (text != "0" && text != "1") throw std::invalid_argument(column + ": '" + text + "' must be 0 or 1");
+    value = text == "1";
+  } else {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || text.empty())
+      throw std::invalid_argument(column + ": '" + text + "' must be a number");
+    if constexpr (std::is_floating_point_v<Value>) {
       // Without a wall the clearance is infinite. All other values must be finite, since their means are
       // computed.
-      const bool may_be_infinite =
-          std::string_view(column) == "minimum_clearance" && std::isinf(field) && field > 0;
-      if (!std::isfinite(field) && !may_be_infinite)
-        throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a finite number");
+      const bool may_be_infinite = column == "min_clearance" && std::isinf(value) && value > 0;
+      if (!std::isfinite(value) && !may_be_infinite)
+        throw std::invalid_argument(column + ": '" + text + "' must be a finite number");
     }
   }
 }
@@ -175,14 +141,11 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   static_cast<LapFigures&>(r) = result;
   r.experiment = experiment;
   r.lap = lap;
-  r.success = result.finished && result.collisions == 0;
   auto times = result.solve_ms;
   std::sort(times.begin(), times.end());
   if (!times.empty()) {
-    r.mean_calculation_time =
-        std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
-    r.min_calculation_time = times.front();
-    r.max_calculation_time = times.back();
+    r.solve_mean = std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
+    r.solve_max = times.back();
     r.solve_p50 = percentile(times, 0.5);
     r.solve_p99 = percentile(times, 0.99);
   }
@@ -191,9 +154,9 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
       result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::solver_degenerate)];
   for (const Collision& collision : result.first_collisions) {
     char point[64];
-    std::snprintf(point, sizeof point, "%s%.3f:%.3f", r.contact_points.empty() ? "" : " ", collision.pose.x,
+    std::snprintf(point, sizeof point, "%s%.3f:%.3f", r.collision_points.empty() ? "" : " ", collision.pose.x,
                   collision.pose.y);
-    r.contact_points += point;
+    r.collision_points += point;
   }
   r.wall_time = wall_time;
   r.tracking = result.tracking;
@@ -203,7 +166,7 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
 }
 
 bool began_in_contact(const LapRow& row, const maps::Pose& start) {
-  const char *const begin = row.contact_points.data(), *const end = begin + row.contact_points.size();
+  const char *const begin = row.collision_points.data(), *const end = begin + row.collision_points.size();
   maps::Point first;
   const auto x = std::from_chars(begin, end, first.x);
   if (x.ec != std::errc() || x.ptr == end || *x.ptr != ':') return false;
@@ -214,25 +177,28 @@ bool began_in_contact(const LapRow& row, const maps::Pose& start) {
 std::string csv_header(const std::vector<Experiment>& experiments) {
   std::string header = "method,scenario,set,lap";
   const LapRow row;
-  visit_columns(row, experiments, [&](const char* name, const auto&) { header.append(",").append(name); });
+  visit_columns(row, experiments,
+                [&](const auto&, const Figure& figure) { header.append(",").append(figure.name); });
   return header;
 }
 
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments) {
   const Experiment& e = experiments.at(static_cast<std::size_t>(row.experiment));
   std::string line = e.method + "," + e.scenario + "," + e.set_text() + "," + std::to_string(row.lap);
-  visit_columns(row, experiments, [&](const char*, const auto& field) {
-    using Field = std::remove_cvref_t<decltype(field)>;
-    line += ',';
-    if constexpr (std::is_same_v<Field, std::string>) {
-      line += field;
-    } else if constexpr (std::is_same_v<Field, bool>) {
-      line += field ? '1' : '0';
-    } else {
-      line += text_of(field);
-    }
-  });
+  visit_columns(row, experiments,
+                [&](const auto& value, const Figure&) { line.append(",").append(cell_of(value)); });
   return line;
+}
+
+bool same_lap(const LapRow& a, const LapRow& b, const std::vector<Experiment>& experiments) {
+  const auto repeatable = [&](const LapRow& row) {
+    std::string cells;
+    visit_columns(row, experiments, [&](const auto& value, const Figure& figure) {
+      if (!figure.wall_clock) cells.append(cell_of(value)).append(",");
+    });
+    return cells;
+  };
+  return repeatable(a) == repeatable(b);
 }
 
 std::string checked_line(const std::string& line) {
@@ -249,7 +215,7 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
   const auto cells = split(line);
   LapRow row;
   std::size_t columns = identity_columns;
-  visit_columns(row, experiments, [&](const char*, auto&) { ++columns; });
+  visit_columns(row, experiments, [&](auto&, const Figure&) { ++columns; });
   if (cells.size() != columns) {
     throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, must have " +
                                 std::to_string(columns));
@@ -265,7 +231,7 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
                                 "]");
   std::size_t i = identity_columns;
   visit_columns(row, experiments,
-                [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
+                [&](auto& value, const Figure& figure) { parse_cell(cells[i++], figure.name, value); });
   return row;
 }
 
@@ -306,7 +272,10 @@ std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vect
     const std::string line = text.substr(begin, end - begin);
     begin = end + 1;
     try {
-      if (number == 1 && line != header) throw std::invalid_argument("the columns must be " + header);
+      if (number == 1 && line != header)
+        throw std::invalid_argument("the columns must be " + header +
+                                    ". A folder of another version of the program is read by that version "
+                                    "alone: drive the laps again");
       if (number == 1) continue;
       rows.push_back(parse_checked_line(line, experiments, seed0));
       if (!seen.insert({rows.back().experiment, rows.back().lap}).second)

@@ -6,8 +6,6 @@
 
 namespace slalom::evaluation {
 
-namespace {
-
 std::vector<const LapRow*> rows_of(const std::vector<LapRow>& rows, int experiment) {
   std::vector<const LapRow*> found;
   for (const LapRow& row : rows) {
@@ -17,12 +15,22 @@ std::vector<const LapRow*> rows_of(const std::vector<LapRow>& rows, int experime
   return found;
 }
 
+namespace {
+
 template <class Value>
 std::vector<double> column(const std::vector<const LapRow*>& rows, Value&& value) {
   std::vector<double> values;
   values.reserve(rows.size());
   for (const LapRow* row : rows) values.push_back(static_cast<double>(value(*row)));
   return values;
+}
+
+/// The times of finished laps, s.
+std::vector<double> finish_times(const std::vector<const LapRow*>& rows) {
+  std::vector<double> times;
+  for (const LapRow* row : rows)
+    if (row->finished) times.push_back(row->time);
+  return times;
 }
 
 TrackingFigures summarise_tracking(const std::vector<const LapRow*>& rows) {
@@ -67,25 +75,25 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
   r.laps = static_cast<int>(rows.size());
   if (rows.empty()) return r;
   int successes = 0;
-  std::vector<double> lap_times;
   for (const LapRow* row : rows) {
     r.finished += row->finished;
     r.timeouts += row->timeout;
     r.collisions += row->collisions;
     r.impassable += row->impassable;
     successes += row->success;
-    if (row->finished) lap_times.push_back(row->time);
-    r.solve_ms_max = std::max(r.solve_ms_max, row->max_calculation_time);
+    r.solve_max = std::max(r.solve_max, row->solve_max);
   }
   const auto ms = column(rows, [](const LapRow& row) { return row.mean_sequence_cost(); });
   r.ms_mean = mean(ms);
   r.ms_ci = bootstrap_mean(ms);
   r.state_cost_mean = mean(column(rows, [](const LapRow& row) { return row.state_cost; }));
   r.collision_cost_mean = mean(column(rows, [](const LapRow& row) { return row.collision_cost; }));
-  r.solve_ms_mean = mean(column(rows, [](const LapRow& row) { return row.mean_calculation_time; }));
-  r.solve_ms_p50 = mean(column(rows, [](const LapRow& row) { return row.solve_p50; }));
-  r.solve_ms_p99 = mean(column(rows, [](const LapRow& row) { return row.solve_p99; }));
-  r.lap_time_mean = mean(lap_times);
+  r.solve_mean = mean(column(rows, [](const LapRow& row) { return row.solve_mean; }));
+  r.solve_p50 = mean(column(rows, [](const LapRow& row) { return row.solve_p50; }));
+  r.solve_p99 = mean(column(rows, [](const LapRow& row) { return row.solve_p99; }));
+  const std::vector<double> times = finish_times(rows);
+  r.time_mean = mean(times);
+  r.time_ci = bootstrap_mean(times);
   r.success_rate = static_cast<double>(successes) / r.laps;
   r.success_rate_ci = wilson_interval(successes, r.laps);
   if (experiment.obstacles > 0) {
@@ -101,29 +109,61 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
   return r;
 }
 
-PairedComparison compare(const std::vector<const LapRow*>& a, const std::vector<const LapRow*>& b,
-                         int index_a, int index_b) {
-  PairedComparison c{.a = index_a, .b = index_b};
+Comparison compare_paired(const std::vector<const LapRow*>& a, const std::vector<const LapRow*>& b) {
+  Comparison c;
   std::map<int, const LapRow*> by_lap;
   for (const LapRow* row : b) by_lap[row->lap] = row;
-  std::vector<double> ms, collisions;
+  std::vector<double> ms, times, collisions;
   for (const LapRow* row : a) {
-    const auto other = by_lap.find(row->lap);
-    if (other == by_lap.end()) continue;
-    ms.push_back(row->mean_sequence_cost() - other->second->mean_sequence_cost());
-    collisions.push_back(row->collisions - other->second->collisions);
-    c.only_a_succeeds += row->success && !other->second->success;
-    c.only_b_succeeds += !row->success && other->second->success;
+    const auto found = by_lap.find(row->lap);
+    if (found == by_lap.end()) continue;
+    const LapRow& other = *found->second;
+    ms.push_back(row->mean_sequence_cost() - other.mean_sequence_cost());
+    if (row->finished && other.finished) times.push_back(row->time - other.time);
+    collisions.push_back(row->collisions - other.collisions);
+    c.only_a_succeeds += row->success && !other.success;
+    c.only_b_succeeds += !row->success && other.success;
   }
   c.laps = static_cast<int>(ms.size());
   c.ms_difference = mean(ms);
   c.ms_p = wilcoxon_p(ms);
+  c.time_difference = mean(times);
+  c.time_p = wilcoxon_p(times);
   c.success_p = mcnemar_p(c.only_a_succeeds, c.only_b_succeeds);
-  c.collision_p = wilcoxon_p(collisions);
+  c.collisions_p = wilcoxon_p(collisions);
   return c;
 }
 
 }  // namespace
+
+Comparison compare_laps(const std::vector<const LapRow*>& a, std::int64_t obstacles_a,
+                        const std::vector<const LapRow*>& b, std::int64_t obstacles_b, bool paired) {
+  if (paired) return compare_paired(a, b);
+  const auto costs = [](const auto& rows) {
+    return column(rows, [](const LapRow& row) { return row.mean_sequence_cost(); });
+  };
+  const auto sum = [](const auto& rows, auto value) {
+    std::int64_t total = 0;
+    for (const LapRow* row : rows) total += value(*row);
+    return total;
+  };
+  const auto successes = [&](const auto& rows) {
+    return sum(rows, [](const LapRow& row) { return row.success; });
+  };
+  const auto collisions = [&](const auto& rows) {
+    return sum(rows, [](const LapRow& row) { return row.collisions; });
+  };
+  const std::vector<double> costs_a = costs(a), costs_b = costs(b), times_a = finish_times(a),
+                            times_b = finish_times(b);
+  return {.paired = false,
+          .laps = static_cast<int>(a.size() + b.size()),
+          .ms_difference = mean(costs_a) - mean(costs_b),
+          .ms_p = bootstrap_difference_p(costs_a, costs_b),
+          .time_difference = mean(times_a) - mean(times_b),
+          .time_p = bootstrap_difference_p(times_a, times_b),
+          .success_p = fisher_p(successes(a), std::ssize(a), successes(b), std::ssize(b)),
+          .collisions_p = fisher_p(collisions(a), obstacles_a, collisions(b), obstacles_b)};
+}
 
 std::vector<ExperimentResult> summarise(const std::vector<LapRow>& rows,
                                         const std::vector<Experiment>& experiments) {
@@ -143,7 +183,7 @@ std::vector<PairedComparison> compare_pairs(const std::vector<LapRow>& rows,
       const Experiment &ea = experiments[static_cast<std::size_t>(a)],
                        &eb = experiments[static_cast<std::size_t>(b)];
       if (ea.scenario != eb.scenario || ea.obstacles != eb.obstacles) continue;
-      comparisons.push_back(compare(rows_of(rows, a), rows_of(rows, b), a, b));
+      comparisons.push_back({compare_paired(rows_of(rows, a), rows_of(rows, b)), a, b});
     }
   }
   return comparisons;

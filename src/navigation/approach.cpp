@@ -12,7 +12,7 @@ namespace {
 
 constexpr double wrong_way = std::numbers::pi / 3;  // rad from the path, from which the robot first turns
 constexpr double longest_change = 3;                // m of path that a manoeuvre may replace
-constexpr std::size_t most_goals = 30;
+constexpr std::size_t most_goals = 30;              // poses, as goals of a search
 
 /// The length of a body, m.
 double length_of(const Footprint& footprint) {

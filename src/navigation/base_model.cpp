@@ -75,10 +75,10 @@ class NavigationEvaluator final : public BatchEvaluator {
         Input<float, input_count> u;
         for (int i = 0; i < input_count; ++i) u[i] = batch.at(k, i, first + j);
         before[j] = problem().driven(before[j], u);
-        const Motion<float> motion = problem().motion(before[j]);
-        forward[j] = motion.forward;
-        left[j] = motion.left;
-        turn[j] = motion.turn;
+        const VelocityOf<float> velocity = problem().velocity(before[j]);
+        forward[j] = velocity.forward;
+        left[j] = velocity.left;
+        turn[j] = velocity.turn;
       }
       cost_({k, used(x), used(y), used(yaw), used(forward), used(left), used(turn)}, used(sums));
       for (int s = 0; s < count; ++s) {
@@ -121,8 +121,7 @@ class BaseModelOf final : public BaseModel {
     const auto plan =
         controller_.solve({pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, before},
                           {.elapsed = elapsed});
-    const Motion<double> motion = controller_.problem().motion(plan.states[1].before);
-    command_ = {motion.forward, motion.left, motion.turn};
+    command_ = controller_.problem().velocity(plan.states[1].before);
     for (std::size_t i = 0; i < plan_.size(); ++i)
       plan_[i] = {plan.states[i].x + maps.origin.x, plan.states[i].y + maps.origin.y, plan.states[i].yaw};
   }
@@ -136,9 +135,9 @@ class BaseModelOf final : public BaseModel {
     for (std::size_t at = 0; at < all.states.size(); at += size) {
       State x;
       std::memcpy(&x, &all.states[at], sizeof x);
-      const Motion<double> motion = controller_.problem().motion(x.before);
-      states.insert(states.end(),
-                    {x.x + origin_.x, x.y + origin_.y, x.yaw, motion.forward, motion.left, motion.turn});
+      const Velocity velocity = controller_.problem().velocity(x.before);
+      states.insert(states.end(), {x.x + origin_.x, x.y + origin_.y, x.yaw, velocity.forward, velocity.left,
+                                   velocity.turn});
     }
     all.states = std::move(states);
     return all;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
@@ -12,10 +13,7 @@
 namespace slalom::navigation {
 namespace {
 
-/// Half of the diagonal of a cell, in edges of a cell.
-constexpr double half_diagonal = 0.70710678118654752;
-
-constexpr float most_expensive = 1e6F;
+constexpr float most_expensive = 1e6F;  // price of a cell, at most
 
 maps::GridGeometry checked(int width, int height, double resolution) {
   slalom::detail::check("costmap", {"width", "cells", "", 3, 20000}, width);
@@ -130,7 +128,7 @@ bool Costmap::touches(const Footprint& footprint, const maps::Pose& from,
 bool Costmap::collides(const Footprint& footprint, const maps::Pose& from,
                        const maps::Pose& to) const noexcept {
   if (!maps::is_plausible(from) || !maps::is_plausible(to)) return true;
-  const double slack = 2 * half_diagonal * geometry_.resolution;  // error of the positions in both cells
+  const double slack = std::numbers::sqrt2 * geometry_.resolution;  // error of the positions in both cells
   const double turn = maps::wrap_angle(to.yaw - from.yaw), way = std::hypot(to.x - from.x, to.y - from.y);
   const maps::Point middle{0.5 * (from.x + to.x), 0.5 * (from.y + to.y)};
   if (distance(middle.x, middle.y) >= footprint.circumscribed_radius() + 0.5 * way + slack) return false;

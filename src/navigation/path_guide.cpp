@@ -7,12 +7,11 @@
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr int max_points = 240;       // points of the window
-constexpr double behind = 0.3;        // m of the window behind the robot
-constexpr double margin = 0.4;        // m of it beyond the reach of plans
-constexpr double least_way = 1e-3;    // m between poses, below which there is no direction
-constexpr double aligned = 0.5;       // cosine of the largest angle between yaws that count and the path
-constexpr double cusp_cosine = -0.5;  // cosine of the change of direction at a cusp, at most
+constexpr int max_points = 240;     // points of the window
+constexpr double behind = 0.3;      // m of the window behind the robot
+constexpr double margin = 0.4;      // m of it beyond the reach of plans
+constexpr double least_way = 1e-3;  // m between poses, below which there is no direction
+constexpr double aligned = 0.5;     // cosine of the largest angle between yaws that count and the path
 
 bool is_way(const maps::Pose& a, const maps::Pose& b) {
   return std::hypot(b.x - a.x, b.y - a.y) > least_way;
@@ -52,7 +51,7 @@ void set_yaws(std::span<maps::Pose> path, const BaseOptions& base) noexcept {
       const double along = direction(path[i], path[i + 1]);
       if (given) {
         backward = agreement(path, i) < 0;
-      } else if (reverses_at_cusps && begun && std::cos(along - before) < cusp_cosine) {
+      } else if (reverses_at_cusps && begun && std::cos(along - before) < -aligned) {
         backward = !backward;
       }
       before = along;

@@ -41,7 +41,7 @@ SolverOptions with_scaled_variances(const ControlledProblem& problem, SolverOpti
   bool has_unit = false;
   for (int i = 0; i < inputs; ++i) has_unit = has_unit || problem.unit_variance(i) > 0;
   if (!has_unit) return options;
-  options.for_each([&](const SolverOptions::Field& field, const Declaration& declaration) {
+  options.for_each([&](const SolverOptions::OptionPointer& field, const Declaration& declaration) {
     PerInput* const* const option = std::get_if<PerInput*>(&field);
     if (!option || std::string_view(declaration.unit) != "input^2" || !(*option)->fits(inputs)) return;
     std::vector<double> scaled;

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace slalom::tracking {
 namespace {
 
-constexpr double right_angle = 0.5 * std::numbers::pi;
-constexpr int coarse_angles = 30, fine_angles = 6;
-constexpr std::size_t max_fitted = 60;  // readings of a fit, evenly taken
+constexpr int coarse_angles = 30, fine_angles = 6;  // parts of a right angle, and of one of them
+constexpr std::size_t max_fitted = 60;              // readings of a fit, evenly taken
 
 struct Range {
   double low, high;

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <numbers>
 #include <span>
 
 #include "tracking/readings.hpp"
 
 namespace slalom::tracking {
+
+constexpr double right_angle = 0.5 * std::numbers::pi;  ///< rad
 
 /// The rectangle that fits the readings of an object best.
 struct BoxFit {

@@ -31,9 +31,9 @@ class FreeSpace {
     double stamp = 0;
     Readings scan;
   };
-  static constexpr int scans = 7;             ///< scans that are kept
-  static constexpr double spacing = 0.1;      ///< s between them
-  static constexpr int compared[2] = {1, 5};  ///< scans back from the last one that was kept
+  static constexpr double spacing = 0.1;         ///< s between scans that are kept
+  static constexpr int compared[2] = {1, 5};     ///< scans back from the last one that was kept
+  static constexpr int scans = compared[1] + 1;  ///< scans that are kept
   const Past* past(int back) const noexcept;
 
   std::vector<Past> past_;

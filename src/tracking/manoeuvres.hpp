@@ -12,9 +12,10 @@ namespace slalom::tracking {
 /// A manoeuvre of an object. The first two are also those of an object without a course; the last one is
 /// possible only where a car came by before.
 enum class Manoeuvre { keep, brake, follow, left, right, repeat };
-inline constexpr std::size_t manoeuvres = 6, manoeuvres_without_course = 2;
+inline constexpr std::size_t manoeuvres_without_course = 2;  ///< the first ones
 /// Weights of the manoeuvres before an object is known. They are divided by their sum.
-inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0.08, 0.08, 0.4};
+inline constexpr std::array usual_weights{0.4, 0.08, 0.36, 0.08, 0.08, 0.4};
+inline constexpr std::size_t manoeuvres = usual_weights.size();
 
 /// The motion of an object from which hypotheses are drawn.
 struct Motion {

@@ -9,9 +9,9 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr int aligned_readings = 120, max_steps = 6;
-constexpr double outlier = 0.15;  // m, distance at which a reading has a quarter of its weight
-constexpr double min_position_deviation = 1e-3, min_yaw_deviation = 1e-4;
+constexpr int aligned_readings = 120, max_steps = 6;  // readings, and steps of an alignment
+constexpr double outlier = 0.15;          // m, distance at which a reading has a quarter of its weight
+constexpr double least_deviation = 1e-4;  // m and rad, of the pose
 
 /// Solves A x = b for a symmetric positive definite matrix by its Cholesky decomposition; false if it is not.
 bool solve(double (&a)[3][3], double (&b)[3]) noexcept {
@@ -88,8 +88,8 @@ maps::Pose MapBackground::align(const Readings& readings, const maps::Pose& sens
   const std::size_t every = std::max<std::size_t>(1, all.size() / aligned_readings);
   // Errors of the map count as those of the readings.
   const double noise = range_deviation * range_deviation + resolution_ * resolution_ / 4;
-  const double position = std::max(position_deviation, min_position_deviation),
-               yaw = std::max(yaw_deviation, min_yaw_deviation);
+  const double position = std::max(position_deviation, least_deviation),
+               yaw = std::max(yaw_deviation, least_deviation);
   const double prior[3] = {1 / (position * position), 1 / (position * position), 1 / (yaw * yaw)};
   double moved[3] = {};
   for (int step = 0; step < max_steps; ++step) {

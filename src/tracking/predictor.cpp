@@ -19,18 +19,17 @@ constexpr double arc_error = 0.15, offset_error = 0.06, speed_error = 0.5;  // m
 constexpr double rise_memory = 0.15;                        // s, time constant of the rise of speed ratios
 constexpr double clear_rise = 0.4, clear_acceleration = 2;  // 1/s, m/s^2, of a car that gets up to speed
 constexpr double longest_gap = 10;  // s between comparisons, after which an object counts as unknown
-constexpr double fastest = 200, largest = 1e3;            // m/s, m: of objects
-constexpr double fastest_turn = 1e3, max_variance = 1e6;  // rad/s; of any component
+constexpr double largest = 1e3;     // m, m/s, rad/s: largest deviation, size, speed and yaw rate of an object
 
 using Weights = std::array<double, manoeuvres>;
 
 /// Whether an object is one that a tracker can report.
 bool plausible(const TrackedObject& object) noexcept {
-  bool holds = maps::is_plausible(object.pose) && std::abs(object.speed) <= fastest &&
-               std::abs(object.yaw_rate) <= fastest_turn && object.length >= 0 && object.length <= largest &&
+  bool holds = maps::is_plausible(object.pose) && std::abs(object.speed) <= largest &&
+               std::abs(object.yaw_rate) <= largest && object.length >= 0 && object.length <= largest &&
                object.width >= 0 && object.width <= largest;
   for (const auto& row : object.covariance)
-    for (const double value : row) holds = holds && std::abs(value) <= max_variance;
+    for (const double value : row) holds = holds && std::abs(value) <= square(largest);
   return holds;
 }
 

@@ -9,7 +9,6 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr double right_angle = 0.5 * std::numbers::pi;
 constexpr double new_position_deviation = 0.08;  // m, of a box whose yaw is not known
 constexpr double yaw_floor = 0.04;               // rad, of measured yaws
 constexpr double slip = 0.05;                    // rad, from the yaw to the direction of travel
@@ -18,7 +17,6 @@ constexpr double known_speed = 4;                // standard deviations of a spe
 constexpr double known_rest = 0.6;  // m/s, deviation of the speed of an object that stands or crawls
 constexpr double unknown_yaw_deviation = 0.4;  // rad
 constexpr double unknown_turn_deviation = 2;   // rad/s
-constexpr double reversing = -0.5;             // m/s, below which an object is turned around
 constexpr double round_deviation = 0.03;       // m, of the middle of a round object, for its limbs
 constexpr double min_walk = 0.1;               // m/s, from which the velocity of a round object gives its yaw
 
@@ -148,7 +146,7 @@ void Tracked::correct(const TrackerOptions& options, const Readings& scan, std::
   correct_middle(state_, axes, x[2], 0);
   correct_size(axes, options.range_deviation);
   x[3] = std::clamp(x[3], -options.max_speed, options.max_speed);
-  if (x[3] < reversing) {
+  if (x[3] < -0.5 * min_travel) {
     x[2] += std::numbers::pi;
     x[3] = -x[3];
     for (int i = 0; i < 5; ++i) {

@@ -286,7 +286,7 @@ class Drive {
   SimulatedCar car_{course_, 1, 3};
   TransformHistory map_to_odometry_, odometry_to_base_;
   Fault fault_;
-  std::optional<KnownPlace> kept_;  ///< by the localiser
+  std::optional<KnownPose> kept_;  ///< by the localiser
   long ticks_ = 0, allocations_ = 0;
   PlannerCore planner_{
       planner_settings(), clocks_, transforms(),

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "logic/known_place.hpp"
+#include "logic/known_pose.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace slalom::nodes {
@@ -44,28 +44,28 @@ TEST(StampTest, SurvivesTheWayThroughSeconds) {
   EXPECT_EQ(stamp_of(-0.5), -500'000'000);
 }
 
-TEST(KnownPlaceTest, MovesAsTheOdometryDoes) {
-  expect_pose(place_now({{10, 20, 1 + quarter}, {3, 4, 1}}, {4, 4, 1.5}), 10, 21, 1.5 + quarter);
+TEST(KnownPoseTest, MovesAsTheOdometryDoes) {
+  expect_pose(pose_now({{10, 20, 1 + quarter}, {3, 4, 1}}, {4, 4, 1.5}), 10, 21, 1.5 + quarter);
   // The odometry has started again.
-  expect_pose(place_now({{10, 20, 1}, {30, 40, 2}}, {0.1, 0, 0}), 10, 20, 1);
+  expect_pose(pose_now({{10, 20, 1}, {30, 40, 2}}, {0.1, 0, 0}), 10, 20, 1);
 }
 
-TEST(KnownPlaceTest, IsReadFromAFileWhileItIsYoung) {
+TEST(KnownPoseTest, IsReadFromAFileWhileItIsYoung) {
   const testing::ScopedFolder folder;
   const std::string file = folder.path() / "place";
-  EXPECT_FALSE(read_place(file, 1000)) << "there is none yet";
-  ASSERT_TRUE(write_place(file, {{1.25, -3.5, 0.1}, {7, 8, 0.9}}, 1000));
-  const auto place = read_place(file, 1009);
+  EXPECT_FALSE(read_pose(file, 1000)) << "there is none yet";
+  ASSERT_TRUE(write_pose(file, {{1.25, -3.5, 0.1}, {7, 8, 0.9}}, 1000));
+  const auto place = read_pose(file, 1009);
   ASSERT_TRUE(place);
   expect_pose(place->map, 1.25, -3.5, 0.1);
   expect_pose(place->odometry, 7, 8, 0.9);
-  EXPECT_FALSE(read_place(file, 1011)) << "too old";
-  EXPECT_FALSE(read_place(file, 999)) << "from the future";
+  EXPECT_FALSE(read_pose(file, 1011)) << "too old";
+  EXPECT_FALSE(read_pose(file, 999)) << "from the future";
   std::ofstream(file) << "1.25 -3.5";
-  EXPECT_FALSE(read_place(file, 1001)) << "cut";
+  EXPECT_FALSE(read_pose(file, 1001)) << "cut";
   std::ofstream(file) << "1.25 -3.5 nan 0 0 0 1000";
-  EXPECT_FALSE(read_place(file, 1001)) << "not finite";
-  EXPECT_FALSE(write_place(folder.path() / "none" / "place", {}, 1000));
+  EXPECT_FALSE(read_pose(file, 1001)) << "not finite";
+  EXPECT_FALSE(write_pose(folder.path() / "none" / "place", {}, 1000));
 }
 
 }  // namespace

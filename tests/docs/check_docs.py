@@ -159,7 +159,7 @@ def check_shell(root, program):
                 for path in re.findall(r"(?<![\w/.])((?:script|examples|adapters)/[\w./-]+)", command):
                     if not (root / path).exists():
                         errors.append(f"{page}:{line}: no such file: {path}")
-                match = re.search(r"(?:^|\s|bin/)slalom (\w+)(.*)", command)
+                match = re.search(r"(?:^|\s|bin/)slalom (\w[\w-]*)(.*)", command)
                 if not match or program is None:
                     continue
                 word, rest = match.groups()

@@ -67,15 +67,15 @@ TEST(ContactRate, IsOverTheKilometresOfTheCars) {
 }
 
 /// Where a car starts (m beyond the line, m left of it) and how fast it drives.
-struct Motion {
+struct CarRun {
   double from = 0, left = 0, speed = 0;
 };
 
 /// Watches cars that drive like this for `time` (s), with the line at arc length 0.
-RaceWatch watch(const std::vector<Motion>& drives, double time) {
+RaceWatch watch(const std::vector<CarRun>& drives, double time) {
   sim::World world({}, testing::ring_track());
   std::vector<maps::Pose> starts;
-  for (const Motion& drive : drives) {
+  for (const CarRun& drive : drives) {
     const sim::CarState state = on_ring(drive.from, drive.left, drive.speed);
     starts.push_back({state.x, state.y, state.yaw});
   }
@@ -83,7 +83,7 @@ RaceWatch watch(const std::vector<Motion>& drives, double time) {
   RaceWatch seen(world, 0);
   for (int k = 1; k * 0.01 <= time; ++k) {
     std::vector<sim::CarState> states;
-    for (const Motion& drive : drives)
+    for (const CarRun& drive : drives)
       states.push_back(on_ring(drive.from + drive.speed * 0.01 * k, drive.left, drive.speed));
     world.follow(states);
     seen.update(world);

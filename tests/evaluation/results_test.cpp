@@ -22,8 +22,8 @@ LapRow row(int experiment, int lap, double state, double collision_cost, int con
   r.timeout = !finished;
   r.success = finished && contacts == 0;
   r.time = finished ? 10 + lap : 50;
-  r.mean_calculation_time = 1 + lap;
-  r.max_calculation_time = 5 + lap;
+  r.solve_mean = 1 + lap;
+  r.solve_max = 5 + lap;
   return r;
 }
 
@@ -52,9 +52,11 @@ TEST(Results, EveryLapCountsWhetherItFinishedOrNot) {
   EXPECT_DOUBLE_EQ(*r.collision_rate, 8.0 / 20);
   EXPECT_DOUBLE_EQ(r.collision_rate_ci->low, wilson_interval(8, 20).low);
   EXPECT_DOUBLE_EQ(r.success_rate, 0.5);
-  EXPECT_DOUBLE_EQ(r.lap_time_mean, (10 + 11 + 13) / 3.0) << "of finished laps";
-  EXPECT_DOUBLE_EQ(r.solve_ms_mean, 2.5);
-  EXPECT_DOUBLE_EQ(r.solve_ms_max, 8);
+  EXPECT_DOUBLE_EQ(r.time_mean, (10 + 11 + 13) / 3.0) << "of finished laps";
+  EXPECT_EQ(r.time_ci.low, 10);
+  EXPECT_EQ(r.time_ci.high, 13);
+  EXPECT_DOUBLE_EQ(r.solve_mean, 2.5);
+  EXPECT_DOUBLE_EQ(r.solve_max, 8);
 }
 
 TEST(Results, TheTimeToOvertakeIsTheMeanOverAllOpponentsOvertaken) {
@@ -91,7 +93,24 @@ TEST(Results, PairsAreLapsOfTheSameScenario) {
   EXPECT_EQ(c.only_a_succeeds, 0);
   EXPECT_EQ(c.only_b_succeeds, 1);
   EXPECT_DOUBLE_EQ(c.success_p, 1);
-  EXPECT_DOUBLE_EQ(c.ms_p, 0.25) << "three differences of one sign: 2 / 2^3";
+  EXPECT_DOUBLE_EQ(*c.ms_p, 0.25) << "three differences of one sign: 2 / 2^3";
+  EXPECT_DOUBLE_EQ(c.time_difference, 0) << "of the laps that both finish";
+}
+
+TEST(Results, LapTimesAreTestedInPairs) {
+  std::vector<LapRow> rows;
+  for (int lap = 0; lap < 8; ++lap)
+    for (const int experiment : {0, 1}) {
+      rows.push_back(row(experiment, lap, 1, 0, 0, true));
+      rows.back().time = 20 + 3 * lap + 0.01 * (lap + 1) * experiment;
+    }
+  const auto a = rows_of(rows, 0), b = rows_of(rows, 1);
+  const Comparison paired = compare_laps(a, 40, b, 40, true), unpaired = compare_laps(a, 40, b, 40, false);
+  EXPECT_DOUBLE_EQ(paired.time_p, 2 / 256.0) << "eight differences of one sign";
+  EXPECT_NEAR(paired.time_difference, -0.045, 1e-12);
+  EXPECT_NEAR(unpaired.time_difference, -0.045, 1e-12);
+  EXPECT_GT(unpaired.time_p, 0.5) << "lost in the scatter of the laps";
+  EXPECT_EQ(unpaired.success_p, 1);
 }
 
 TEST(Fisher, KnownValues) {

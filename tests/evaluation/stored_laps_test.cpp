@@ -32,7 +32,7 @@ LapRow row(int experiment, int lap) {
   r.impassable = 2;
   r.time = 1.0 / 3;
   r.min_clearance = -0.0125;
-  r.contact_points = "1.250:-3.000 0.500:2.125";
+  r.collision_points = "1.250:-3.000 0.500:2.125";
   r.solve_p99 = 12.5;
   return r;
 }
@@ -59,7 +59,7 @@ TEST(LapTableColumns, TellWhetherALapBeganInContact) {
   LapRow r = row(1, 0);
   EXPECT_TRUE(began_in_contact(r, {1.24, -3.01, 0.3}));
   EXPECT_FALSE(began_in_contact(r, {0.5, 2.125, 0})) << "the place of the second collision";
-  r.contact_points = "";
+  r.collision_points = "";
   EXPECT_FALSE(began_in_contact(r, {0, 0, 0}));
 }
 
@@ -89,15 +89,29 @@ TEST_F(LapTable, ReadsBackToTheSameBits) {
   EXPECT_EQ(rows[1].state_cost, 0.1 + 0.2);
   EXPECT_EQ(rows[1].collision_cost, 1e-300);
   EXPECT_EQ(rows[1].time, 1.0 / 3);
-  EXPECT_EQ(rows[1].contact_points, "1.250:-3.000 0.500:2.125");
+  EXPECT_EQ(rows[1].collision_points, "1.250:-3.000 0.500:2.125");
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(line(rows[i]), i == 0 ? first_ : second_);
 }
 
-TEST_F(LapTable, BeginsWithTheColumnsOfThePublishedLogs) {
-  EXPECT_EQ(head_.rfind("method,scenario,set,lap,seed,success,collision,timeout,state_cost,collision_cost,"
-                        "input_error,mean_calculation_time,max_calculation_time,min_calculation_time,",
-                        0),
-            0u);
+TEST_F(LapTable, HasTheFiguresOfALapUnderTheirNames) {
+  std::string names = "method,scenario,set,lap";
+  const LapFigures lap;
+  visit_figures(lap, [&](const auto&, const Figure& figure) { names += std::string(",") + figure.name; });
+  EXPECT_EQ(head_.rfind(names + ",", 0), 0u) << head_;
+  const std::string page = testing::content(SLALOM_COURSES "/../docs/command-line.md");
+  visit_figures(lap, [&](const auto&, const Figure& figure) {
+    EXPECT_NE(page.find("`" + std::string(figure.name) + "`"), std::string::npos) << figure.name;
+  });
+}
+
+TEST_F(LapTable, TellsTheSameLapWithoutItsTimesOnTheClock) {
+  LapRow one = row(0, 2), other = one;
+  other.solve_p99 += 1;
+  other.wall_time += 1;
+  other.tracking.in_view += 1;  // no column, since no experiment tracks
+  EXPECT_TRUE(same_lap(one, other, experiments));
+  other.min_clearance += 1e-15;
+  EXPECT_FALSE(same_lap(one, other, experiments));
 }
 
 TEST_F(LapTable, AcceptsATruncatedLineOnlyAtTheEndOfAJournal) {
@@ -115,6 +129,7 @@ TEST_F(LapTable, NamesLineAndColumnOfAnInvalidValue) {
     return head_ + checked_line(text) + "\n";
   };
   refuses("lap,seed\n" + first_, ":1: the columns must be method,");
+  refuses("lap,seed\n" + first_, "of another version of the program");
   refuses(head_ + first_ + first_, ":3: duplicate lap");
   refuses(changed("mppi", "cem"), ":2: matches no experiment");
   refuses(changed(seed, ",,3,10,"), "lap: 3 must be in [0, 2]");
@@ -160,7 +175,7 @@ class StoredLaps : public testing::TemporaryFolder {
     r.lap = lap;
     r.seed = lap_seed(0, lap, 5);
     r.state_cost = 1.0 / (lap + 3);
-    r.contact_points = "1.250:-3.000";
+    r.collision_points = "1.250:-3.000";
     r.wall_time = 0.125;
     return r;
   }

@@ -21,7 +21,7 @@ evaluation::LapRow row(int experiment, int lap) {
   row.seed = evaluation::lap_seed(0, lap, experiments[experiment].obstacles);
   row.finished = row.success = true;
   row.state_cost = 1.0 / (lap + 3);
-  row.contact_points = "1.250:-3.000 0.500:2.000";
+  row.collision_points = "1.250:-3.000 0.500:2.000";
   return row;
 }
 

@@ -50,10 +50,5 @@ TEST(ClearanceMap, IsNegativeOutsideAndIgnoresNonFinitePoints) {
   EXPECT_EQ(map.at(1, 0), 0.5F);
 }
 
-TEST(ClearanceMap, RejectsInvalidOptions) {
-  EXPECT_THROW(ClearanceMap({.resolution = 0}), std::invalid_argument);
-  EXPECT_THROW(ClearanceMap({.reach = -1}), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace slalom::maps

@@ -196,17 +196,6 @@ TEST(Field, IsRelativeToAPointFarFromTheOrigin) {
   EXPECT_NEAR(local.value(0.3, 0.4), field.value(554322.3, 5801235.4), 1e-6);
 }
 
-TEST(Field, CopiesShareTheirSamplesAndAllocateNothing) {
-  const Field field = random_field(turned, 10);
-  Field copy;
-  const long before = testing::allocations();
-  ASSERT_GT(before, 0) << "nothing is counted";
-  copy = field;
-  const Field other = copy.relative_to(1, 2);
-  EXPECT_EQ(testing::allocations(), before);
-  EXPECT_EQ(other.value(0.5, 0.5), field.value(1.5, 2.5));
-}
-
 std::string message(const FieldGeometry& geometry, const std::vector<double>& samples) {
   return message_of([&] { Field(geometry, samples); });
 }

@@ -152,28 +152,6 @@ TEST(LocalCostMap, OutsideIsTheRing) {
   }
 }
 
-TEST(LocalCostMap, TheViewLooksUpTheSameCells) {
-  LocalCostMap map({.outside = 7});
-  const std::vector<float> ranges(1080, 3.0F);
-  map.update({ranges, -2.35, 4.7 / 1080, 0, 30});
-  const GridView<1> view = map.view();
-  for (double x = -2.3; x < 8.4; x += 0.0313) {
-    for (double y = -5.2; y < 5.2; y += 0.0417) ASSERT_EQ(look_up(view, x, y), map.at(x, y)) << x << ' ' << y;
-  }
-}
-
-TEST(LocalCostMap, RejectsInvalidOptions) {
-  const auto refused = [](auto change) {
-    LocalCostMapOptions options;
-    change(options);
-    EXPECT_THROW(LocalCostMap{options}, std::invalid_argument);
-  };
-  refused([](auto& o) { o.resolution = 0; });
-  refused([](auto& o) { o.resolution = 1e-9; });
-  refused([](auto& o) { o.footprint.left = 1e9; });
-  refused([](auto& o) { o.laser.yaw = NAN; });
-}
-
 TEST(LocalCostMap, ReadsThePointsOfAScanWithoutMarkingThem) {
   const std::vector<float> ranges{1.0f, nan, 2.0f, 0.01f, 3.0f};
   const LaserScanView scan{ranges, -0.2, 0.1, 0.05, 30};

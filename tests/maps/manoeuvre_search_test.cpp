@@ -110,6 +110,19 @@ TEST(ManoeuvreSearch, ReversingAndCuspsHaveAPrice) {
   EXPECT_EQ(check(search, square), 0) << "half a circle";
 }
 
+TEST(ManoeuvreSearch, DrivesALoopRatherThanBackWhereNoSensorLooks) {
+  ManoeuvreOptions options = ManoeuvreOptions::of(0.58, 0.5);
+  options.beside = 0.3;
+  options.turned = 0.3;
+  options.rear = 0.1;
+  ManoeuvreSearch search(options);
+  const ManoeuvreGoal behind[] = {{{-1.2, 0, 0}}};
+  ASSERT_TRUE(search.search(square, behind));
+  EXPECT_GE(check(search, square), 1);
+  ASSERT_TRUE(search.search(square, behind, 2.36));
+  EXPECT_EQ(check(search, square), 0);
+}
+
 TEST(ManoeuvreSearch, ABodyThatCannotTurnWhereItIsDrivesBackToAWiderPart) {
   ManoeuvreOptions options = ManoeuvreOptions::of(0.7, 0);
   ManoeuvreSearch search(options);

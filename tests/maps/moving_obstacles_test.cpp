@@ -249,22 +249,6 @@ TEST(MovingObstacles, TheNearestCountAndBadNumbersDoNot) {
   EXPECT_EQ(cost_at(others.view(), {0, 0, 0}).value, 0);
 }
 
-TEST(MovingObstacles, AllocateNothingAfterConstruction) {
-  MovingObstacles others(touching(), 20);
-  const Predicted predicted(0.6, 0.3, {{0.3, {0, 0, 0}}, {0.7, {0, 5, 0}}});
-  const std::vector<PredictedObstacle> all(40, predicted.obstacle);
-  const long before = testing::allocations();
-  for (int i = 0; i < 5; ++i) others.update(all, {0, 0}, 0.1, 0.05);
-  EXPECT_EQ(testing::allocations(), before);
-}
-
-TEST(MovingObstacles, RefuseOptionsOutOfRange) {
-  MovingObstacleOptions options;
-  options.max_probability = 1.5;
-  EXPECT_THROW(MovingObstacles(options, 1), std::invalid_argument);
-  EXPECT_THROW(MovingObstacles({}, 0), std::invalid_argument);
-}
-
 /// A square of 0.4 m that has one pose.
 const testing::Predicted standing(0.4, 0.4, {{1, {3, 0, 0}}}, 1);
 

@@ -160,16 +160,6 @@ TEST(ReferenceField, KnowsTheProgressBesideACurve) {
   EXPECT_EQ(field.at(4, 0.5).outside, 0) << "a new path has no curvatures";
 }
 
-TEST(ReferenceField, WithCurvaturesCellsBetweenPointsAreThoseOfTheLine) {
-  constexpr double radius = 5;
-  constexpr int count = 60;  // 0.52 m apart
-  const auto path = circle(count, radius);
-  ReferenceField field(path);
-  field.set_curvatures(std::vector<double>(count, 1 / radius), true);
-  ASSERT_TRUE(field.update({radius, 0}));
-  expect_line(field, count, radius);
-}
-
 TEST(ReferenceField, WithCurvaturesNoPlaceOfTheLineIsLeftOutWhereTheWindowSkipsPoints) {
   constexpr double radius = 5;
   constexpr int count = 600;  // 0.052 m apart, in the window 0.157 m
@@ -245,32 +235,6 @@ TEST(ReferenceField, RejectsInvalidPaths) {
   EXPECT_THROW(ReferenceField{path}, std::invalid_argument);
   path[9].speed = NAN;
   EXPECT_THROW(ReferenceField{path}, std::invalid_argument);
-}
-
-TEST(ReferenceField, RejectsInvalidOptions) {
-  const auto path = circle(10, 1);
-  const auto refused = [&](auto change) {
-    ReferenceFieldOptions options;
-    change(options);
-    EXPECT_THROW(ReferenceField(path, options), std::invalid_argument);
-  };
-  refused([](auto& o) { o.points = 0; });
-  refused([](auto& o) { o.outside.distance = NAN; });
-}
-
-TEST(MapUpdates, AllocateNothing) {
-  ReferenceField field(circle(300, 5));
-  LocalCostMap map;
-  const std::vector<float> ranges(1080, 2.0F);
-  const Point points[] = {{1, 1}, {2, 0}};
-  const long before = testing::allocations();
-  ASSERT_GT(before, 0) << "nothing is counted";
-  for (int i = 0; i < 5; ++i) {
-    field.update({5, 0.1 * i});
-    map.update({ranges, -2.35 + 0.01 * i, 4.7 / 1080, 0, 30});
-    map.add_points(points);
-  }
-  EXPECT_EQ(testing::allocations(), before);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ TEST(PurePursuit, StaysNearThePathAndReturnsToIt) {
   for (int k = 0; k < 2500; ++k) {
     world.step(std::array{driver.command(world.observe(0).pose)});
     ASSERT_FALSE(world.observe(0).collides());
-    ASSERT_TRUE(k <= 500 || std::abs(world.laps(0)->lateral()) < 0.15) << world.laps(0)->lateral();
+    ASSERT_TRUE(k <= 500 || std::abs(world.laps(0)->offset()) < 0.15) << world.laps(0)->offset();
   }
   EXPECT_EQ(world.laps(0)->laps(), 1);
 }
@@ -223,8 +223,8 @@ TEST(RacingOpponent, DrawsLanesAndSpeedsFromItsKeyAlone) {
     double least = 0, most = 0;
     for (int i = 0; i < 100; ++i) {
       EXPECT_EQ(drive(world, drivers, 0.2), 0);
-      least = std::min(least, world.laps(0)->lateral());
-      most = std::max(most, world.laps(0)->lateral());
+      least = std::min(least, world.laps(0)->offset());
+      most = std::max(most, world.laps(0)->offset());
     }
     EXPECT_LT(least, -0.1);
     EXPECT_GT(most, 0.1);

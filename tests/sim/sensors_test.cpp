@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
@@ -79,7 +78,7 @@ TEST(Imu, HasTheBiasAndNoiseOfItsOptions) {
   EXPECT_NEAR(std::sqrt(squares / 4000), 0.5, 0.02);
 }
 
-TEST(Imu, IgnoresWhatIsNotFiniteAndRejectsInvalidOptions) {
+TEST(Imu, IgnoresWhatIsNotFinite) {
   Imu imu(faultless);
   imu.reset({});
   CarState bad;
@@ -87,7 +86,6 @@ TEST(Imu, IgnoresWhatIsNotFiniteAndRejectsInvalidOptions) {
   imu.update(bad, time_step);
   imu.update({}, 0);
   EXPECT_EQ(imu.read().forward, 0);
-  EXPECT_THROW(Imu({.gyro_noise = -1}), std::invalid_argument);
 }
 
 constexpr WheelOdometryOptions exact_wheels{.speed_gain_error = 0,
@@ -142,8 +140,7 @@ TEST(WheelOdometry, HasTheErrorsOfItsOptions) {
   EXPECT_NEAR(drive(options, 0).odometry.yaw, 0.4, 1e-6);
 }
 
-TEST(WheelOdometry, RejectsInvalidOptionsAndIgnoresInvalidStates) {
-  EXPECT_THROW(WheelOdometry({}, {.speed_noise = -1}), std::invalid_argument);
+TEST(WheelOdometry, IgnoresInvalidStates) {
   WheelOdometry odometry;
   odometry.reset({.speed = 1});
   odometry.update({.speed = NAN}, time_step);

@@ -40,14 +40,14 @@ class TraceRun {
       : trace_(folder / "sim_trace.csv"),
         scans_(folder / "sim_trace_scans.csv"),
         track_(std::make_shared<const Track>(gym_track(folder, "berlin"))) {
-    for (std::size_t row = 0; row < scans_.rows(); ++row) scan_rows_[place(scans_[row])] = row;
+    for (std::size_t row = 0; row < scans_.rows(); ++row) scan_rows_[key_of(scans_[row])] = row;
     visit_cases(trace_, [&](std::size_t begin, std::size_t end) { run(begin, end); });
     EXPECT_GT(states_.cases(), 0);
   }
 
  private:
-  using Place = std::tuple<int, int, int>;
-  static Place place(const GoldenRow& row) {
+  using RowKey = std::tuple<int, int, int>;
+  static RowKey key_of(const GoldenRow& row) {
     return {row.integer("case"), row.integer("k"), row.integer("agent")};
   }
 
@@ -89,7 +89,7 @@ class TraceRun {
     for (std::size_t i = 0; i < world.cars(); ++i)
       all_finished = all_finished && world.start_zone_laps(i).finished();
     EXPECT_EQ(world.flags()[0] || all_finished, row.integer("done") == 1);
-    const auto scan = scan_rows_.find(place(row));
+    const auto scan = scan_rows_.find(key_of(row));
     if (scan == scan_rows_.end()) return;
     ranges_.next_case();
     ranges_.absolute(world.observe(agent).gym_ranges, scans_[scan->second].series("r"));
@@ -98,7 +98,7 @@ class TraceRun {
 
   GoldenTable trace_, scans_;
   std::shared_ptr<const Track> track_;
-  std::map<Place, std::size_t> scan_rows_;
+  std::map<RowKey, std::size_t> scan_rows_;
   Comparison states_{"sim_trace"}, ranges_{"sim_trace_scans"};
 };
 

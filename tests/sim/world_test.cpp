@@ -266,28 +266,6 @@ TEST(World, RejectsInvalidStarts) {
   EXPECT_THROW(world.move_body(1, {}), std::invalid_argument);
 }
 
-TEST(World, RejectsInvalidOptions) {
-  const auto track = testing::ring_track();
-  const auto refuses = [&](auto change) {
-    WorldOptions options;
-    change(options);
-    EXPECT_THROW(World(options, track), std::invalid_argument);
-  };
-  EXPECT_THROW(World({}, nullptr), std::invalid_argument);
-  refuses([](WorldOptions& o) { o.lidar.mount.x = 101; });
-  refuses([](WorldOptions& o) { o.lidar.mount.yaw = nan; });
-  for (const double step : {0.0, -0.01, 0.5, nan}) refuses([&](WorldOptions& o) { o.time_step = step; });
-  for (const int beams : {0, 2000000000}) refuses([&](WorldOptions& o) { o.lidar.beams = beams; });
-  refuses([](WorldOptions& o) { o.lidar.field_of_view = 7; });
-  refuses([](WorldOptions& o) { o.lidar.range_max = 0; });
-  refuses([](WorldOptions& o) { o.lidar.noise = -1; });
-  refuses([](WorldOptions& o) { o.lidar.dropout = 1.5; });
-  refuses([](WorldOptions& o) { o.car.width = 0; });
-  refuses([](WorldOptions& o) { o.car.mass = -1; });
-  refuses([](WorldOptions& o) { o.car.friction = nan; });
-  refuses([](WorldOptions& o) { o.plant.steering_dead_time = -0.1; });
-}
-
 TEST(Track, RejectsInvalidMaps) {
   const auto refuses = [](auto change) {
     maps::OccupancyGrid grid = testing::room(10, 10);

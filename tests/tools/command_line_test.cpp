@@ -31,16 +31,21 @@ class CommandLine : public testing::EvaluationFolder {
            " --methods mppi --scenario pt --laps 1 --config default_kinematic --set mppi.samples=48 --out " +
            out;
   }
+  /// Copies an evaluation of one lap and the recording of a lap into the folder.
+  void prepare() const {
+    fs::copy(testing::evaluated_lap(), folder_ / "ev");
+    fs::copy(testing::small_recording(), folder_ / "lap.mcap");
+  }
   /// The commands that print and end, with arguments for a short run; `out` is a file or folder of its own.
   std::vector<std::string> short_runs(const std::string& out) const {
     return {"bench --methods mppi --seconds 0.01 --json " + out,
             "compare ev ev --json " + out,
             "course '" SLALOM_COURSES "/wren/map.yaml' --out " + out,
             "drive --course wren --method mppi --set samples=32 --json " + out,
-            "replay ev --lap 0",
+            "drive --again ev --lap 0",
+            "export lap.mcap " + out + ".html",
             "identify lap.mcap --json " + out,
             evaluation(out),
-            "explain --method mppi --solves 1 --json " + out,
             "options",
             "race --course wren --config default --method mppi --set samples=256 --laps 1 --json " + out,
             "track --length 30 --out " + out};
@@ -49,7 +54,7 @@ class CommandLine : public testing::EvaluationFolder {
 
 TEST_F(CommandLine, AnUnknownInstructionSetDoesNotAbort) {
   for (const std::string arguments :
-       {"drive --course wren", "explain", "view --port 0", "bench", "options"}) {
+       {"drive --course wren", "explain --figure 1 --plot a.png", "view --port 0", "bench", "options"}) {
     const testing::Run run = timed(arguments, "SLALOM_TARGET=foo");
     EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
     expect_says(run.output, {"slalom: SLALOM_TARGET=foo: not one of avx512"});
@@ -74,8 +79,8 @@ TEST_F(CommandLine, EveryNumberIsCheckedInTheSameWords) {
       found.push_back((*at)[1]);
     return found;
   };
-  const auto commands = words_of("", std::regex("\n  ([a-z]+) +[A-Z]"));
-  EXPECT_EQ(commands.size(), 14u);
+  const auto commands = words_of("", std::regex("\n  ([a-z][a-z-]+) +[A-Z]"));
+  EXPECT_EQ(commands.size(), 16u);
   int options = 0, ranges = 0;
   const std::regex range(R"(must be a (whole )?number in \[([^,]*), ([^\]]*)\])");
   for (const std::string& command : commands)
@@ -101,8 +106,9 @@ TEST_F(CommandLine, EveryNumberIsCheckedInTheSameWords) {
 }
 
 TEST_F(CommandLine, HelpFitsTheTerminalAndHasExamples) {
-  for (const std::string command : {"bench", "compare", "course", "drive", "eval", "explain", "identify",
-                                    "navigate", "options", "race", "replay", "reproduce", "track", "view"}) {
+  for (const std::string command :
+       {"bench", "compare", "course", "drive", "eval", "explain", "export", "identify", "navigate", "options",
+        "race", "racing-benchmark", "replay", "reproduce", "track", "view"}) {
     const std::string text = timed(command + " --help").output;
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << command << ": " << line;
@@ -114,8 +120,8 @@ TEST_F(CommandLine, HelpFitsTheTerminalAndHasExamples) {
 
 TEST_F(CommandLine, AFullStandardOutputIsAnError) {
   ASSERT_TRUE(fs::exists("/dev/full"));
-  for (const std::string arguments : {"options", "options --json -", "options --yaml", "--help", "--version",
-                                      "explain --method mppi --solves 1 --json -"}) {
+  for (const std::string arguments :
+       {"options", "options --json -", "options --yaml", "--help", "--version"}) {
     succeed(arguments + " >/dev/null");
     const testing::Run run = timed(arguments + " >/dev/full");
     EXPECT_EQ(run.status, 1) << arguments;
@@ -124,8 +130,7 @@ TEST_F(CommandLine, AFullStandardOutputIsAnError) {
 }
 
 TEST_F(CommandLine, AStandardOutputThatIsClosedIsAnErrorAndLosesNothing) {
-  succeed(evaluation("ev"));
-  succeed("drive --course wren --method mppi --set samples=32 --record lap.mcap");
+  prepare();
   const auto open = short_runs("open"), closed = short_runs("closed"), broken = short_runs("broken");
   for (std::size_t i = 0; i < open.size(); ++i) {
     for (const char* name : {"open", "closed", "broken"}) fs::remove_all(folder_ / name);
@@ -157,10 +162,10 @@ TEST_F(CommandLine, ChecksItsOutputFilesFirst) {
   write("lap.mcap", "{}\n");
   for (const std::string arguments :
        {"drive --course wren --json kept.json --plot ", "drive --course wren --record new.mcap --json ",
-        "bench --json ", "explain --plot ", "replay lap.mcap --html ", "identify lap.mcap --json ",
+        "bench --json ", "explain --figure 1 --plot ", "export lap.mcap ", "identify lap.mcap --json ",
         "eval --out e --json "})
     refuses(arguments + "nodir/x.png", {"slalom: nodir/x.png: cannot be written: No such file"});
-  refuses("explain --json .", {".: cannot be written: is a folder"});
+  refuses("options --json .", {".: cannot be written: is a folder"});
   EXPECT_EQ(content(folder_ / "kept.json"), "kept");
   EXPECT_FALSE(fs::exists(folder_ / "new.mcap"));
   EXPECT_FALSE(fs::exists(folder_ / "e"));
@@ -173,11 +178,11 @@ TEST_F(CommandLine, RejectsOneFileForTwoOutputs) {
   refuses("identify in.mcap --json in.mcap", {"recording", "--json", "in.mcap"}, 2);
   EXPECT_EQ(content(folder_ / "in.mcap"), "{}\n");
   refuses("drive --course wren --record -", {"--record", "only --json accepts -"}, 2);
-  refuses("explain --plot -", {"--plot", "only --json accepts -"}, 2);
+  refuses("explain --figure 1 --plot -", {"--plot", "only --json accepts -"}, 2);
   refuses("drive --course wren --record lap.jsonl", {"--record: 'lap.jsonl' must end in .mcap"}, 2);
-  refuses("explain --plot x.jpg", {"--plot: 'x.jpg' must end in .png, .svg or .pdf"}, 2);
+  refuses("explain --figure 1 --plot x.jpg", {"--plot: 'x.jpg' must end in .png, .svg or .pdf"}, 2);
   EXPECT_FALSE(fs::exists(folder_ / "x.jpg") || fs::exists(folder_ / "same.mcap"));
-  succeed("explain --method mppi --solves 1 --json /dev/null --plot /dev/null");
+  succeed("explain --figure 1 --plot /dev/null");
 }
 
 TEST_F(CommandLine, RejectsEmptyValues) {
@@ -194,8 +199,6 @@ TEST_F(CommandLine, RejectsContradictoryOptions) {
   refuses("options --yaml --method mppi", {"--method", "--yaml"}, 2);
   refuses("drive --record-times", {"--record-times", "--record"}, 2);
   refuses("bench --methods foo", {"--methods: ", "foo", "svg_mppi"}, 2);
-  refuses("explain --method all,mppi", {"--method: 'all' cannot be combined"}, 2);
-  refuses("explain --method mppi,mppi", {"--method: 'mppi' is given twice"}, 2);
 }
 
 TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheCloneThatAreNamed) {
@@ -217,27 +220,18 @@ TEST_F(CommandLine, ReplayTellsWhatReadsABag) {
     refuses(std::string("replay ") + bag, {bag + std::string(": is a bag of rosbag2"), "slalom identify"});
 }
 
-TEST_F(CommandLine, ReplayIgnoresNoOption) {
-  fs::create_directories(folder_ / "ev");
-  refuses("replay ev --lap 0", {"ev/settings.json"});
-  succeed(evaluation("ev"));
-  refuses("replay ev", {"--lap: is required"}, 2);
-  refuses("replay ev --lap 1", {"--lap: '1' must be in [0, 0]"}, 2);
-  for (const std::string option : {"--html x.html", "--port 0"})
-    refuses("replay ev --lap 0 " + option,
-            {option.substr(0, option.find(' ')) + ": has no effect when a lap of an evaluation is repeated"},
-            2);
-  std::ofstream(folder_ / "a.mcap") << "";
-  for (const std::string option :
-       {"--plot a.png", "--record q.mcap", "--method foo", "--course nosuch", "--lap 0", "--scenario pt"})
-    refuses("replay a.mcap --html q.html " + option,
-            {option.substr(0, option.find(' ')) + ": has no effect when a recording is replayed"}, 2);
-  refuses("replay a.mcap --html q.html --port 0", {"--port", "--html"}, 2);
-  EXPECT_FALSE(fs::exists(folder_ / "x.html"));
+TEST_F(CommandLine, ALapThatIsDrivenAgainHasTheSettingsOfItsEvaluation) {
+  refuses("drive --again ev --lap 0", {"ev/settings.json"});
+  prepare();
+  refuses("drive --again ev", {"--lap: is required with --again"}, 2);
+  refuses("drive --again ev --lap 1", {"--lap: '1' must be in [0, 0]"}, 2);
+  for (const std::string option : {"--seed 3", "--set mppi.samples=9", "--config race", "--laps 2"})
+    refuses("drive --again ev --lap 0 " + option, {"--again: has only --lap, --scenario"}, 2);
+  refuses("drive --lap 0", {"--lap: needs --again"}, 2);
 }
 
 TEST_F(CommandLine, NamesEmptyEvaluations) {
-  succeed(evaluation("ev"));
+  prepare();
   fs::copy(folder_ / "ev", folder_ / "none");
   const std::string table = content(folder_ / "ev/laps.csv");
   std::ofstream(folder_ / "none/laps.csv") << table.substr(0, table.find('\n') + 1);
@@ -245,16 +239,14 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
   refuses("compare none ev", {"none", "has no lap of mppi"});
   std::ofstream(folder_ / "ev/settings.json") << "[]";
   refuses(evaluation("ev") + " --resume", {"ev/settings.json: ", "is not a JSON object"});
-  refuses("replay ev --lap 0", {"ev/settings.json: ", "is not a JSON object"});
+  refuses("drive --again ev --lap 0", {"ev/settings.json: ", "is not a JSON object"});
 }
 
 TEST_F(CommandLine, PicturesAreWrittenInTheFormatOfTheirEnding) {
   const std::string drive = "drive --course wren --method mppi --set samples=64 --plot ";
   for (const auto& [ending, begin] : {std::pair("png", "\x89PNG"), {"svg", "<?xml"}, {"pdf", "%PDF"}}) {
     succeed(drive + "lap." + ending);
-    succeed(std::string("explain --method mppi --solves 1 --plot modes.") + ending);
-    for (const char* name : {"lap.", "modes."})
-      EXPECT_EQ(content(folder_ / (std::string(name) + ending)).rfind(begin, 0), 0u) << name << ending;
+    EXPECT_EQ(content(folder_ / (std::string("lap.") + ending)).rfind(begin, 0), 0u) << ending;
   }
 }
 
@@ -263,7 +255,7 @@ TEST_F(CommandLine, ATokenMustFitIntoAnAddress) {
 }
 
 TEST_F(CommandLine, AProblemThatIsNotACarHasNoScenario) {
-  for (const char* option : {"--against mppi", "--course fox", "--eval ev", "--set mppi.samples=9"})
+  for (const char* option : {"--against mppi", "--course fox", "--set mppi.samples=9"})
     refuses(std::string("view --problem pendulum --port 0 ") + option, {"--problem: has only --method"}, 2);
 }
 

@@ -45,7 +45,7 @@ TEST_F(CourseCommand, ItsCourseIsDrivenWithoutCollision) {
   succeed("course room.yaml --out made --friction 0.4 --top-speed 5 --margin 0.15");
   succeed(
       "drive --course made --method mppi --config default_kinematic --set mppi.samples=1000 --json s.json");
-  EXPECT_EQ(summary()["laps"][0]["contacts"], 0);
+  EXPECT_EQ(summary()["laps"][0]["collisions"], 0);
 }
 
 TEST_F(CourseCommand, TheCommandInCourseYamlMakesTheSameFiles) {
@@ -100,7 +100,7 @@ TEST_F(CourseCommand, OneFileIsTheCarOfCoursePlannerAndSimulator) {
       "drive --course made --config wide.yaml --set samples=500 --set world.car=configured --json s.json "
       "--record lap.mcap");
   EXPECT_EQ(summary()["settings"]["options"]["world"]["friction"], 0.4) << "the floor is that of the file";
-  EXPECT_EQ(summary()["laps"][0]["contacts"], 0);
+  EXPECT_EQ(summary()["laps"][0]["collisions"], 0);
 }
 
 TEST_F(CourseCommand, TheUnknownGreyOfAMapSaverIsNoWayOut) {

@@ -67,9 +67,9 @@ TEST_F(DriveCommand, DrivesACarOfFullSize) {
       "--set world.saturating_tyres=true ";
   succeed(arguments + "--json out.json");
   const json lap = result("out.json")["laps"][0];
-  EXPECT_EQ(lap["contacts"], 0);
+  EXPECT_EQ(lap["collisions"], 0);
   EXPECT_GT(lap["mean_speed"], 15);
-  EXPECT_LT(lap["time_s"], 35);
+  EXPECT_LT(lap["time"], 35);
   EXPECT_LT(lap["max_path_distance"], 5);
   expect_refused(arguments + "--hardware", {"world.car", "passenger_car", "sensors of a real car"});
 }
@@ -81,11 +81,11 @@ TEST_F(DriveCommand, FinishesLapsAndWritesJson) {
   for (const auto& lap : d["laps"]) {
     EXPECT_EQ(lap["finished"], true);
     EXPECT_EQ(lap["timeout"], false);
-    EXPECT_GT(lap["time_s"].get<double>(), 5);
+    EXPECT_GT(lap["time"].get<double>(), 5);
     EXPECT_GT(lap["steps"].get<int>(), 100);
     EXPECT_NEAR(lap["mean_sequence_cost"].get<double>(),
                 lap["state_cost"].get<double>() + lap["collision_cost"].get<double>(), 1e-9);
-    EXPECT_TRUE(lap["contacts"].is_number_integer());
+    EXPECT_TRUE(lap["collisions"].is_number_integer());
     EXPECT_EQ(lap["obstacles"].size(), 2u);
   }
   EXPECT_EQ(d["laps"][0]["seed"], 3);
@@ -151,7 +151,7 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
                             .attachment = {}});
   ASSERT_EQ(ticks.size(), result("out.json")["laps"][0]["steps"]);
   EXPECT_EQ(ticks[0]["plan"].size(), 21u);
-  EXPECT_NEAR(ticks.back()["time"].get<double>(), result("out.json")["laps"][0]["time_s"], 0.05);
+  EXPECT_NEAR(ticks.back()["time"].get<double>(), result("out.json")["laps"][0]["time"], 0.05);
   EXPECT_NEAR(ticks.back()["steering_offset_estimate"].get<double>(),
               result("out.json")["laps"][0]["estimation"]["steering_offset_rad"], 1e-6);
   EXPECT_EQ(content(folder_ / "out.png").substr(1, 3), "PNG");
@@ -192,7 +192,7 @@ TEST_F(DriveCommand, DrivesThePublishedEvaluation) {
   drive("--config published --evaluation published --method mppi --obstacles 1 --json out.json");
   const json d = result("out.json");
   EXPECT_EQ(d["settings"]["control_period_s"], 0.01);
-  const double steps = d["laps"][0]["steps"], time = d["laps"][0]["time_s"];
+  const double steps = d["laps"][0]["steps"], time = d["laps"][0]["time"];
   EXPECT_NEAR(time, 0.01 * (steps + 1), 1e-9);
 }
 

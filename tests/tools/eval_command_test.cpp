@@ -122,10 +122,11 @@ TEST_F(EvalCommand, WritesASummary) {
   const auto summary = result("one/summary.json");
   ASSERT_EQ(summary.at("results").size(), 2u);
   for (const auto& result : summary.at("results")) {
-    for (const char* key : {"method", "scenario", "laps", "ms_mean", "ms_ci", "collision_rate",
-                            "collision_rate_ci", "success_rate", "solve_ms"})
+    for (const char* key : {"method", "scenario", "laps", "ms_mean", "ms_ci", "collisions", "collision_rate",
+                            "collision_rate_ci", "success_rate", "time_mean", "time_ci", "solve_ms"})
       EXPECT_TRUE(result.contains(key)) << key;
-    EXPECT_TRUE(result.at("ms_ci").is_null()) << "of fewer than five laps";
+    for (const char* interval : {"ms_ci", "time_ci"})
+      EXPECT_TRUE(result.at(interval).is_null()) << "of fewer than five laps";
     EXPECT_LE(result.at("success_rate"), 1.0);
   }
   const std::string html = content(folder_ / "one/report.html");
@@ -138,24 +139,28 @@ TEST_F(EvalCommand, WritesASummary) {
   EXPECT_TRUE(fs::exists(folder_ / "one/figures/methods.svg"));
 }
 
-TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
+TEST_F(EvalCommand, DrivesALapAgainBitForBitAndComparesTwoRuns) {
   succeed(small(2) + "--out one");
-  expect_says(succeed("replay one --method svg_mppi --lap 1 --course " SLALOM_COURSES
-                      "/wren --plot lap.png --record lap.mcap"),
-              {"bit for bit"});
+  expect_says(succeed("drive --again one --method svg_mppi --lap 1 --course " SLALOM_COURSES
+                      "/wren --plot lap.png --record lap.mcap --json lap.json"),
+              {"lap 1: finished", "bit for bit"});
+  EXPECT_EQ(result("lap.json")["laps"][0]["seed"], 7);
   EXPECT_TRUE(fs::exists(folder_ / "lap.png"));
   EXPECT_GT(fs::file_size(folder_ / "lap.mcap"), 50'000u);
-  expect_refused("replay one --lap 0", {"must name one of these"});
-  expect_refused("replay one --method mppi --lap 2", {"--lap"});
-  expect_refused("replay one --method mppi --lap 0 --course " SLALOM_COURSES "/stag", {});
+  expect_refused("drive --again one --lap 0", {"must name one of these"});
+  expect_refused("drive --again one --method mppi --lap 2", {"--lap"});
+  expect_refused("drive --again one --method mppi --lap 0 --course " SLALOM_COURSES "/stag", {});
 
-  succeed("compare one one --json same.json");
+  EXPECT_EQ(succeed("compare one one --json same.json")
+                .rfind("No difference between one and one is significant", 0),
+            0u);
   const auto compared = result("same.json");
   ASSERT_EQ(compared.at("results").size(), 2u);
   EXPECT_EQ(compared.at("settings").size(), 0u);
   for (const auto& result : compared.at("results")) {
     EXPECT_TRUE(result.at("paired").get<bool>());
     EXPECT_EQ(result.at("ms_p"), 1);
+    EXPECT_EQ(result.at("time_p"), 1);
   }
   expect_refused("compare one nowhere", {});
 
@@ -186,9 +191,9 @@ TEST_F(EvalCommand, EveryExperimentMeetsTheSameOpponentsWithPlanners) {
   const auto summary = result("one/summary.json");
   EXPECT_EQ(summary.at("settings").at("options").at("svg_mppi").at("samples"), 8000)
       << "options of a method that drives opponents only are kept for replays";
-  EXPECT_GT(summary.at("results").at(0).at("overtaking").at("met"), 0);
+  EXPECT_GT(summary.at("results").at(0).at("overtaking").at("opponents_met"), 0);
   EXPECT_TRUE(summary.at("results").at(0).at("overtaking").at("side_changes").is_number_integer());
-  expect_says(succeed("replay one --lap 0"), {"bit for bit"});
+  expect_says(succeed("drive --again one --lap 0"), {"bit for bit"});
 }
 
 TEST_F(EvalCommand, RemembersTheFolderOfACourseThatHasNoKnownName) {
@@ -198,7 +203,7 @@ TEST_F(EvalCommand, RemembersTheFolderOfACourseThatHasNoKnownName) {
   succeed("eval --course elsewhere " + drive);
   const auto settings = result("one/settings.json");
   EXPECT_EQ(settings.at("course_folder"), fs::canonical(folder_ / "elsewhere").string());
-  expect_says(succeed("replay one --lap 0"), {"bit for bit"});
+  expect_says(succeed("drive --again one --lap 0"), {"bit for bit"});
 
   succeed("drive --course elsewhere --json lap.json --set svg_mppi.samples=64");
   EXPECT_EQ(result("lap.json").at("settings").at("course_folder"), settings.at("course_folder"));

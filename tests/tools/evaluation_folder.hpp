@@ -32,12 +32,9 @@ inline std::string repeatable(const fs::path& file) {
   std::vector<bool> kept;
   while (std::getline(lines, line)) {
     const auto parts = cells(line);
-    if (kept.empty()) {
+    if (kept.empty())
       for (const auto& name : parts)
-        kept.push_back(!contains(name, "calculation_time") && name != "checksum" &&
-                       name.rfind("solve_", 0) != 0 && name.rfind("deadline_", 0) != 0 &&
-                       name.rfind("wall_", 0) != 0);
-    }
+        kept.push_back(name != "checksum" && name != "wall_time" && name.rfind("solve_", 0) != 0);
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (kept.at(i)) text += parts[i] + ",";
     text += "\n";

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -39,6 +42,39 @@ inline Run run_shell(const std::string& words, const std::string& folder = ".") 
 /// Runs `slalom` with arguments as a shell reads them, in `folder`.
 inline Run run_program(const std::string& arguments, const std::string& folder = ".") {
   return run_shell("'" SLALOM_PROGRAM "' " + arguments, folder);
+}
+
+/// What the program writes as `name` with these arguments, made once for all tests. Tests change only copies.
+inline std::filesystem::path made_once(const std::string& name, const std::string& arguments) {
+  const auto built = std::filesystem::last_write_time(SLALOM_PROGRAM).time_since_epoch().count();
+  const auto version = std::hash<std::string>{}(arguments + std::to_string(built));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("slalom_made_" + std::to_string(version));
+  std::filesystem::create_directories(folder);
+  const int lock = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  flock(lock, LOCK_EX);
+  if (!std::filesystem::exists(folder / "made")) {
+    const Run run = run_program(arguments, folder.string());
+    if (run.status != 0) throw std::runtime_error(arguments + ": " + run.output);
+    std::ofstream(folder / "made") << arguments;
+  }
+  close(lock);
+  return folder / name;
+}
+
+/// A lap with everything recorded.
+inline std::filesystem::path recorded_lap() {
+  return made_once("lap.mcap", "drive --course wren --obstacles 2 --seed 3 --record-all --record lap.mcap");
+}
+/// A lap with the usual part of it recorded.
+inline std::filesystem::path small_recording() {
+  return made_once("lap.mcap", "drive --course wren --method mppi --set samples=32 --record lap.mcap");
+}
+/// An evaluation of one lap.
+inline std::filesystem::path evaluated_lap() {
+  return made_once("ev", "eval --course " SLALOM_COURSES
+                         "/wren --methods mppi --scenario pt --laps 1 --config default_kinematic --set "
+                         "mppi.samples=48 --out ev");
 }
 
 inline bool contains(const std::string& text, const std::string& words) {

@@ -1,4 +1,4 @@
-// `slalom race`, alone and with several cars, and `slalom reproduce --benchmark racing`: tables, results,
+// `slalom race`, alone and with several cars, and `slalom racing-benchmark`: tables, results,
 // pictures, and bad input named in words.
 #include <gtest/gtest.h>
 
@@ -236,7 +236,7 @@ class RacingCommand : public testing::ProgramTest {
     }
   }
   nlohmann::json drive(const std::string& arguments) const {
-    succeed("reproduce --benchmark racing --course maps --quick --json r.json " + arguments);
+    succeed("racing-benchmark maps --quick --json r.json " + arguments);
     return result("r.json");
   }
 };
@@ -275,16 +275,10 @@ TEST_F(RacingCommand, TheRacelineIsThatOfTheCar) {
 }
 
 TEST_F(RacingCommand, SaysWhatIsWrong) {
-  expect_refused("reproduce --benchmark racing --course maps --car tractor", {"--car: tractor", "default"});
-  expect_refused("reproduce --car f1tenth --out x", {"--car", "--benchmark"});
-  expect_refused("reproduce --benchmark rowing --course maps", {"--benchmark", "rowing", "racing"});
-  expect_refused("reproduce --benchmark racing", {"--course", "folder"});
-  expect_refused("reproduce --benchmark racing --course nowhere", {"nowhere", "aut.yaml"});
-  expect_refused("reproduce --benchmark racing --course maps --driver tortoise", {"tortoise", "svg_mppi"});
-  expect_refused("reproduce --benchmark racing --course maps --margin 2.25", {"no closed way", "1.055"});
-  expect_refused("reproduce --driver mppi --out x", {"--driver", "--benchmark"});
-  expect_refused("reproduce --margin 0.1 --out x", {"--margin", "--benchmark"});
-  expect_refused("reproduce --course wren", {"--out", "is required"});
+  expect_refused("racing-benchmark maps --car tractor", {"--car: tractor", "default"});
+  expect_refused("racing-benchmark nowhere", {"nowhere", "aut.yaml"});
+  expect_refused("racing-benchmark maps --driver tortoise", {"tortoise", "svg_mppi"});
+  expect_refused("racing-benchmark maps --margin 2.25", {"no closed way", "1.055"});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// `slalom replay`: videos of recordings, and planners beside the driver of one.
+// `slalom replay` and `slalom export`: videos and pages of recordings, and planners beside the driver of one.
 #include <cstdlib>
 
 #include "tools/program_test.hpp"
@@ -10,15 +10,9 @@ using testing::content;
 using testing::expect_says;
 using testing::run_shell;
 
-class ReplayVideo : public testing::ProgramTest {
+class ExportCommand : public testing::ProgramTest {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    const auto run = program(
-        "drive --course wren --obstacles 2 --seed 3 --method mppi --set mppi.samples=200"
-        " --record lap.mcap");
-    ASSERT_TRUE(std::filesystem::exists(folder_ / "lap.mcap")) << run.output;
-  }
+  void SetUp() override { std::filesystem::create_symlink(testing::recorded_lap(), folder_ / "lap.mcap"); }
 
   /// The pixels of a video, three bytes each.
   std::string pixels(const std::string& video) const {
@@ -38,11 +32,11 @@ int count(std::string_view pixels, int red, int green, int blue) {
   return found;
 }
 
-TEST_F(ReplayVideo, ShowsASpanOfARecording) {
+TEST_F(ExportCommand, FilmsASpanOfARecording) {
   if (run_shell("command -v ffmpeg").status != 0) GTEST_SKIP() << "ffmpeg is not installed";
   constexpr std::size_t picture = 960 * 540 * 3;  // bytes
   for (const std::string name : {"span.gif", "span.webm"}) {
-    expect_says(succeed("replay lap.mcap --video " + name + " --from 2 --to 2.4 --speed 0.5"),
+    expect_says(succeed("export lap.mcap " + name + " --from 2 --to 2.4 --speed 0.5"),
                 {"20 pictures, 0.8 s"});
     const std::string all = pixels(name);
     ASSERT_EQ(all.size(), 20 * picture) << name;
@@ -54,26 +48,32 @@ TEST_F(ReplayVideo, ShowsASpanOfARecording) {
   }
 }
 
-TEST_F(ReplayVideo, RefusesWhatItCannotWrite) {
-  const auto run =
-      run_shell("PATH=/nowhere '" SLALOM_PROGRAM "' replay lap.mcap --video lap.webm", folder_.string());
+TEST_F(ExportCommand, WritesAPageThatNeedsNothingElse) {
+  expect_says(succeed("export lap.mcap lap.html"), {"page: lap.html"});
+  const std::string page = content(folder_ / "lap.html");
+  EXPECT_TRUE(testing::contains(page, "<script type=\"application/x-slalom-replay\">"));
+  EXPECT_FALSE(testing::contains(page, "src=\"http"));
+}
+
+TEST_F(ExportCommand, RefusesWhatItCannotWrite) {
+  const auto run = run_shell("PATH=/nowhere '" SLALOM_PROGRAM "' export lap.mcap lap.webm", folder_.string());
   EXPECT_EQ(run.status, 1);
   expect_says(run.output, {"lap.webm: cannot be written: the program ffmpeg is not installed"});
-  expect_refused("replay lap.mcap --video lap.avi", {"--video", "must end with .gif, .webm, .mp4 or .webp"});
-  expect_refused("replay lap.mcap --video lap.gif --from 2 --to 1", {"--to: must be larger than --from"});
-  expect_refused("replay lap.mcap --video lap.gif --from 999", {"--from: must be before the recording ends"});
-  expect_refused("replay lap.mcap --speed 2", {"--speed", "--video"});
-  if (run_shell("command -v ffmpeg").status != 0) return;
-  expect_refused("replay lap.mcap --video nowhere/lap.gif --to 1",
-                 {"nowhere/lap.gif: cannot be written: ffmpeg ended"});
+  expect_refused("export lap.mcap lap.avi",
+                 {"file: 'lap.avi' must end with .html, .gif, .webm, .mp4 or .webp"}, 2);
+  expect_refused("export lap.mcap lap.gif --from 2 --to 1", {"--to: must be larger than --from"}, 2);
+  expect_refused("export lap.mcap lap.gif --from 999", {"--from: must be before the recording ends"});
+  expect_refused("export lap.mcap lap.html --speed 2", {"--from, --to, --speed: are for videos"}, 2);
+  expect_refused("export lap.mcap nowhere/lap.gif", {"nowhere/lap.gif: cannot be written: No such file"}, 1);
+  expect_refused("export lap.mcap lap.mcap", {"recording, file", "both name the file lap.mcap"}, 2);
 }
 
 using ReplayAgainst = testing::ProgramTest;
 
 TEST_F(ReplayAgainst, ComparesAPlannerWithTheDriver) {
-  succeed("drive --course wren --obstacles 2 --seed 3 --record-all --record lap.mcap");
+  const std::string lap = testing::recorded_lap().string();
   const auto compared = [&](const std::string& more) {
-    succeed("replay lap.mcap --against default --course wren --json all.json " + more);
+    succeed("replay " + lap + " --against default --course wren --json all.json " + more);
     return result("all.json");
   };
   // The same planner: the plans differ by their random numbers alone.
@@ -86,15 +86,14 @@ TEST_F(ReplayAgainst, ComparesAPlannerWithTheDriver) {
   const auto slow = compared("--set planner.max_speed=1");
   EXPECT_GT(slow["speed_m_s"]["median"].get<double>(), 1.5);
 
-  expect_refused("replay lap.mcap --against default", {"--against", "--course"});
-  expect_refused("replay lap.mcap --against default --course wren --video a.gif", {"--video"});
-  expect_refused("replay lap.mcap --against nothing --course wren", {"--config: ", "nothing"});
-}
-
-TEST_F(ReplayAgainst, NeedsAllScans) {
-  succeed("drive --course wren --set mppi.samples=100 --method mppi --record few.mcap");
-  expect_refused("replay few.mcap --against default --course wren",
-                 {"few.mcap: has only some of the scans; record the drive with --record-all"});
+  expect_refused("replay " + lap + " --against default", {"--against", "--course"}, 2);
+  expect_refused("replay " + lap + " --against default --course wren --port 0", {"--port", "--against"}, 2);
+  expect_refused("replay " + lap + " --against nothing --course wren", {"--config: ", "nothing"});
+  for (const std::string option : {"--plot a.png", "--method mppi", "--course wren", "--set a=b"})
+    expect_refused("replay " + lap + " " + option, {option.substr(0, option.find(' ')) + ": needs --against"},
+                   2);
+  expect_refused("replay " + testing::small_recording().string() + " --against default --course wren",
+                 {"lap.mcap: has only some of the scans; record the drive with --record-all"});
 }
 
 }  // namespace

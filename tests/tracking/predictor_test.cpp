@@ -249,8 +249,7 @@ TEST(Predictor, AllocatesNothingAndKeepsToItsCapacity) {
   EXPECT_EQ(testing::allocations(), before);
 }
 
-TEST(Predictor, RefusesWhatIsOutOfRange) {
-  EXPECT_THROW(Predictor(PredictorOptions{.interval = 0}), std::invalid_argument);
+TEST(Predictor, RefusesCoursesThatAreTooShortOrTooLong) {
   EXPECT_THROW(Predictor(std::vector<maps::ReferencePoint>(2)), std::invalid_argument);
   const std::vector<maps::ReferencePoint> far{
       {1e6, 0, 0, 1}, {0, 1e6, 0, 1}, {-1e6, 0, 0, 1}, {0, -1e6, 0, 1}};

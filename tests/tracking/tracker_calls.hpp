@@ -28,11 +28,6 @@ inline std::vector<maps::ReferencePoint> course() {
   return path;
 }
 
-struct TrackerTally {
-  long updates = 0, objects = 0, predictions = 0;
-  long statuses[5] = {};
-};
-
 /// Throws Finding unless all numbers of these objects are finite.
 inline void check(std::span<const TrackedObject> objects) {
   for (const TrackedObject& each : objects) {
@@ -66,8 +61,9 @@ inline void draw_scan(testing::Adversary& adversary, std::vector<float>& ranges,
     for (float& range : ranges) range = static_cast<float>(adversary.any(-1, 31));
 }
 
-/// One tracker, with a map or without, and its predictor. Throws Finding.
-inline void call_tracker(testing::Adversary& adversary, TrackerTally& tally) {
+/// One tracker, with a map or without, and its predictor. Returns the number of updates. Throws Finding.
+inline int call_tracker(testing::Adversary& adversary) {
+  constexpr int updates = 50;
   std::optional<ObjectTracker> tracker;
   if (adversary.below(2)) {
     tracker.emplace(room());
@@ -77,7 +73,7 @@ inline void call_tracker(testing::Adversary& adversary, TrackerTally& tally) {
   Predictor predictor = adversary.below(2) ? Predictor(course()) : Predictor();
   std::vector<float> ranges;
   double stamp = 0;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < updates; ++i) {
     const bool hostile = adversary.once_in(6);
     const auto value = [&](double low, double high) {
       return hostile ? adversary.any(low, high) : adversary.within(low, high);
@@ -100,13 +96,10 @@ inline void call_tracker(testing::Adversary& adversary, TrackerTally& tally) {
     const auto predicted = predictor.update(out.objects, input.stamp);
     limits.check();
     check(predicted);
-    ++tally.updates;
-    tally.objects += out.objects.size();
-    tally.predictions += predicted.size();
-    ++tally.statuses[static_cast<int>(out.status)];
     if (adversary.once_in(40)) tracker->reset();
     if (adversary.once_in(40)) predictor.reset();
   }
+  return updates;
 }
 
 }  // namespace slalom::tracking

@@ -16,12 +16,12 @@
 namespace slalom::vehicle::test {
 
 /// A course with what is made once for all drives on it.
-struct Place {
+struct PreparedCourse {
   Course course;
   std::shared_ptr<const sim::Track> track;
   std::vector<sim::PathPoint> path;
 
-  explicit Place(const std::string& name, double speed_factor = 0.8)
+  explicit PreparedCourse(const std::string& name, double speed_factor = 0.8)
       : course(load_course(std::filesystem::path(SLALOM_COURSES) / name)),
         track(std::make_shared<const sim::Track>(course.map)) {
     for (const auto& w : course.waypoints) path.push_back({{w.x, w.y}, speed_factor * w.speed});
@@ -34,9 +34,9 @@ struct Place {
   }
 };
 
-inline const Place& wren() {
-  static const Place place("wren");
-  return place;
+inline const PreparedCourse& wren() {
+  static const PreparedCourse prepared("wren");
+  return prepared;
 }
 
 /// A car that follows the path by its true pose, with a LiDAR of 1081 beams at 40 Hz and wheel odometry.
@@ -44,9 +44,9 @@ class Drive {
  public:
   static constexpr double time_step = 0.005, period = 0.025;  // s
 
-  Drive(const Place& place, const maps::Pose& start, std::uint64_t seed)
-      : world_(world_options(), place.track),
-        pursuit_(place.path, {.lookahead = 0.9}),
+  Drive(const PreparedCourse& prepared, const maps::Pose& start, std::uint64_t seed)
+      : world_(world_options(), prepared.track),
+        pursuit_(prepared.path, {.lookahead = 0.9}),
         odometry_(sim::CarParameters{}, {.seed = seed}) {
     world_.reset(seed, std::array{start});
     odometry_.reset(world_.state(0));

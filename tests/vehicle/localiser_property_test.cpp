@@ -13,7 +13,7 @@ namespace {
 
 using test::Drive;
 using test::error_of;
-using test::Place;
+using test::PreparedCourse;
 
 const char* const courses[] = {"eel", "fox", "hare", "mole", "stag", "swift", "wren"};
 
@@ -40,11 +40,11 @@ Track track(Localiser& localiser, Drive& drive, int updates) {
 
 TEST(LocaliserTracking, StaysWithinCentimetresOnEveryCourse) {
   for (const char* name : courses) {
-    const Place place(name);
-    Localiser localiser(place.course.map);
+    const PreparedCourse prepared(name);
+    Localiser localiser(prepared.course.map);
     for (const std::uint64_t seed : {1, 2}) {
       localiser.reset(seed);
-      Drive drive(place, place.at(0.31 * static_cast<double>(seed)), seed);
+      Drive drive(prepared, prepared.at(0.31 * static_cast<double>(seed)), seed);
       const Track got = track(localiser, drive, 400);
       // On the long straights of swift only parallel walls are in reach: odometry alone knows the way driven.
       const bool long_straights = std::string(name) == "swift";
@@ -57,9 +57,9 @@ TEST(LocaliserTracking, StaysWithinCentimetresOnEveryCourse) {
 
 TEST(LocaliserTracking, TheLikelihoodFieldTracksToo) {
   for (const char* name : {"wren", "mole"}) {
-    const Place place(name);
-    Localiser localiser(place.course.map, {.sensor_model = SensorModel::likelihood_field});
-    Drive drive(place, place.at(0.4), 1);
+    const PreparedCourse prepared(name);
+    Localiser localiser(prepared.course.map, {.sensor_model = SensorModel::likelihood_field});
+    Drive drive(prepared, prepared.at(0.4), 1);
     const Track got = track(localiser, drive, 400);
     EXPECT_LT(got.mean, 0.2) << name;
     EXPECT_LT(got.p99, 0.4) << name;
@@ -68,11 +68,11 @@ TEST(LocaliserTracking, TheLikelihoodFieldTracksToo) {
 }
 
 TEST(LocaliserTracking, ToleratesParkedCarsThatAreNotInTheMap) {
-  const Place place("wren");
-  Localiser localiser(place.course.map);
-  Drive drive(place, place.at(0.05), 1);
+  const PreparedCourse prepared("wren");
+  Localiser localiser(prepared.course.map);
+  Drive drive(prepared, prepared.at(0.05), 1);
   for (const double share : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
-    maps::Pose beside = place.at(share);
+    maps::Pose beside = prepared.at(share);
     beside.x -= 0.5 * std::sin(beside.yaw);
     beside.y += 0.5 * std::cos(beside.yaw);
     drive.world().add_parked_car(beside);
@@ -84,14 +84,14 @@ TEST(LocaliserTracking, ToleratesParkedCarsThatAreNotInTheMap) {
 
 /// A kidnapped car: driven for 1 s with a good estimate, put elsewhere on the course, driven on. Whether the
 /// estimate is right (0.3 m, 0.2 rad) within 5 s and from then on, until a second later.
-bool recovers(const Place& place, Localiser& localiser, int attempt) {
+bool recovers(const PreparedCourse& prepared, Localiser& localiser, int attempt) {
   localiser.reset(static_cast<std::uint64_t>(attempt));
   const double from = std::fmod(0.13 + 0.37 * attempt, 1.0),
                to = std::fmod(from + 0.3 + 0.011 * attempt, 1.0);
-  Drive drive(place, place.at(from), static_cast<std::uint64_t>(attempt + 1));
+  Drive drive(prepared, prepared.at(from), static_cast<std::uint64_t>(attempt + 1));
   localiser.start_at(drive.truth());
   for (int i = 0; i < 40; ++i, drive.step()) localiser.update(drive.input());
-  drive.kidnap(place.at(to));
+  drive.kidnap(prepared.at(to));
   int right_since = -1;
   for (int i = 0; i < 240; ++i, drive.step()) {
     const auto error = error_of(localiser.update(drive.input()).pose, drive.truth());
@@ -104,10 +104,10 @@ bool recovers(const Place& place, Localiser& localiser, int attempt) {
 TEST(LocaliserRecovery, FindsAKidnappedCarInAtLeast95Of100Tries) {
   int tries = 0, found = 0;
   for (const char* name : courses) {
-    const Place place(name);
-    Localiser localiser(place.course.map);
+    const PreparedCourse prepared(name);
+    Localiser localiser(prepared.course.map);
     for (int attempt = 0; attempt < 15 && tries < 100; ++attempt, ++tries)
-      found += recovers(place, localiser, attempt);
+      found += recovers(prepared, localiser, attempt);
   }
   RecordProperty("found", found);
   EXPECT_EQ(tries, 100);
@@ -117,11 +117,11 @@ TEST(LocaliserRecovery, FindsAKidnappedCarInAtLeast95Of100Tries) {
 TEST(LocaliserRecovery, LocalisesGloballyWithoutAnInitialPose) {
   int found = 0, tries = 0;
   for (const char* name : courses) {
-    const Place place(name);
-    Localiser localiser(place.course.map);
+    const PreparedCourse prepared(name);
+    Localiser localiser(prepared.course.map);
     for (int attempt = 0; attempt < 3; ++attempt, ++tries) {
       localiser.reset(static_cast<std::uint64_t>(attempt));
-      Drive drive(place, place.at(0.1 + 0.3 * attempt), static_cast<std::uint64_t>(attempt + 1));
+      Drive drive(prepared, prepared.at(0.1 + 0.3 * attempt), static_cast<std::uint64_t>(attempt + 1));
       for (int i = 0; i < 200; ++i, drive.step()) localiser.update(drive.input());
       const auto error = error_of(localiser.update(drive.input()).pose, drive.truth());
       found += error.distance < 0.3 && error.yaw < 0.2;

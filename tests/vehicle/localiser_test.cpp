@@ -15,7 +15,7 @@ namespace {
 
 using test::Drive;
 using test::error_of;
-using test::Place;
+using test::PreparedCourse;
 using test::wren;
 
 /// A room with a notch, so that no two poses look alike.
@@ -27,14 +27,6 @@ maps::OccupancyGrid room() {
       if (x < 2 || y < 2 || x >= 118 || y >= 78 || (x > 80 && y > 50))
         map.at(x, y) = maps::Occupancy::occupied;
   return map;
-}
-
-TEST(LocaliserConstruction, RejectsInvalidOptionsByName) {
-  const auto with = [](LocaliserOptions o) { return message_of([&] { Localiser(room(), o); }); };
-  EXPECT_EQ(with({}), "accepted");
-  EXPECT_NE(with({.beams = 4}).find("localiser.beams"), std::string::npos);
-  EXPECT_NE(with({.hit_deviation = NAN}).find("localiser.hit_deviation"), std::string::npos);
-  EXPECT_NE(with({.min_particles = 900, .max_particles = 800}).find("min_particles"), std::string::npos);
 }
 
 TEST(LocaliserConstruction, RejectsInvalidMaps) {
@@ -113,11 +105,11 @@ TEST(Localiser, FindsAStandingCarInARotatedMap) {
 TEST(Localiser, SearchesBeforeItIsSureOfAnUnknownStart) {
   int wrong = 0;
   for (const char* name : {"fox", "wren"}) {
-    const Place place(name);
-    Localiser localiser(place.course.map);
+    const PreparedCourse prepared(name);
+    Localiser localiser(prepared.course.map);
     for (const double share : {0.0, 0.3, 0.6}) {
       localiser.start_everywhere();
-      const Drive standing(place, place.at(share), 1);
+      const Drive standing(prepared, prepared.at(share), 1);
       LocaliserInput input = standing.input();
       bool sure = false, sure_elsewhere = false;
       for (int i = 1; i <= 110; ++i) {
@@ -158,29 +150,6 @@ TEST(Localiser, TakesFewerParticlesOnceItIsSure) {
   double sum = 0;
   for (int i = 0; i < localiser.particle_count(); ++i) sum += localiser.particle(i).weight;
   EXPECT_NEAR(sum, 1, 1e-6);
-}
-
-TEST(Localiser, ACopyGoesOnWithTheSameBitsAndAllocatesNothing) {
-  Localiser original(wren().course.map);
-  Drive drive(wren(), wren().at(0.2), 3);
-  original.start_at(drive.truth());
-  for (int i = 0; i < 20; ++i, drive.step()) {
-    if (i == 10) drive.kidnap(wren().at(0.7));
-    Localiser copy = original;
-    const LocaliserInput input = drive.input();
-    const long before = testing::allocations();
-    ASSERT_GT(before, 0) << "nothing is counted";
-    const LocaliserOutput after = copy.update(input);
-    const LocaliserOutput& expected = original.update(input);
-    EXPECT_EQ(testing::allocations(), before);
-    EXPECT_EQ(after.pose.x, expected.pose.x);
-    EXPECT_EQ(after.pose.yaw, expected.pose.yaw);
-    EXPECT_EQ(after.covariance[0][0], expected.covariance[0][0]);
-    EXPECT_EQ(after.fit, expected.fit);
-    EXPECT_EQ(copy.particle(copy.particle_count() / 2).pose.x,
-              original.particle(original.particle_count() / 2).pose.x);
-    if (i % 2 == 0) original = copy;
-  }
 }
 
 }  // namespace

@@ -32,10 +32,10 @@ struct Maps {
   }
 };
 
-using Car = PathTracking<Kinematic>;
+using KinematicProblem = PathTracking<Kinematic>;
 
 /// A vehicle problem on these maps.
-template <class Problem = Car>
+template <class Problem = KinematicProblem>
 Problem on(const Maps& maps, const PathTrackingOptions& options) {
   Problem car(options);
   maps.give_to(car);
@@ -56,9 +56,9 @@ TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
   options.time_step = 0.001;
   options.speed = SpeedModel::constant;
   const Maps maps;
-  const Car car = on(maps, options);
+  const KinematicProblem car = on(maps, options);
   const double steer = 0.3, radius = 0.3302 / std::tan(steer);
-  Car::State<double> s{0, 0, 0, 1, steer, 0};
+  KinematicProblem::State<double> s{0, 0, 0, 1, steer, 0};
   const double turn = 1.0 / radius;  // after 1 s at 1 m/s
   for (int k = 0; k < 1000; ++k) s = car.step(s, car.look_up(s), Input<double, 1>{{steer}}, k);
   EXPECT_NEAR(s.yaw, turn, 1e-9);
@@ -97,7 +97,7 @@ TEST(PublishedVehicle, YawGainIsTooHighBy42Percent) {
   lengths.front_length = 0.189;
   lengths.rear_length = 0.135;
   EXPECT_NEAR(yaw_gain(published::OneTrajectory(lengths, published::ModelOptions::published())), 4.32, 0.005);
-  EXPECT_NEAR(yaw_gain(Car(PathTrackingOptions{})), 3.03, 0.005);
+  EXPECT_NEAR(yaw_gain(KinematicProblem(PathTrackingOptions{})), 3.03, 0.005);
 }
 
 TEST(PathTracking, CostIsThatOfDistanceYawAndCollision) {
@@ -109,8 +109,8 @@ TEST(PathTracking, CostIsThatOfDistanceYawAndCollision) {
   options.cost.outside_terminal_cost = 11;
   options.body.model = BodyModel::box;
   const Maps maps;
-  const Car car = on(maps, options);
-  const Car::State<double> inside{0.2, 0.3, 6.5, 1, 0, 0}, outside{50, 0, 1, 1, 0, 0};
+  const KinematicProblem car = on(maps, options);
+  const KinematicProblem::State<double> inside{0.2, 0.3, 6.5, 1, 0, 0}, outside{50, 0, 1, 1, 0, 0};
   const Input<double, 1> u{{0}};
   const double error = 6.5 - 2 * std::acos(-1.0);
   EXPECT_NEAR(car.stage_cost(inside, car.look_up(inside), u).value, 3 * 4 + 0.5 * error * error, 1e-12);
@@ -125,9 +125,9 @@ TEST(PathTracking, SpeedFollowsTheReferenceWithinItsLimits) {
   options.max_acceleration = 4;
   options.max_deceleration = 2;
   const Maps maps;
-  const Car car = on(maps, options);
+  const KinematicProblem car = on(maps, options);
   const auto next_speed = [&](double speed) {
-    const Car::State<double> s{0, 0, 0, speed, 0, 0};
+    const KinematicProblem::State<double> s{0, 0, 0, speed, 0, 0};
     return car.step(s, car.look_up(s), Input<double, 1>{{0}}, 0).speed;
   };
   EXPECT_NEAR(next_speed(1), 1.2, 1e-12);
@@ -169,9 +169,10 @@ TEST(PathTracking, LocalPositionIsThatInTheRobotsFrame) {
   maps.obstacles[3 * 16 + 4] = 100;  // x in (1, 2], y in (0, 1], robot frame
   PathTrackingOptions options;
   options.body.model = BodyModel::box;
-  Car car(options);
+  KinematicProblem car(options);
   maps.give_to(car, 10, -5, std::acos(-1.0) / 2);  // the robot looks along +y of the map
-  const Car::State<double> hit{10 - 0.5, -5 + 1.5, 0, 1, 0, 0}, free{10 + 0.5, -5 + 1.5, 0, 1, 0, 0};
+  const KinematicProblem::State<double> hit{10 - 0.5, -5 + 1.5, 0, 1, 0, 0},
+      free{10 + 0.5, -5 + 1.5, 0, 1, 0, 0};
   EXPECT_EQ(car.look_up(hit).obstacle, 100);
   EXPECT_EQ(car.look_up(free).obstacle, 0);
 }
@@ -185,8 +186,9 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
   options.body.model = BodyModel::discs;
   options.body.front = 1.2;
   options.body.rear = 0;
-  const Car car = on(maps, options);
-  const Car::State<double> towards{0.5, 0.5, 0, 1, 0, 0}, away{0.5, 0.5, std::acos(-1.0), 1, 0, 0};
+  const KinematicProblem car = on(maps, options);
+  const KinematicProblem::State<double> towards{0.5, 0.5, 0, 1, 0, 0},
+      away{0.5, 0.5, std::acos(-1.0), 1, 0, 0};
   EXPECT_EQ(car.look_up(towards).obstacle, 100);
   EXPECT_EQ(car.look_up(away).obstacle, 0);
   const Input<double, 1> u{{0}};
@@ -202,7 +204,7 @@ TEST(PathTracking, SmallClearanceCostsBeforeACollision) {
   const auto value_at = [&](double clearance) {
     Maps maps;
     for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : static_cast<float>(clearance);
-    return on(maps, options).look_up(Car::State<double>{0, 0, 0, 1, 0, 0}).obstacle;
+    return on(maps, options).look_up(KinematicProblem::State<double>{0, 0, 0, 1, 0, 0}).obstacle;
   };
   EXPECT_EQ(value_at(radius + options.body.margin - 0.01), 100);
   EXPECT_NEAR(value_at(radius + options.body.margin + 0.5 * options.body.soft_margin), 8 * 0.25, 1e-4);

@@ -41,7 +41,7 @@ class VehicleModelContract : public ::testing::TestWithParam<std::string> {
     const std::vector<maps::Point> obstacle = {{3, 0.4}};
     clearance_.add(obstacle);
     inflated_.add_points(obstacle);
-    const bool clearance = model_->traits().obstacle_map == ObstacleMap::clearance;
+    const bool clearance = model_->traits().obstacles.map == ObstacleMap::clearance;
     model_->set_maps({field_.view(), clearance ? clearance_.view() : inflated_.view(), {5, 0.2, 0.1}});
   }
 
@@ -64,8 +64,8 @@ TEST_P(VehicleModelContract, HasTheTraitsAndInputsThatItsOptionsSay) {
   EXPECT_EQ(traits.time_step, model_->evaluator().time_step());
   EXPECT_GT(traits.wheelbase, 0);
   EXPECT_GT(traits.max_deceleration, 0);
-  if (traits.obstacle_map == ObstacleMap::clearance) {
-    EXPECT_GT(traits.clearance_reach, 0);
+  if (traits.obstacles.map == ObstacleMap::clearance) {
+    EXPECT_GT(traits.obstacles.reach, 0);
   }
 }
 
@@ -192,7 +192,7 @@ struct Trolley {
     traits.time_step = dt;
     traits.wheelbase = 1;
     traits.max_deceleration = 1;
-    traits.plans_speed = true;
+    traits.speed.planned = true;
     return traits;
   }
 };

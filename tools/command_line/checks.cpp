@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Options that name a file to be written.
-constexpr const char* outputs[] = {"--json", "--record", "--plot", "--html", "--table"};
+/// Options that name a file to be written; `file` is positional.
+constexpr const char* outputs[] = {"--json", "--record", "--plot", "--table", "file"};
 
 /// A canonical path, equal for equal files; empty for devices and pipes, which can be named more than once.
 std::string canonical_path(const std::string& file) {
@@ -68,7 +68,8 @@ void check_files(const std::vector<GivenOption>& options) {
   std::map<std::string, std::string> taken;  // options by the paths of their files
   for (const GivenOption& option : options)
     for (const std::string& value : option.values) {
-      const bool input = option.positional || option.name == "--config" || option.name == "--compare";
+      const bool input = (option.positional && option.name != "file") || option.name == "--config" ||
+                         option.name == "--compare";
       if (input && fs::is_regular_file(value)) taken.emplace(canonical_path(value), option.name);
     }
   for (const char* name : outputs)

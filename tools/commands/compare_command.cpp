@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
@@ -11,6 +13,7 @@
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/evaluation/comparison.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -29,74 +32,52 @@ struct Match {
   std::string place;  ///< name of the evaluation, where folders of several are compared
   std::vector<Experiment> experiments;
   std::vector<LapRow> rows;
-  bool is_paired;  ///< lap k of both has the same seed: the same obstacles
-  std::vector<ExperimentResult> results = {};
-  double ms_p = 1, success_p = 1, collision_p = 1;
+  bool is_paired;                           ///< lap k of both has the same seed: the same obstacles
+  bool tests_ms;                            ///< both have the same weights
+  std::array<std::int64_t, 2> obstacles{};  ///< numbers of obstacles of all laps
+  std::array<ExperimentResult, 2> results{};
+  Comparison comparison{};
 
   std::string name() const {
     const std::string first = experiments[0].label(), second = experiments[1].label();
     return first == second ? first : first + " | " + second;
   }
+  /// Adds the laps of another match, with numbers of their own, so that pairs remain pairs.
+  void add(const Match& other, int count) {
+    for (LapRow row : other.rows) {
+      row.lap += count * 1'000'000;
+      rows.push_back(row);
+    }
+    for (std::size_t side : {0U, 1U}) obstacles[side] += other.obstacles[side];
+    is_paired = is_paired && other.is_paired;
+    tests_ms = tests_ms && other.tests_ms;
+  }
+  void evaluate() {
+    const auto all = summarise(rows, experiments);
+    results = {all[0], all[1]};
+    comparison = compare_laps(rows_of(rows, 0), obstacles[0], rows_of(rows, 1), obstacles[1], is_paired);
+    if (!tests_ms) comparison.ms_p.reset();
+  }
 };
 
-/// Compares the laps of a match.
-void evaluate(Match& m) {
-  std::stable_sort(m.rows.begin(), m.rows.end(),
-                   [](const LapRow& a, const LapRow& b) { return a.lap < b.lap; });
-  m.results = summarise(m.rows, m.experiments);
-  if (m.is_paired) {
-    Experiment second = m.experiments[0];
-    second.laps = m.experiments[1].laps;
-    const PairedComparison c = compare_pairs(m.rows, {m.experiments[0], second}).front();
-    m.ms_p = c.ms_p;
-    m.success_p = c.success_p;
-    m.collision_p = c.collision_p;
-    return;
-  }
-  std::array<std::vector<double>, 2> costs;
-  std::array<std::int64_t, 2> successes{}, obstacles{};
-  for (const LapRow& row : m.rows) {
-    const auto side = static_cast<std::size_t>(row.experiment);
-    costs[side].push_back(row.mean_sequence_cost());
-    successes[side] += row.success;
-    obstacles[side] += m.experiments[side].obstacles;
-  }
-  const auto &a = m.results[0], &b = m.results[1];
-  m.ms_p = bootstrap_difference_p(costs[0], costs[1]);
-  m.success_p = fisher_p(successes[0], a.laps, successes[1], b.laps);
-  m.collision_p = fisher_p(a.collisions, obstacles[0], b.collisions, obstacles[1]);
+/// The comparison of the laps of several matches.
+Match together(const std::vector<const Match*>& matches, const std::string& place) {
+  Match sum{place, matches.front()->experiments, {}, true, true};
+  for (int count = 0; const Match* each : matches) sum.add(*each, count++);
+  sum.evaluate();
+  return sum;
 }
 
 /// For each name and scenario, the comparison of the laps of all places where they are paired.
-std::vector<Match> together(const std::vector<Match>& matches) {
+std::vector<Match> over_places(const std::vector<Match>& matches) {
+  std::map<std::string, std::vector<const Match*>> alike;
+  for (const Match& each : matches)
+    if (each.is_paired)
+      alike[each.name() + ", " + each.experiments[0].scenario + std::to_string(each.experiments[0].obstacles)]
+          .push_back(&each);
   std::vector<Match> sums;
-  std::vector<bool> taken(matches.size());
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (taken[i] || !matches[i].is_paired) continue;
-    Match sum{"", matches[i].experiments, {}, true};
-    const Experiment& first = sum.experiments[0];
-    int places = 0;
-    for (std::size_t j = i; j < matches.size(); ++j) {
-      const Match& other = matches[j];
-      const Experiment& own = other.experiments[0];
-      if (!other.is_paired || other.name() != matches[i].name() || own.scenario != first.scenario ||
-          own.obstacles != first.obstacles)
-        continue;
-      taken[j] = true;
-      // The laps of each place get numbers of their own, so that pairs remain pairs.
-      for (LapRow row : other.rows) {
-        row.lap += places * 1'000'000;
-        sum.rows.push_back(row);
-      }
-      ++places;
-    }
-    if (places < 2) continue;
-    for (Experiment& experiment : sum.experiments) experiment.laps = 0;
-    for (const LapRow& row : sum.rows) ++sum.experiments[static_cast<std::size_t>(row.experiment)].laps;
-    sum.place = "all " + std::to_string(places);
-    evaluate(sum);
-    sums.push_back(std::move(sum));
-  }
+  for (const auto& [name, places] : alike)
+    if (places.size() > 1) sums.push_back(together(places, "all " + std::to_string(places.size())));
   return sums;
 }
 
@@ -108,41 +89,48 @@ Json differing_settings(const Json& a, const Json& b) {
   for (const auto& each : all.items()) {
     const std::string& key = each.key();
     const Json ours = first.value(key, Json()), theirs = second.value(key, Json());
-    if (key.rfind("/experiments", 0) != 0 && ours != theirs)
+    if (key.rfind("/experiments", 0) != 0 && key != "/checksum" && ours != theirs)
       list.push_back({{"setting", key.substr(1)}, {"first", ours}, {"second", theirs}});
   }
   return list;
 }
 
-std::string p_text(double p) {
-  if (!std::isfinite(p)) return "-";
-  return p < 0.001 ? "< 0.001 *" : formatted("%.3f%s", p, p < 0.05 ? " *" : "");
-}
-
-void print(const std::vector<Match>& matches, std::FILE* out) {
-  std::size_t width = 10;
-  const auto title = [](const Match& m) { return m.place.empty() ? m.name() : m.place + ": " + m.name(); };
-  for (const Match& m : matches) width = std::max(width, title(m).size());
-  std::fprintf(out, "%-*s     %11s %20s %20s %-10s %17s %-10s %17s %-10s %s\n", static_cast<int>(width), "",
-               "laps", "MS", "MS", "p", "collisions", "p", "success, %", "p", "");
-  for (const Match& m : matches) {
-    const ExperimentResult &a = m.results[0], &b = m.results[1];
-    const auto ms = [](const ExperimentResult& r) {
-      return r.laps < fewest_laps ? formatted("%.3f", r.ms_mean)
-                                  : formatted("%.3f (%.3f-%.3f)", r.ms_mean, r.ms_ci.low, r.ms_ci.high);
-    };
-    std::fprintf(out, "%-*s %-3s %5d %5d %20s %20s %-10s %8d %8d %-10s %8.1f %8.1f %-10s %s\n",
-                 static_cast<int>(width), title(m).c_str(), m.experiments[0].scenario.c_str(), a.laps, b.laps,
-                 ms(a).c_str(), ms(b).c_str(), p_text(m.ms_p).c_str(), a.collisions, b.collisions,
-                 p_text(m.collision_p).c_str(), 100 * a.success_rate, 100 * b.success_rate,
-                 p_text(m.success_p).c_str(), m.is_paired ? "paired" : "unpaired");
-  }
+/// Prints a match: the figures of both sides, and the p values of their differences.
+void print(const Match& m, const std::array<std::string, 2>& names, std::FILE* out) {
+  const auto row = [&](const char* figure, const std::string& first, const std::string& second,
+                       const std::optional<double>& p) {
+    std::fprintf(out, "  %-16s %28s %28s   %s\n", figure, first.c_str(), second.c_str(), p_text(p).c_str());
+  };
+  const auto& [a, b] = m.results;
+  const auto rate = [](const ExperimentResult& r) {
+    return formatted("%.1f (%.1f-%.1f)", 100 * r.success_rate, 100 * r.success_rate_ci.low,
+                     100 * r.success_rate_ci.high);
+  };
+  const auto end_of = [](const std::string& name) {
+    return name.size() > 26 ? name.substr(name.size() - 26) : name;
+  };
+  std::fprintf(out, "\n%s%s, %s, %s\n  %-16s %28s %28s   %s\n",
+               m.place.empty() ? "" : (m.place + ": ").c_str(), m.name().c_str(),
+               m.experiments[0].scenario.c_str(), m.is_paired ? "paired by lap" : "unpaired", "",
+               end_of(names[0]).c_str(), end_of(names[1]).c_str(), "p");
+  const Comparison& c = m.comparison;
+  std::fprintf(out, "  %-16s %28d %28d\n", "laps", a.laps, b.laps);
+  row("success, %", rate(a), rate(b), c.success_p);
+  row("collisions", std::to_string(a.collisions), std::to_string(b.collisions), c.collisions_p);
+  row("lap time, s", mean_text(a.time_mean, a.time_ci, a.finished),
+      mean_text(b.time_mean, b.time_ci, b.finished), c.time_p);
+  row("MS", mean_text(a.ms_mean, a.ms_ci, a.laps), mean_text(b.ms_mean, b.ms_ci, b.laps), c.ms_p);
 }
 
 /// The match of an experiment of each evaluation. Throws IoError if one has no laps.
 Match match(const std::string& place, const StoredEvaluation& a, std::size_t i, const StoredEvaluation& b,
             std::size_t j, bool is_paired) {
-  Match made{place, {a.experiments[i], b.experiments[j]}, {}, is_paired};
+  const Json settings_a = parse_json(a.settings), settings_b = parse_json(b.settings);
+  Match made{place,
+             {a.experiments[i], b.experiments[j]},
+             {},
+             is_paired,
+             same_weights(settings_a, a.experiments[i], settings_b, b.experiments[j])};
   for (int side = 0; const auto& [stored, index] : {std::pair(&a, i), std::pair(&b, j)}) {
     const std::size_t before = made.rows.size();
     for (LapRow row : stored->rows) {
@@ -151,26 +139,33 @@ Match match(const std::string& place, const StoredEvaluation& a, std::size_t i, 
       made.rows.push_back(row);
     }
     const Experiment& experiment = stored->experiments[index];
+    made.obstacles[static_cast<std::size_t>(side)] = static_cast<std::int64_t>(experiment.obstacles) *
+                                                     static_cast<std::int64_t>(made.rows.size() - before);
     if (made.rows.size() == before)
       throw IoError(stored->folder.string(), 0,
                     "has no lap of " + experiment.label() + ", " + experiment.scenario +
                         "; both folders must have laps of the experiments that are compared");
     ++side;
   }
-  evaluate(made);
+  made.evaluate();
   return made;
 }
 
+/// The experiments of both in the same scenario: those that are the same, or else those of the same method,
+/// or else all with all.
 std::vector<Match> match_all(const std::string& place, const StoredEvaluation& a, const StoredEvaluation& b,
                              bool is_paired) {
+  const std::function<bool(const Experiment&, const Experiment&)> rules[] = {
+      [](const auto& x, const auto& y) { return x.label() == y.label(); },
+      [](const auto& x, const auto& y) { return x.method == y.method; },
+      [](const auto&, const auto&) { return true; }};
   std::vector<Match> matches;
-  // Evaluations without a common experiment are compared experiment by experiment of the same scenario.
-  for (const bool exactly : {true, false}) {
+  for (const auto& belong_together : rules) {
     for (std::size_t i = 0; i < a.experiments.size(); ++i)
       for (std::size_t j = 0; j < b.experiments.size(); ++j) {
         const Experiment &ea = a.experiments[i], &eb = b.experiments[j];
-        if (ea.scenario != eb.scenario || ea.obstacles != eb.obstacles) continue;
-        if (!exactly || ea.label() == eb.label()) matches.push_back(match(place, a, i, b, j, is_paired));
+        if (ea.scenario == eb.scenario && ea.obstacles == eb.obstacles && belong_together(ea, eb))
+          matches.push_back(match(place, a, i, b, j, is_paired));
       }
     if (!matches.empty()) break;
   }
@@ -193,30 +188,25 @@ std::vector<std::string> places_of(const CompareArguments& arguments) {
 }
 
 Json json_of(const Match& m) {
-  const auto side = [](const ExperimentResult& r) {
-    return Json{{"laps", r.laps},
-                {"ms_mean", r.ms_mean},
-                {"ms_ci", r.laps < fewest_laps ? Json(nullptr) : Json{r.ms_ci.low, r.ms_ci.high}},
-                {"contacts", r.collisions},
-                {"success_rate", r.success_rate}};
-  };
   Json entry = Json::object();
   if (!m.place.empty()) entry["place"] = m.place;
-  entry["name"] = m.name();
-  entry["scenario"] = m.experiments[0].scenario;
-  entry["paired"] = m.is_paired;
-  entry["first"] = side(m.results[0]);
-  entry["second"] = side(m.results[1]);
-  entry["ms_p"] = m.ms_p;
-  entry["contacts_p"] = m.collision_p;
-  entry["success_p"] = m.success_p;
+  entry.update({{"name", m.name()},
+                {"scenario", m.experiments[0].scenario},
+                {"first", result_json(m.results[0])},
+                {"second", result_json(m.results[1])}});
+  entry.update(comparison_json(m.comparison));
   return entry;
 }
 
-int compare(const CompareArguments& arguments) {
-  std::FILE* words = arguments.json == "-" ? stderr : stdout;
+/// Both sides of a comparison, place by place.
+struct Sides {
   std::vector<Match> matches;
-  Json settings = Json::array();
+  Json settings = Json::array();   ///< those that differ
+  std::vector<std::string> notes;  ///< sentences
+};
+
+Sides read_sides(const CompareArguments& arguments) {
+  Sides sides;
   for (const std::string& place : places_of(arguments)) {
     const StoredEvaluation a = load_evaluation(fs::path(arguments.first) / place),
                            b = load_evaluation(fs::path(arguments.second) / place);
@@ -226,31 +216,51 @@ int compare(const CompareArguments& arguments) {
     auto found = match_all(place, a, b, same_world);
     if (found.empty())
       throw IoError(b.folder.string(), 0, "has no scenario that " + a.folder.string() + " has");
-    matches.insert(matches.end(), found.begin(), found.end());
+    sides.matches.insert(sides.matches.end(), found.begin(), found.end());
     for (const auto* e : {&a, &b})
-      if (!e->complete) std::fprintf(words, "note: %s is not complete\n", e->folder.c_str());
+      if (!e->complete) sides.notes.push_back(e->folder.string() + " is not complete");
     for (const auto& d : differing_settings(sa, sb))
-      if (std::find(settings.begin(), settings.end(), d) == settings.end()) settings.push_back(d);
+      if (std::find(sides.settings.begin(), sides.settings.end(), d) == sides.settings.end())
+        sides.settings.push_back(d);
   }
-  for (const auto& d : settings)
-    std::fprintf(words, "%s: %s | %s\n", d["setting"].get<std::string>().c_str(),
+  return sides;
+}
+
+int compare(const CompareArguments& arguments) {
+  std::FILE* words = arguments.json == "-" ? stderr : stdout;
+  Sides sides = read_sides(arguments);
+  std::vector<const Match*> all;
+  for (const Match& each : sides.matches) all.push_back(&each);
+  const std::array<std::string, 2> names{arguments.first, arguments.second};
+  const Match whole = together(all, "");
+  const std::string sentence = verdict(names, whole.results, whole.comparison);
+  const auto sums = over_places(sides.matches);
+  sides.matches.insert(sides.matches.end(), sums.begin(), sums.end());
+
+  std::fprintf(words, "%s\n", sentence.c_str());
+  for (const std::string& note : sides.notes) std::fprintf(words, "note: %s\n", note.c_str());
+  for (const Match& m : sides.matches) print(m, names, words);
+  if (!whole.tests_ms) std::fprintf(words, "\nMS is not tested where the weights of the two differ.\n");
+  if (!sides.settings.empty()) std::fprintf(words, "\nsettings that differ\n");
+  for (const auto& d : sides.settings)
+    std::fprintf(words, "  %s: %s | %s\n", d["setting"].get<std::string>().c_str(),
                  json_text(d["first"]).c_str(), json_text(d["second"]).c_str());
-  const auto sums = together(matches);
-  matches.insert(matches.end(), sums.begin(), sums.end());
-  print(matches, words);
   if (arguments.json.empty()) return 0;
   Json list = Json::array();
-  for (const Match& m : matches) list.push_back(json_of(m));
-  write_json(
-      {{"first", arguments.first}, {"second", arguments.second}, {"settings", settings}, {"results", list}},
-      arguments.json);
+  for (const Match& m : sides.matches) list.push_back(json_of(m));
+  write_json({{"verdict", sentence},
+              {"first", arguments.first},
+              {"second", arguments.second},
+              {"settings", sides.settings},
+              {"results", list}},
+             arguments.json);
   return 0;
 }
 
 }  // namespace
 
 void declare_compare(Subcommand& command) {
-  command.summary("Compare two evaluations, with tests of significance");
+  command.summary("Compare two evaluations: which is better, with tests of significance");
   const auto arguments = std::make_shared<CompareArguments>();
   command.option("first", arguments->first, "Output folder of an evaluation, or a folder of several")
       .required();

@@ -6,7 +6,6 @@
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/claims.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
-#include "tools/evaluation/racing_benchmark.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -17,17 +16,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* paper_course = "berlin";  // with --paper, unless --course is given
 constexpr const char* other_course = "stag";    // without
-constexpr const char* gap_driver = "follow_the_gap";
-/// The configuration of a planner in the racing benchmark, unless given.
-constexpr const char* racing_configuration = "racing_benchmark";
 
 struct ReproduceArguments {
   EvaluationArguments evaluation;
-  std::string paper, benchmark, driver = "svg_mppi", car = vehicle::RacingCar{}.name;
+  std::string paper;
   std::vector<std::string> tables;
-  double margin = 0.12;  ///< m, in the racing benchmark
   int laps_pt = 30, laps_oa = 100, obstacles = 5;
-  bool quick = false, claims = false, course_given = false, config_given = false;
+  bool quick = false, claims = false, course_given = false;
 };
 
 /// Prints the rows of a table beside the authors' results.
@@ -118,70 +113,15 @@ int reproduce(ReproduceArguments arguments) {
   return 0;
 }
 
-/// Drives the racing benchmark on its four maps.
-int run_racing(ReproduceArguments arguments) {
-  if (arguments.benchmark != "racing")
-    throw CommandLineError("--benchmark", arguments.benchmark, "must be racing");
-  if (!arguments.course_given)
-    throw CommandLineError("--course", "must name the folder of the benchmark's maps and centre lines");
-  ScenarioArguments& scenario = arguments.evaluation.scenario;
-  if (!arguments.config_given) scenario.config = racing_configuration;
-  const std::string& json = arguments.evaluation.json;
-  std::FILE* words = json == "-" ? stderr : stdout;
-  const bool gap = arguments.driver == gap_driver;
-  Json summary{{"benchmark", arguments.benchmark}, {"driver", arguments.driver}};
-  if (!gap) {
-    summary["config"] = scenario.config;
-    summary["margin_m"] = arguments.margin;
-    summary["car"] = arguments.car;
-  }
-  vehicle::RacingCar car = find_racing_car(arguments.car);
-  car.margin = arguments.margin;
-  std::fprintf(words, "%-4s %10s %10s %12s\n", "map", "mean, s", "completed", "beyond grip");
-  for (const char* name : racing_maps) {
-    const RacingMap map = load_racing_map(scenario.course, name);
-    const auto driver =
-        gap ? make_gap_driver()
-            : make_planner_driver(map, load_configuration(scenario, arguments.driver), arguments.driver, car);
-    const auto laps = drive_benchmark_laps(map, driver, arguments.quick ? 1 : racing_laps);
-    const Json results = racing_results(laps);
-    summary["maps"][name] = results;
-    const Json& mean = results["mean_s"];
-    std::fprintf(words, "%-4s %10s %4d of %2zu %10.2f %%\n", name,
-                 mean.is_null() ? "-" : short_number(mean.get<double>()).c_str(),
-                 results["completed"].get<int>(), laps.size(), 100 * results["beyond_grip"].get<double>());
-    std::fflush(words);
-  }
-  if (!json.empty()) write_json(summary, json);
-  return 0;
-}
-
 }  // namespace
 
 void declare_reproduce(Subcommand& command) {
-  command.summary(
-      "Reproduce the simulation section of the paper and compare it with the authors' logs, or drive another "
-      "benchmark");
+  command.summary("Reproduce the simulation section of the paper and compare it with the authors' logs");
   const auto arguments = std::make_shared<ReproduceArguments>();
   auto& scenario = arguments->evaluation.scenario;
   scenario.course = paper_course;
   scenario.config = scenario.evaluation = "published";
   add_evaluation_options(command, arguments->evaluation);
-  command.option(
-      "--benchmark", arguments->benchmark,
-      "racing: the benchmark of Evans et al. (arXiv 2402.18558) instead; --course is the folder of its "
-      "maps aut, esp, gbr and mco, and no --out is needed");
-  command.option(
-      "--driver", arguments->driver,
-      "With --benchmark: follow_the_gap, or a method: the planner of --config [racing_benchmark] then "
-      "drives along the minimum-time raceline");
-  command.option("--margin", arguments->margin,
-                 "With --benchmark: distance that the car on the raceline keeps from walls, m; in narrow "
-                 "places less, down to 0.4 of it",
-                 {0, 10});
-  command.option(
-      "--car", arguments->car,
-      "With --benchmark: car of the raceline: f1tenth, passenger, or a YAML file (docs/courses.md)");
   command.option(
       "--paper", arguments->paper,
       "Clone of the authors' repository, github.com/kohonda/proj-svg_mppi, for its courses and logs; "
@@ -196,14 +136,9 @@ void declare_reproduce(Subcommand& command) {
   command.flag("--claims", arguments->claims,
                "Only test the paper's claims on the logs of --paper, without driving");
   command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();
-  command.examples({"reproduce --paper path/to/proj-svg_mppi --quick --out OUT",
-                    "reproduce --benchmark racing --course MAPS --json racing.json"});
+  command.examples({"reproduce --paper path/to/proj-svg_mppi --quick --out OUT"});
   command.action([arguments, &command] {
     arguments->course_given = command.given("--course");
-    arguments->config_given = command.given("--config");
-    if (!arguments->benchmark.empty()) return run_racing(*arguments);
-    for (const char* flag : {"--driver", "--margin", "--car"})
-      if (command.given(flag)) throw CommandLineError(flag, "needs --benchmark");
     if (arguments->claims && arguments->paper.empty()) throw CommandLineError("--claims", "needs --paper");
     if (arguments->evaluation.out.empty() && !arguments->claims)
       throw CommandLineError("--out", "is required");

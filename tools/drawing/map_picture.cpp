@@ -52,7 +52,7 @@ std::uint32_t argb(Colour c) {
 }
 
 /// A value per cell, read between the cells' centres.
-struct Field {
+struct CellValues {
   int width = 0, height = 0;
   std::vector<float> values;
 
@@ -68,13 +68,13 @@ struct Field {
   }
 };
 
-/// A field that is 1 on the cells of one kind and 0 elsewhere, blurred a little: its contours lack the cells'
+/// Values that are 1 on the cells of one kind and 0 elsewhere, blurred a little: its contours lack the cells'
 /// steps.
-Field smoothed_cells(const maps::OccupancyGrid& map, maps::Occupancy kind) {
+CellValues smoothed_cells(const maps::OccupancyGrid& map, maps::Occupancy kind) {
   static constexpr std::array<double, 3> weights = {0.40, 0.24, 0.06};  // a Gaussian of about one cell
-  Field field{map.width, map.height, {}}, across = field;
-  for (const auto cell : map.cells) field.values.push_back(cell == kind ? 1.0f : 0.0f);
-  const auto blur = [&](const Field& from, int dx, int dy) {
+  CellValues smoothed{map.width, map.height, {}}, across = smoothed;
+  for (const auto cell : map.cells) smoothed.values.push_back(cell == kind ? 1.0f : 0.0f);
+  const auto blur = [&](const CellValues& from, int dx, int dy) {
     std::vector<float> values(from.values.size());
     for (int row = 0; row < map.height; ++row)
       for (int column = 0; column < map.width; ++column) {
@@ -86,9 +86,9 @@ Field smoothed_cells(const maps::OccupancyGrid& map, maps::Occupancy kind) {
       }
     return values;
   };
-  across.values = blur(field, 1, 0);
-  field.values = blur(across, 0, 1);
-  return field;
+  across.values = blur(smoothed, 1, 0);
+  smoothed.values = blur(across, 0, 1);
+  return smoothed;
 }
 
 /// The depth of a pixel inside a contour at `level`, 0..1, over about one pixel; `cell` is a cell's size in
@@ -100,8 +100,8 @@ double edge(double value, double level, double cell) {
 }  // namespace
 
 std::vector<std::uint32_t> map_pixels(const maps::OccupancyGrid& map, const MapView& view) {
-  const Field walls = smoothed_cells(map, maps::Occupancy::occupied),
-              roads = smoothed_cells(map, maps::Occupancy::free);
+  const CellValues walls = smoothed_cells(map, maps::Occupancy::occupied),
+                   roads = smoothed_cells(map, maps::Occupancy::free);
   std::vector<std::uint32_t> pixels;
   pixels.reserve(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   const double cell = view.scale * map.resolution;

@@ -40,9 +40,18 @@ struct Evaluated {
   evaluation::Evaluation evaluation;
   std::vector<evaluation::LapRow> rows;
   std::vector<evaluation::ExperimentResult> results;
-  nlohmann::ordered_json summary() const;
+
+  const evaluation::Experiment& experiment(int index) const {
+    return evaluation.experiments[static_cast<std::size_t>(index)];
+  }
+  /// Every pair of experiments of a scenario. MS is not tested where their weights differ.
+  std::vector<evaluation::PairedComparison> comparisons() const;
+  /// Every other experiment of a scenario (a) compared with its reference (b): svg_mppi with its own options,
+  /// else the first.
+  std::vector<evaluation::PairedComparison> against_reference() const;
   /// The laps of an experiment in which an obstacle stands where the car starts.
   std::vector<int> laps_begun_in_contact(int experiment) const;
+  nlohmann::ordered_json summary() const;
 };
 
 /// All that is driven, with the settings that are kept beside the laps.

@@ -69,7 +69,7 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
           {"laps", log.laps},
           {"paired_laps", c.paired ? c.our_laps : 0},
           {"timeouts", log.timeouts},
-          {"contacts", log.collisions},
+          {"collisions", log.collisions},
           {"ms_mean", c.ms_mean},
           {"ms_ci", interval(c.ms_ci)},
           {"ms_ratio", c.ms_ratio},
@@ -77,7 +77,7 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
           {"ms_p", number(c.ms_p)},
           {"collision_rate", number(c.collision_rate)},
           {"collision_rate_ci", interval(c.collision_rate_ci)},
-          {"contacts_p", number(c.collision_p)},
+          {"collisions_p", number(c.collision_p)},
           {"collision_rate_difference_ci", interval(c.rate_difference_ci)},
           {"success_rate", static_cast<double>(log.successes) / log.laps},
           {"solve_ms", {{"mean", number(log.solve_ms_mean)}, {"max", number(log.solve_ms_max)}}}};

@@ -97,17 +97,6 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   return stored;
 }
 
-bool same_lap(evaluation::LapRow a, const evaluation::LapRow& b, const std::vector<Experiment>& experiments) {
-  a.mean_calculation_time = b.mean_calculation_time;
-  a.max_calculation_time = b.max_calculation_time;
-  a.min_calculation_time = b.min_calculation_time;
-  a.solve_p50 = b.solve_p50;
-  a.solve_p99 = b.solve_p99;
-  a.wall_time = b.wall_time;
-  a.tracking.update_p99 = b.tracking.update_p99;
-  return evaluation::csv_line(a, experiments) == evaluation::csv_line(b, experiments);
-}
-
 int StoredEvaluation::find(const std::string& name, const std::string& scenario) const {
   std::vector<int> by_label, by_method;
   std::string names;

@@ -25,10 +25,6 @@ struct StoredEvaluation {
 /// Throws IoError if the folder does not contain a valid evaluation.
 StoredEvaluation load_evaluation(const std::filesystem::path& folder);
 
-/// Whether two rows of the same lap agree, except for wall-clock times.
-bool same_lap(evaluation::LapRow a, const evaluation::LapRow& b,
-              const std::vector<evaluation::Experiment>& experiments);
-
 /// The arguments it was driven with. `course` takes the place of the course's name where that is not empty.
 ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std::string& course);
 

@@ -13,9 +13,8 @@ constexpr Colour frame{0.78, 0.81, 0.86, 1}, disc_fill{0.36, 0.39, 0.45, 1},
     ours{0.12, 0.42, 0.78, 1}, ours_light{0.12, 0.42, 0.78, 0.16}, optimum{0.90, 0.58, 0.10, 1},
     optimum_light{0.96, 0.72, 0.26, 0.30}, guide{0.55, 0.16, 0.66, 1}, good_verdict{0.05, 0.48, 0.30, 1},
     bad_verdict{0.75, 0.16, 0.14, 1};
-constexpr double margin = 22, wide_header = 92, narrow_header = 112, caption = 46, space_width = 330,
-                 space_height = 250, gap = 8, density_width = 104, axis_left = 34, axis_below = 34,
-                 between = 30, reach = 1.5;
+constexpr double margin = 22, header = 112, caption = 46, space_width = 330, space_height = 250, gap = 8,
+                 density_width = 104, axis_left = 34, axis_below = 34, reach = 1.5;
 constexpr double cell_width = axis_left + space_width + gap + density_width,
                  cell_height = caption + space_height + axis_below;
 constexpr int drawn_samples = 100;
@@ -29,7 +28,7 @@ Colour cost_colour(double share, double opacity) {
   return colour;
 }
 
-/// One method's part of the picture.
+/// The plots of a method.
 struct Cell {
   const Explanation& e;
   double left, top;  ///< corner of the plot in space, pixels
@@ -82,17 +81,17 @@ void draw_distribution(Pen& pen, const Cell& cell) {
   for (const Way& edge : {low, high}) pen.path(cell.points(edge), {ours.red, ours.green, ours.blue, 0.55}, 1);
 }
 
-/// Every guide's way after each step of the last solve, pale where it began. The guides that did not become
-/// the plan's, most of which restart in every solve, are faint.
+/// Every guide's way after each step, pale where it began. The guides that did not become the plan's are
+/// faint.
 void draw_guides(Pen& pen, const Cell& cell) {
   for (std::size_t g = 0; g < cell.e.guides.size(); ++g) {
     const auto& steps = cell.e.guides[g];
     const bool best = static_cast<int>(g) == cell.e.best_guide;
     const double strength = best ? 1 : 0.3;
-    const std::size_t count = steps.size() / static_cast<std::size_t>(cell.e.solves);
+    const std::size_t count = steps.size();
     for (std::size_t l = 1; l <= count; ++l) {
       const double age = static_cast<double>(l) / static_cast<double>(count);
-      pen.path(cell.points(steps[steps.size() - count + l - 1]),
+      pen.path(cell.points(steps[l - 1]),
                {guide.red, guide.green, guide.blue, strength * (l == count ? 1 : 0.15 + 0.4 * age * age)},
                l == count && best ? 2 : 1);
     }
@@ -194,13 +193,13 @@ void draw_caption(Pen& pen, const Cell& cell) {
            faint_ink, 1);
 }
 
-/// The key of lines and colours, in rows of at most this width; with that of guides or without.
-void draw_key(Pen& pen, double left, double width, bool guides) {
-  double x = left, y = 56;
+/// The key of lines and colours, with that of guides or without.
+void draw_key(Pen& pen, bool guides) {
+  double x = margin, y = 56;
   const auto entry = [&](const std::string& words, double symbol_width, auto symbol) {
     const double wide = symbol_width + 6 + pen.text_width(words, 12);
-    if (x > left && x + wide > left + width) {
-      x = left;
+    if (x > margin && x + wide > margin + cell_width) {
+      x = margin;
       y += 20;
     }
     symbol();
@@ -224,35 +223,17 @@ void draw_title(Pen& pen, double left, double width, const std::string& title) {
   pen.text(left, 30, std::min(19.0, 19 * width / pen.text_width(title, 19, true)), title, ink, 0, true);
 }
 
-Drawing draw_explanations(const std::vector<Explanation>& explanations, const std::string& title) {
-  const int count = static_cast<int>(explanations.size());
-  const int columns = count <= 1 ? 1 : count == 4 || count == 2 ? 2 : 3;
-  const int rows = (count + columns - 1) / columns;
+Drawing draw_explanation(const Explanation& explanation, const std::string& title) {
   Drawing drawing;
-  const double width = columns * cell_width + (columns - 1) * between;
-  const double header = columns == 1 ? narrow_header : wide_header;
-  drawing.width = 2 * margin + width;
-  drawing.height = header + rows * cell_height + (rows - 1) * between * 0.5 + margin * 0.6;
-  drawing.draw = [explanations, title, columns, width, header](Pen& pen) {
-    const Explanation& first = explanations.front();
-    draw_title(pen, margin, width, title);
-    const bool guides = std::any_of(explanations.begin(), explanations.end(),
-                                    [](const Explanation& e) { return !e.guides.empty(); });
-    draw_key(pen, margin, width, guides);
-    for (std::size_t i = 0; i < explanations.size(); ++i) {
-      const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-      const Cell cell{explanations[i], margin + axis_left + column * (cell_width + between),
-                      header + caption + row * (cell_height + between * 0.5)};
-      draw_space(pen, cell);
-      draw_density(pen, cell);
-      draw_caption(pen, cell);
-    }
-    if (columns > 1) {
-      pen.text(margin + width, 30, 12,
-               "solve " + std::to_string(first.solves) + " from the same state, temperature " +
-                   formatted("%g", first.temperature),
-               faint_ink, 1);
-    }
+  drawing.width = 2 * margin + cell_width;
+  drawing.height = header + cell_height + margin * 0.6;
+  drawing.draw = [explanation, title](Pen& pen) {
+    draw_title(pen, margin, cell_width, title);
+    draw_key(pen, !explanation.guides.empty());
+    const Cell cell{explanation, margin + axis_left, header + caption};
+    draw_space(pen, cell);
+    draw_density(pen, cell);
+    draw_caption(pen, cell);
   };
   return drawing;
 }

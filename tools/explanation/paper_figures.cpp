@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "slalom/core/problem_evaluator.hpp"
+#include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/drawing/axis.hpp"
@@ -150,7 +151,7 @@ Drawing fitted_gaussian(const Explanation& e) {
   std::vector<double> a, log_b;
   for (const Way& way : path) {
     const auto inputs = inputs_of(way);
-    double log_q = -cost(way) / e.temperature;
+    double log_q = -cost(way);
     for (std::size_t k = 0; k < inputs.size(); ++k) log_q -= 0.5 * std::pow(inputs[k][0] - last[k][0], 2);
     a.push_back(inputs[step][0]);
     log_b.push_back(log_q);
@@ -190,22 +191,33 @@ Drawing beside(const Drawing& a, const Drawing& b) {
   return both;
 }
 
+/// The paper's closed form, with one batch of white noise, and guides that do not restart.
+SvgMppiOptions closed_form() {
+  SvgMppiOptions o;
+  o.batches = 1;
+  o.guides.count = 4;
+  o.guides.iterations = 10;
+  o.guides.step = 0.125;
+  o.guides.variance = o.guides.restart_variance = o.variance_max = 1;
+  o.guides.gradient_samples = 25;
+  o.guides.gradient_variance = 0.25;
+  o.guides.gradient_temperature = 1;
+  o.guides.restart = false;
+  o.variance_min = 0.01;
+  o.noise = {};
+  return o;
+}
+
 }  // namespace
 
-Drawing draw_paper_figure(int number, const problems::PassingPoint& point, std::uint64_t seed) {
-  const auto methods = explained_methods();
-  const auto method = [&](const char* name) {
-    return *std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.name == name; });
-  };
-  if (number == 1)
-    return draw_explanations({explain(method("mppi"), point, 1, seed)},
-                             "Fig. 1: the mean of both ways hits the disc");
-  if (number == 3) return asymmetry(explain(method("mppi"), point, 1, seed));
-  ExplainedMethod svg_mppi = method("svg_mppi");
-  *svg_mppi.options.find<bool>("restart_guides") = false;
-  const Explanation e = explain(svg_mppi, point, 1, seed);
-  return beside(draw_explanations({e}, "Fig. 4: (a) guides, (b) the best of them, (d) MPPI near it"),
-                fitted_gaussian(e));
+Drawing draw_paper_figure(int number, std::uint64_t seed) {
+  if (number == 4) {
+    const Explanation e = explain(closed_form(), "guides find a mode, MPPI solves near it", seed);
+    return beside(draw_explanation(e, "Fig. 4: (a) guides, (b) the best of them, (d) MPPI near it"),
+                  fitted_gaussian(e));
+  }
+  const Explanation e = explain(MppiOptions{.control_cost_discount = 0}, "forward KL, in closed form", seed);
+  return number == 3 ? asymmetry(e) : draw_explanation(e, "Fig. 1: the mean of both ways hits the disc");
 }
 
 }  // namespace slalom::tools

@@ -23,16 +23,16 @@ constexpr double max_sample = 1e9;         // largest number of a sample that is
 constexpr double length_tolerance = 1e-6;  // share of the length
 
 /// A number of a sample, as it is named and rounded in results.
-struct SampleField {
+struct SampleColumn {
   const char* key;
   double RacingSample::*value;
   double resolution;
 };
-constexpr SampleField sample_fields[] = {{"distance_m", &RacingSample::distance, 1e-5},
-                                         {"time_s", &RacingSample::time, 1e-6},
-                                         {"speed_mps", &RacingSample::speed, 1e-5},
-                                         {"longitudinal_mps2", &RacingSample::longitudinal, 1e-4},
-                                         {"lateral_mps2", &RacingSample::lateral, 1e-4}};
+constexpr SampleColumn sample_columns[] = {{"distance_m", &RacingSample::distance, 1e-5},
+                                           {"time_s", &RacingSample::time, 1e-6},
+                                           {"speed_mps", &RacingSample::speed, 1e-5},
+                                           {"longitudinal_mps2", &RacingSample::longitudinal, 1e-4},
+                                           {"lateral_mps2", &RacingSample::lateral, 1e-4}};
 
 /// The largest speed of a lap, m/s.
 double top_speed(const RacingLap& lap) {
@@ -49,11 +49,11 @@ void add_grip(Json& json, const evaluation::GripUse& grip) {
 
 Json samples_json(const std::vector<RacingSample>& samples) {
   Json json = Json::object();
-  for (const SampleField& field : sample_fields) {
+  for (const SampleColumn& column : sample_columns) {
     std::vector<double> values;
     for (const RacingSample& sample : samples)
-      values.push_back(std::round(sample.*field.value / field.resolution) * field.resolution);
-    json[field.key] = values;
+      values.push_back(std::round(sample.*column.value / column.resolution) * column.resolution);
+    json[column.key] = values;
   }
   return json;
 }
@@ -92,18 +92,18 @@ std::optional<RacingLap> best_of(const Json& run, const char* key) {
   read.standing = std::string_view(key) == "standing";
   read.sector.fill(std::numeric_limits<double>::quiet_NaN());
   read.samples.resize(member(samples, "distance_m").size());
-  for (const SampleField& field : sample_fields) {
-    const Json& values = member(samples, field.key);
+  for (const SampleColumn& column : sample_columns) {
+    const Json& values = member(samples, column.key);
     if (!values.is_array() || values.size() != read.samples.size())
-      throw std::invalid_argument(std::string(field.key) + ": has " + std::to_string(values.size()) +
+      throw std::invalid_argument(std::string(column.key) + ": has " + std::to_string(values.size()) +
                                   " values, must have " + std::to_string(read.samples.size()) +
                                   " as distance_m");
     for (std::size_t i = 0; i < read.samples.size(); ++i) {
       const double value = values[i].is_number() ? values[i].get<double>() : max_sample + 1;
       if (!(std::abs(value) <= max_sample))
-        throw std::invalid_argument(std::string(field.key) + ": " + json_text(values[i]) +
+        throw std::invalid_argument(std::string(column.key) + ": " + json_text(values[i]) +
                                     " must be a number of at most 1e9 in magnitude");
-      read.samples[i].*field.value = value;
+      read.samples[i].*column.value = value;
     }
   }
   if (read.samples.size() < 2) throw std::invalid_argument("samples: at least 2 are needed");

@@ -70,8 +70,10 @@ std::string table(const Report& report, const std::string& section, const std::s
                                         reference->published->collision_rate_ci) +
                               "</td>"
                         : none;
-    rows += "<td>" + number(100 * r.success_rate, 1) + "</td><td>" + number(r.lap_time_mean, 2) +
-            "</td><td>" + std::to_string(r.timeouts) + "</td>";
+    rows +=
+        "<td>" + number(100 * r.success_rate, 1) + "</td><td>" +
+        (r.finished < fewest_laps ? number(r.time_mean, 2) : with_interval(r.time_mean, r.time_ci, 1, 2)) +
+        "</td><td>" + std::to_string(r.timeouts) + "</td>";
     if (compared) rows += "<td class=\"words\">" + pill(kind) + "</td>";
     rows += "</tr>\n";
     if (!why.empty()) rows += "<tr class=\"why\"><td colspan=\"11\">" + escaped(why) + "</td></tr>\n";
@@ -81,7 +83,7 @@ std::string table(const Report& report, const std::string& section, const std::s
   if (compared) head += "<th>published MS</th><th>paper's program, MS</th>";
   if (obstacles) head += "<th>collision rate, %</th>";
   if (compared && obstacles) head += "<th>published, %</th>";
-  head += "<th>success, %</th><th>lap, s</th><th>timeouts</th>";
+  head += "<th>success, %</th><th>lap time, s (95 %)</th><th>timeouts</th>";
   if (compared) head += "<th class=\"words\">verdict</th>";
   return std::string("<h3>") + (obstacles ? "Among obstacles (OA)" : "Path tracking (PT)") +
          "</h3><div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>\n" + rows +

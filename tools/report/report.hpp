@@ -24,7 +24,7 @@ struct Report {
   std::vector<std::string> notes;
 
   const evaluation::Experiment& experiment(const ReportRow& row) const {
-    return evaluated.evaluation.experiments[static_cast<std::size_t>(row.experiment)];
+    return evaluated.experiment(row.experiment);
   }
   const evaluation::ExperimentResult& result(const ReportRow& row) const {
     return evaluated.results[static_cast<std::size_t>(row.experiment)];

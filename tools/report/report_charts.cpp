@@ -131,7 +131,7 @@ RowChart time_chart(const Report& report, const std::string& section) {
        .theirs = {}},
       [](const NamedRow& row) { return row.oa ? row.oa : row.pt; },
       [&](const ReportRow& row) {
-        return marks(report.result(row).solve_ms_mean, report.result(row).solve_ms_max);
+        return marks(report.result(row).solve_mean, report.result(row).solve_max);
       },
       [&](const Reference& reference) {
         const auto& mean = reference.log->solve_ms_mean;

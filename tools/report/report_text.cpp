@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
@@ -50,21 +50,8 @@ namespace {
 using namespace evaluation;
 
 /// A p-value (0 .. 1), a dash where there is none.
-std::string p_value(double p) {
-  return p < 0.001 ? "&lt; 0.001" : number(p);
-}
-
-/// The experiment of a scenario that the others are compared with: svg_mppi with its own options, else the
-/// first. -1 without any.
-int reference_of(const Report& report, const std::string& scenario) {
-  int first = -1;
-  for (const ReportRow& row : report.rows) {
-    const Experiment& e = report.experiment(row);
-    if (e.scenario != scenario) continue;
-    if (e.method == "svg_mppi" && e.set.empty()) return row.experiment;
-    if (first < 0) first = row.experiment;
-  }
-  return first;
+std::string p_value(const std::optional<double>& p) {
+  return p && *p < 0.001 ? "&lt; 0.001" : number(p.value_or(std::nan("")));
 }
 
 std::string name_of(const Report& report, int experiment) {
@@ -93,36 +80,27 @@ std::string number(double value, int digits) {
 }
 
 std::string paired_table(const Report& report) {
-  const auto& experiments = report.evaluated.evaluation.experiments;
-  const auto is_shown = [&](int experiment) {
-    return std::any_of(report.rows.begin(), report.rows.end(),
-                       [&](const ReportRow& r) { return r.experiment == experiment; });
-  };
   std::string rows;
-  for (PairedComparison c : compare_pairs(report.evaluated.rows, experiments)) {
-    const std::string& scenario = experiments[static_cast<std::size_t>(c.a)].scenario;
-    const int reference = reference_of(report, scenario);
-    if ((c.a != reference && c.b != reference) || !is_shown(c.a) || !is_shown(c.b)) continue;
-    if (c.a == reference) {  // the reference experiment is the second one of a row
-      std::swap(c.a, c.b);
-      std::swap(c.only_a_succeeds, c.only_b_succeeds);
-      c.ms_difference = -c.ms_difference;
-    }
-    rows += "<tr><td>" + escaped(name_of(report, c.a)) + "</td><td>" + escaped(name_of(report, c.b)) +
-            "</td><td>" + scenario + "</td><td>" + std::to_string(c.laps) + "</td><td>" +
-            number(c.ms_difference) + "</td><td>" + p_value(c.ms_p) + "</td><td>" +
-            std::to_string(c.only_b_succeeds) + "</td><td>" + std::to_string(c.only_a_succeeds) +
-            "</td><td>" + p_value(c.success_p) + "</td><td>" + p_value(c.collision_p) + "</td></tr>\n";
-  }
+  for (const PairedComparison& c : report.evaluated.against_reference())
+    rows += "<tr><td>" + escaped(name_of(report, c.a)) + "</td><td class=\"words\">" +
+            escaped(name_of(report, c.b)) + "</td><td>" + report.evaluated.experiment(c.a).scenario +
+            "</td><td>" + std::to_string(c.laps) + "</td><td>" + std::to_string(c.only_b_succeeds) +
+            "</td><td>" + std::to_string(c.only_a_succeeds) + "</td><td>" + p_value(c.success_p) +
+            "</td><td>" + p_value(c.collisions_p) + "</td><td>" + number(c.time_difference) + "</td><td>" +
+            p_value(c.time_p) + "</td><td>" + number(c.ms_difference) + "</td><td>" + p_value(c.ms_p) +
+            "</td></tr>\n";
   if (rows.empty()) return {};
   return "<section><h2>Paired comparison</h2><p class=\"caption\">MS is the mean cost of the control "
-         "sequences "
-         "sent in a lap, lower is better. Both drive the same seeds and therefore the same obstacles. MS and "
-         "collisions by Wilcoxon's signed-rank test, success (finished without "
-         "collision) by McNemar's.</p><div class=\"scroll\"><table><thead><tr><th></th><th "
-         "class=\"words\">compared with</th><th></th><th>laps</th><th>MS above it</th><th>p</th><th>only the "
-         "other succeeds</th><th>only this one succeeds</th><th>p</th><th>collisions, p</th></tr></thead>"
-         "<tbody>\n" +
+         "sequences sent "
+         "in a lap, lower is better; it is not tested where the weights of the two differ. Both drive the "
+         "same seeds "
+         "and therefore the same obstacles. MS, lap time and collisions by Wilcoxon's signed-rank test, "
+         "success "
+         "(finished without collision) by McNemar's.</p><div class=\"scroll\"><table><thead><tr><th></th><th "
+         "class=\"words\">compared with</th><th></th><th>laps</th><th>only the other succeeds</th><th>only "
+         "this one "
+         "succeeds</th><th>p</th><th>collisions, p</th><th>lap time above it, s</th><th>p</th><th>MS above "
+         "it</th><th>p</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div></section>\n";
 }
 

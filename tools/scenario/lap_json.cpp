@@ -38,7 +38,8 @@ Json overtaking_json(const evaluation::OvertakingRecord& record) {
                           {"contacts", each.contacts},
                           {"contacts_caused", each.caused},
                           {"side_changes", each.side_changes}});
-  return {{"contacts", record.contacts}, {"contacts_caused", record.caused}, {"encounters", encounters}};
+  return {
+      {"opponent_contacts", record.contacts}, {"contacts_caused", record.caused}, {"encounters", encounters}};
 }
 
 }  // namespace
@@ -81,31 +82,14 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
                           {"pose", pose_json(collision.pose)},
                           {"body", collision.body < 0 ? Json("wall") : Json(collision.body)}});
   for (const auto& obstacle : lap.obstacles) obstacles.push_back(pose_json(obstacle));
-  Json json{{"lap", number},
-            {"seed", lap.seed},
-            {"finished", lap.finished},
-            {"timeout", lap.timeout},
-            {"interrupted", lap.cancelled},
-            {"contacts", lap.collisions},
-            {"bodies_touched", lap.collided_bodies},
-            {"wall_touched", lap.wall},
-            {"time_s", lap.time},
-            {"steps", lap.steps},
-            {"state_cost", lap.state_cost},
-            {"collision_cost", lap.collision_cost},
-            {"mean_sequence_cost", lap.mean_sequence_cost()},
-            {"input_error", lap.input_error},
-            {"mean_speed", lap.mean_speed},
-            {"mean_path_distance", lap.mean_path_distance},
-            {"max_path_distance", lap.max_path_distance},
-            {"least_clearance", lap.min_clearance},
-            {"impassable", lap.impassable},
-            {"mean_variance", lap.mean_variance},
-            {"mean_effective_samples", lap.mean_effective_samples},
-            {"planner_status", status},
-            {"corrections", lap.corrections},
-            {"touches", collisions},
-            {"obstacles", obstacles}};
+  Json json{{"lap", number}};
+  visit_figures(lap, [&](const auto& value, const evaluation::Figure& figure) { json[figure.name] = value; });
+  json.update({{"mean_sequence_cost", lap.mean_sequence_cost()},
+               {"interrupted", lap.cancelled},
+               {"planner_status", status},
+               {"corrections", lap.corrections},
+               {"first_collisions", collisions},
+               {"obstacles", obstacles}});
   if (!lap.overtaking.encounters.empty() || lap.overtaking.contacts > 0)
     json["overtaking"] = overtaking_json(lap.overtaking);
   if (!lap.estimation.slip_error.empty()) json["estimation"] = estimation_json(lap.estimation);

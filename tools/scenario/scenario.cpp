@@ -55,7 +55,7 @@ std::vector<std::string> notes_on(const evaluation::Environment& environment,
   if (check.grip.stretches.empty()) return notes;
   if (lowered)
     notes.push_back("planner.profile_friction lowers the profile to what the car can");
-  else if (vehicle::make_vehicle_model(configuration.vehicle)->traits().friction > 0)
+  else if (vehicle::make_vehicle_model(configuration.vehicle)->traits().tyres.friction > 0)
     notes.push_back("the planner lowers the profile to what the car can");
   else
     notes.push_back("--set planner.profile_friction=" + to_text(friction) +

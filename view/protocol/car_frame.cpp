@@ -161,7 +161,7 @@ class CarSource final : public FrameSource {
     for (const double time : {times.draw, times.evaluate, times.guide, times.update, times.total})
       all.push_back(1e3 * time);
     all.insert(all.end(), {static_cast<double>(lap), step_.time - laps.lap_start_time(),
-                           laps.progress() / world.track().lap_path()->length() - lap, laps.lateral(),
+                           laps.progress() / world.track().lap_path()->length() - lap, laps.offset(),
                            clearance_of(world), step_.cost.total()});
     const vehicle::ParameterEstimate& estimate = out.parameters;
     if (estimate.friction > 0) {

@@ -61,7 +61,7 @@ def lap(lap: Lap) -> Any:
     axis.set_ylabel("y, m")
     axis.legend(fontsize="small")
     end = "finished" if lap["finished"] else "not finished"
-    axis.set_title(f"{end}, {lap['time']:.2f} s, {lap['contacts']} collision{'' if lap['contacts'] == 1 else 's'}")
+    axis.set_title(f"{end}, {lap['time']:.2f} s, {lap['collisions']} collision{'' if lap['collisions'] == 1 else 's'}")
     return figure
 
 

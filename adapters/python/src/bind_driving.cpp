@@ -42,13 +42,12 @@ py::dict lap_dict(const evaluation::LapResult& lap, const std::vector<std::array
   const auto waypoints = rows_of(environment.path, [](const maps::ReferencePoint& point) {
     return std::array{point.x, point.y, point.yaw, point.speed};
   });
-  const py::dict results(
-      "seed"_a = lap.seed, "finished"_a = lap.finished, "timeout"_a = lap.timeout,
-      "contacts"_a = lap.collisions, "time"_a = lap.time, "steps"_a = lap.steps,
-      "state_cost"_a = lap.state_cost, "collision_cost"_a = lap.collision_cost,
-      "mean_sequence_cost"_a = lap.mean_sequence_cost(), "mean_speed"_a = lap.mean_speed,
-      "min_clearance"_a = lap.min_clearance, "solve_ms"_a = py::array_t<float>(solves, lap.solve_ms.data()),
-      "path"_a = rows_of(path, [](const auto& row) { return row; }), "obstacles"_a = rows_of(lap.obstacles));
+  const py::dict results("mean_sequence_cost"_a = lap.mean_sequence_cost(),
+                         "solve_ms"_a = py::array_t<float>(solves, lap.solve_ms.data()),
+                         "path"_a = rows_of(path, [](const auto& row) { return row; }),
+                         "obstacles"_a = rows_of(lap.obstacles));
+  visit_figures(lap,
+                [&](const auto& value, const evaluation::Figure& figure) { results[figure.name] = value; });
   return py::module_::import("slalom.plot").attr("Lap")(results, waypoints);
 }
 

@@ -39,7 +39,7 @@ py::dict observe(const py::object& self, std::size_t car) {
   if (const auto* laps = world.laps(car)) {
     all["laps"] = laps->laps();
     all["progress"] = laps->progress();
-    all["lateral"] = laps->lateral();
+    all["lateral"] = laps->offset();
   }
   return all;
 }

@@ -18,7 +18,7 @@ def test_a_lap_is_driven_and_counted():
     course = slalom.Course("wren")
     assert course.waypoints.shape[1] == 4 and course.length > 10
     lap, same = (slalom.drive_lap(course, "svg_mppi", seed=1, options=KINEMATIC) for _ in range(2))
-    assert lap["finished"] and lap["contacts"] == 0 and len(lap["solve_ms"]) == lap["steps"]
+    assert lap["finished"] and lap["collisions"] == 0 and len(lap["solve_ms"]) == lap["steps"]
     assert lap["path"].shape == (lap["steps"], 4) and lap["obstacles"].shape == (0, 3)
     assert np.mean(lap["path"][:, 3]) == pytest.approx(lap["mean_speed"], rel=0.02)
     assert same["time"] == lap["time"] and same["mean_sequence_cost"] == lap["mean_sequence_cost"]
@@ -45,7 +45,7 @@ def test_a_configuration_drives_a_lap():
     if importlib.util.find_spec("matplotlib"):
         assert slalom.plot.lap(lap).axes[0].get_title().startswith("finished, ")
         assert lap._repr_png_().startswith(b"\x89PNG")
-    assert lap["finished"] and lap["contacts"] == 0
+    assert lap["finished"] and lap["collisions"] == 0
     with pytest.raises(slalom.IoError, match="no_such_configuration"):
         slalom.drive_lap(slalom.Course("wren"), "svg_mppi", config="no_such_configuration")
 

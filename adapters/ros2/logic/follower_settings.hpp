@@ -11,8 +11,8 @@
 namespace slalom::nodes {
 
 /// The kinds of bases with the names of nav2's MPPI controller, in the order of navigation::BaseKind.
-enum class MotionModel { DiffDrive, Omni, Ackermann };
-inline const char* const* enum_names(MotionModel) {
+enum class Nav2BaseKind { DiffDrive, Omni, Ackermann };
+inline const char* const* enum_names(Nav2BaseKind) {
   static constexpr const char* const names[] = {"DiffDrive", "Omni", "Ackermann", nullptr};
   return names;
 }
@@ -20,7 +20,7 @@ inline const char* const* enum_names(MotionModel) {
 /// The options of nav2's MPPI controller that the navigation layer has not, or has in another form.
 /// `visit_options` below describes the fields.
 struct FollowerOptions {
-  MotionModel motion_model = MotionModel::DiffDrive;
+  Nav2BaseKind motion_model = Nav2BaseKind::DiffDrive;
   double vx_min = -0.35;
   double vx_std = 0;
   double vy_std = 0;

@@ -81,10 +81,10 @@ void LocaliserCore::begin() {
 }
 
 /// The car moves without a localiser until it stands, so its place now follows from the odometry.
-void LocaliserCore::continue_from(const KnownPlace& earlier) {
-  const KnownPlace rear{moved_ahead(earlier.map, settings_.rear_axle),
-                        moved_ahead(earlier.odometry, settings_.rear_axle)};
-  start_at(count_ == 0 ? rear.map : place_now(rear, odometry(count_ - 1).pose));
+void LocaliserCore::continue_from(const KnownPose& earlier) {
+  const KnownPose rear{moved_ahead(earlier.map, settings_.rear_axle),
+                       moved_ahead(earlier.odometry, settings_.rear_axle)};
+  start_at(count_ == 0 ? rear.map : pose_now(rear, odometry(count_ - 1).pose));
 }
 
 void LocaliserCore::hear_map(const maps::OccupancyGrid& map) {
@@ -186,10 +186,10 @@ void LocaliserCore::tick() {
   log_.flush();
 }
 
-std::optional<KnownPlace> LocaliserCore::reliable() const {
+std::optional<KnownPose> LocaliserCore::reliable() const {
   if (!known_ || !trust_.holds()) return std::nullopt;
-  return KnownPlace{moved_ahead(known_->map, -settings_.rear_axle),
-                    moved_ahead(known_->odometry, -settings_.rear_axle)};
+  return KnownPose{moved_ahead(known_->map, -settings_.rear_axle),
+                   moved_ahead(known_->odometry, -settings_.rear_axle)};
 }
 
 std::vector<maps::Pose> LocaliserCore::particles(int most) const {

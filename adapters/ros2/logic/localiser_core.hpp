@@ -8,7 +8,7 @@
 
 #include "logic/input_watch.hpp"
 #include "logic/installed.hpp"
-#include "logic/known_place.hpp"
+#include "logic/known_pose.hpp"
 #include "logic/named_option.hpp"
 #include "logic/pose_trust.hpp"
 #include "logic/reports.hpp"
@@ -35,11 +35,11 @@ class LocaliserCore {
     bool everywhere = false;  ///< search the whole map at the start
     std::optional<maps::Pose>
         start;  ///< pose of the base frame; otherwise the start of the course, or everywhere
-    std::optional<KnownPlace> earlier;  ///< last place of the base frame by an earlier node; comes first
-    int trust_scans = 10;               ///< see PoseTrust
-    double trust_health = 0.7;          ///< see PoseTrust
-    double transform_tolerance = 0.1;   ///< s, how far the stamps of transforms are in the future
-    double rear_axle = 0;               ///< m, x of the middle of the rear axle in the base frame
+    std::optional<KnownPose> earlier;  ///< last pose of the base frame by an earlier node; comes first
+    int trust_scans = 10;              ///< see PoseTrust
+    double trust_health = 0.7;         ///< see PoseTrust
+    double transform_tolerance = 0.1;  ///< s, how far the stamps of transforms are in the future
+    double rear_axle = 0;              ///< m, x of the middle of the rear axle in the base frame
     WatchLimits limits;
   };
   /// The messages that the node sends; called from within the functions below.
@@ -74,15 +74,15 @@ class LocaliserCore {
 
   /// Reports the events since the last report.
   Report report();
-  /// The last place of the base frame that could be relied on, as long as it can.
-  std::optional<KnownPlace> reliable() const;
+  /// The last pose of the base frame that could be relied on, as long as it can.
+  std::optional<KnownPose> reliable() const;
   /// Poses of at most `most` particles.
   std::vector<maps::Pose> particles(int most) const;
 
  private:
   void use_map(const maps::OccupancyGrid& map);
   void begin();
-  void continue_from(const KnownPlace& earlier);
+  void continue_from(const KnownPose& earlier);
   void start_at(const std::optional<maps::Pose>& rear);
   bool odometry_at(Stamp stamp, maps::Pose& rear) const;
   void place_laser(const std::string& frame);
@@ -106,7 +106,7 @@ class LocaliserCore {
   std::size_t oldest_ = 0, count_ = 0;       ///< oldest entry and number of entries of `odometry_`
   Stamp last_scan_ = 0;
   std::optional<maps::Pose> course_start_;  ///< pose of the rear axle
-  std::optional<KnownPlace> known_;         ///< the last reliable place of the rear axle
+  std::optional<KnownPose> known_;          ///< the last reliable pose of the rear axle
   vehicle::LocaliserOutput estimate_;
   double slowest_ = 0;  ///< s, since the last report
 };

@@ -30,7 +30,7 @@ SimulatedCar::SimulatedCar(const vehicle::Course& course, std::uint64_t seed, in
 void SimulatedCar::reset() {
   world_.reset(seed_, std::array{environment_->start}, parked_);
   odometry_.reset(world_.state(0));
-  contacts_ = 0;
+  collisions_ = 0;
 }
 
 void SimulatedCar::step(const Command& command) {
@@ -40,7 +40,7 @@ void SimulatedCar::step(const Command& command) {
     odometry_.update(world_.state(0), time_step);
   }
   const bool collides = world_.observe(0).collides();
-  contacts_ += collides && !colliding_;
+  collisions_ += collides && !colliding_;
   colliding_ = collides;
 }
 

@@ -29,7 +29,7 @@ class SimulatedCar {
   const sim::WheelOdometry& odometry() const { return odometry_; }     ///< measured motion of the rear axle
   maps::Pose pose() const;                                             ///< pose of the rear axle, map frame
   int laps() const { return world_.laps(0) ? world_.laps(0)->laps() : 0; }
-  int contacts() const { return contacts_; }                                     ///< number of collisions
+  int collisions() const { return collisions_; }                                 ///< number of collisions
   const std::vector<maps::Pose>& parked() const { return parked_; }              ///< their centres, map frame
   const sim::CarParameters& parameters() const { return world_.options().car; }  ///< sizes of all cars
   maps::Pose laser() const;  ///< relative to the rear axle
@@ -40,7 +40,7 @@ class SimulatedCar {
   sim::World world_;
   sim::WheelOdometry odometry_;
   std::vector<maps::Pose> parked_;
-  int contacts_ = 0;
+  int collisions_ = 0;
   bool colliding_ = false;
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "slalom/evaluation/environment.hpp"
+#include "slalom/evaluation/lap_figures.hpp"
 #include "slalom/evaluation/lap_settings.hpp"
 #include "slalom/evaluation/overtaking_record.hpp"
 #include "slalom/evaluation/sequence_cost.hpp"
@@ -64,34 +65,6 @@ struct EstimationRecord {
   std::vector<float> speed_error;     ///< m/s, the same
   vehicle::ParameterEstimate last;    ///< parameters of car and ground at the end of the lap
   double informed_time = -1;          ///< s, when the confidence first reached 0.5; -1 if never
-};
-
-/// The figures of a lap that a results table has, too. Means are over its control steps.
-struct LapFigures {
-  std::uint64_t seed = 0;         ///< seed of the random numbers
-  bool finished = false;          ///< whether the car reached the finish in time
-  bool timeout = false;           ///< whether the lap was stopped at its timeout
-  int collisions = 0;             ///< collisions as the protocol counts them
-  int collided_bodies = 0;        ///< number of different bodies hit, all walls as one
-  bool wall = false;              ///< whether the car hit a wall
-  int impassable = 0;             ///< number of obstacles that block the course (impassable_obstacles)
-  double time = 0;                ///< s, of the lap, or until it was stopped
-  int steps = 0;                  ///< control steps
-  double state_cost = 0;          ///< mean cost of distance and yaw error
-  double collision_cost = 0;      ///< mean cost of collisions
-  double input_error = 0;         ///< mean of the sum of |steering| over the control sequence, rad
-  double mean_speed = 0;          ///< m/s
-  double mean_path_distance = 0;  ///< m, of the rear axle
-  double max_path_distance = 0;   ///< m
-  /// Least clearance over the control steps, m: from the corners of the car to a wall (0 in a wall, with the
-  /// error of Track::distance_to_wall) and from its outline to other bodies (negative in a collision).
-  /// Infinite if there are neither walls nor bodies.
-  double min_clearance = 0;
-  double mean_variance = 0;           ///< rad^2, variance of the sampled steering, mean over solves
-  double mean_effective_samples = 0;  ///< mean of the solver's effective sample size over solves
-
-  /// MS = state_cost + collision_cost
-  double mean_sequence_cost() const { return state_cost + collision_cost; }
 };
 
 /// A lap that has ended.

@@ -33,30 +33,51 @@ struct Experiment {
 
 /// The figures of OvertakingRecord for a lap with `world.opponents`.
 struct OvertakingFigures {
-  int met = 0;            ///< encounters; column `opponents_met`
-  int overtaken = 0;      ///< those that ended with the opponent behind; column `overtaken`
-  int not_overtaken = 0;  ///< those in which two times around the course were not enough; `not_overtaken`
-  double duration = 0;    ///< s, mean until opponents were overtaken, 0 without any; `overtaking_time`
-  int contacts = 0;       ///< with opponents; column `opponent_contacts`
-  int caused = 0;         ///< those of them at which the car is at fault; column `contacts_caused`
-  int side_changes = 0;   ///< Encounter::side_changes of all encounters; column of the same name
+  int met = 0, overtaken = 0, not_overtaken = 0;
+  double duration = 0;  ///< s
+  int contacts = 0, caused = 0, side_changes = 0;
 };
+/// Calls `visit(field, Figure)` for every figure in the order of tables.
+template <class Figures, class Visit>
+requires std::derived_from<std::remove_const_t<Figures>, OvertakingFigures>
+void visit_figures(Figures& f, Visit&& visit) {
+  visit(f.met, Figure{"opponents_met", "", "encounters with opponents"});
+  visit(f.overtaken, Figure{"overtaken", "", "those that ended with the opponent behind"});
+  visit(f.not_overtaken,
+        Figure{"not_overtaken", "", "those in which two times around the course were not enough"});
+  visit(f.duration,
+        Figure{"overtaking_time", "s", "mean time until an opponent was overtaken, 0 without any"});
+  visit(f.contacts, Figure{"opponent_contacts", "", "contacts with opponents"});
+  visit(f.caused, Figure{"contacts_caused", "", "those of them at which the car is at fault"});
+  visit(f.side_changes, Figure{"side_changes", "", "Encounter::side_changes of all encounters"});
+}
 
-/// A row of `laps.csv`: one lap of one experiment. Columns whose names contain `calculation_time`, or begin
-/// with `solve_` or `wall_`, hold wall-clock times (ms, but `wall_time` s); all others repeat exactly.
+/// A row of `laps.csv`: one lap of one experiment.
 struct LapRow : LapFigures {
-  int experiment = 0;    ///< index into the experiments of the evaluation
-  int lap = 0;           ///< from 0
-  bool success = false;  ///< finished without a collision
-  double mean_calculation_time = 0, max_calculation_time = 0, min_calculation_time = 0;  ///< ms, of a solve
-  int blocked_steps = 0;       ///< control steps in which every plan collided
-  int degenerate_steps = 0;    ///< control steps without usable weights
-  std::string contact_points;  ///< "x:y" in m, the car's position at its first collision with each body
-  double solve_p50 = 0, solve_p99 = 0;  ///< ms
-  double wall_time = 0;                 ///< s, to compute the lap
-  TrackingFigures tracking;             ///< columns only in evaluations with `world.tracking`
-  OvertakingFigures overtaking;         ///< columns only in evaluations with `world.opponents`
+  int experiment = 0;                                                  ///< index into the experiments
+  int lap = 0;                                                         ///< from 0
+  double solve_mean = 0, solve_p50 = 0, solve_p99 = 0, solve_max = 0;  ///< ms
+  int blocked_steps = 0, degenerate_steps = 0;
+  std::string collision_points;
+  double wall_time = 0;          ///< s
+  TrackingFigures tracking;      ///< columns only in evaluations with `world.tracking`
+  OvertakingFigures overtaking;  ///< columns only in evaluations with `world.opponents`
 };
+/// Calls `visit(field, Figure)` for every figure of a row in the order of tables, but for those of tracking
+/// and overtaking.
+template <class Row, class Visit>
+void visit_row(Row& r, Visit&& visit) {
+  visit_figures(r, visit);
+  visit(r.blocked_steps, Figure{"blocked_steps", "", "control steps in which every plan collided"});
+  visit(r.degenerate_steps, Figure{"degenerate_steps", "", "control steps without usable weights"});
+  visit(r.collision_points,
+        Figure{"collision_points", "m", "\"x:y\", the car's position at its first collision with each body"});
+  visit(r.solve_mean, Figure{"solve_mean", "ms", "mean time of a solve", true});
+  visit(r.solve_p50, Figure{"solve_p50", "ms", "median of the time of a solve", true});
+  visit(r.solve_p99, Figure{"solve_p99", "ms", "99th percentile of the time of a solve", true});
+  visit(r.solve_max, Figure{"solve_max", "ms", "longest solve", true});
+  visit(r.wall_time, Figure{"wall_time", "s", "time to compute the lap", true});
+}
 
 /// The row of a lap that has ended.
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time);
@@ -65,9 +86,11 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
 /// is within 0.05 m of the start. No driver avoids it.
 bool began_in_contact(const LapRow& row, const maps::Pose& start);
 
-/// The header of laps.csv: `method,scenario,set,lap`, the columns of the logs of Honda et al. (ICRA 2024),
-/// then further ones, if one of the experiments tracks, those of TrackingFigures, and if one has opponents,
-/// those of OvertakingFigures.
+/// Whether two rows of a lap agree in all columns but wall-clock times.
+bool same_lap(const LapRow& a, const LapRow& b, const std::vector<Experiment>& experiments);
+
+/// The header of laps.csv: `method,scenario,set,lap`, the figures of LapRow, if one of the experiments
+/// tracks, those of TrackingFigures, and if one has opponents, those of OvertakingFigures.
 std::string csv_header(const std::vector<Experiment>& experiments = {});
 /// A row of laps.csv without line end. Numbers read back to the same bits.
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments);

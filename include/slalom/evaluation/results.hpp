@@ -27,11 +27,11 @@ struct ExperimentResult {
   std::optional<Interval> collision_rate_bootstrap_ci;  ///< over laps
   double success_rate = 0;                              ///< finished laps without a collision
   Interval success_rate_ci;                             ///< Wilson
-  double lap_time_mean = 0;                             ///< s, of finished laps; NaN without any
-  double solve_ms_mean = 0;  ///< ms, wall-clock, mean over the laps of each lap's mean
-  double solve_ms_p50 = 0;   ///< ms, mean over the laps of each lap's median
-  double solve_ms_p99 = 0;   ///< ms, mean over the laps of each lap's 99th percentile
-  double solve_ms_max = 0;   ///< ms, largest of all laps
+  double time_mean = 0;                                 ///< s, of finished laps; NaN without any
+  Interval time_ci;                                     ///< bootstrap over finished laps; see fewest_laps
+  /// Wall-clock times, ms: means over the laps of each lap's mean, median and 99th percentile, and the
+  /// longest.
+  double solve_mean = 0, solve_p50 = 0, solve_p99 = 0, solve_max = 0;
   /// Sums over laps; errors are root mean squares over all detections, `update_p99` (ms) the mean over the
   /// laps. None without `world.tracking`.
   std::optional<TrackingFigures> tracking;
@@ -39,16 +39,32 @@ struct ExperimentResult {
   std::optional<OvertakingFigures> overtaking;
 };
 
-/// Two experiments over the same seeds.
-struct PairedComparison {
-  int a = 0, b = 0;                              ///< indices of the experiments
-  int laps = 0;                                  ///< pairs
-  double ms_difference = 0;                      ///< mean of a - b; NaN without pairs
-  double ms_p = 1;                               ///< Wilcoxon signed-rank test
-  int only_a_succeeds = 0, only_b_succeeds = 0;  ///< laps in which only one of them succeeds
-  double success_p = 1;                          ///< McNemar test
-  double collision_p = 1;                        ///< Wilcoxon signed-rank test of the collisions per lap
+/// The laps of two experiments, a and b. With the same seeds lap k of both has the same obstacles: the laps
+/// are paired.
+struct Comparison {
+  bool paired = true;
+  int laps = 0;                    ///< pairs, or laps of both
+  double ms_difference = 0;        ///< mean MS of a - b; NaN without laps
+  std::optional<double> ms_p = 1;  ///< none where MS is not tested
+  double time_difference = 0;      ///< s, mean time of a - b, of pairs that both finish, or of finished laps
+  double time_p = 1;
+  int only_a_succeeds = 0, only_b_succeeds = 0;  ///< pairs in which only one of them succeeds
+  double success_p = 1, collisions_p = 1;
 };
+
+/// Compares laps of `a` and `b`, the numbers of whose obstacles are given for all laps together. Paired laps,
+/// those of the same number: Wilcoxon's signed-rank test, McNemar's for success. Others: bootstrap of the
+/// difference of means, Fisher's exact test for success and collisions.
+Comparison compare_laps(const std::vector<const LapRow*>& a, std::int64_t obstacles_a,
+                        const std::vector<const LapRow*>& b, std::int64_t obstacles_b, bool paired);
+
+/// A comparison with the indices of its experiments.
+struct PairedComparison : Comparison {
+  int a = 0, b = 0;
+};
+
+/// The laps of an experiment, in their order.
+std::vector<const LapRow*> rows_of(const std::vector<LapRow>& rows, int experiment);
 
 /// One result per experiment, in their order. Rows may come in any order.
 std::vector<ExperimentResult> summarise(const std::vector<LapRow>& rows,

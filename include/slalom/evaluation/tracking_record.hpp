@@ -1,6 +1,10 @@
 #pragma once
 
+#include <concepts>
+#include <type_traits>
 #include <vector>
+
+#include "slalom/evaluation/lap_figures.hpp"
 
 namespace slalom::evaluation {
 
@@ -24,16 +28,27 @@ inline const char* const* enum_names(TrackingMode) {
 /// detected if an object is at most 0.5 m from its middle. Figures of positions include the error of the
 /// localisation, but not the drift of the wheel odometry.
 struct TrackingFigures {
-  int in_view = 0;            ///< bodies in view, summed over control steps
-  int detected = 0;           ///< detected ones of these
-  int long_in_view = 0;       ///< bodies that have been in view for 0.2 s without a break
-  int long_detected = 0;      ///< detected ones of these
-  int false_objects = 0;      ///< objects that were reported as seen where no body is
-  double position_error = 0;  ///< m, root mean square over `detected`
-  double speed_error = 0;     ///< m/s, the same
-  double yaw_error = 0;       ///< rad, the same; of a body that stands, to the nearer of its ends
-  double update_p99 = 0;      ///< ms, wall-clock, of an update; column `wall_tracking_p99`
+  int in_view = 0, detected = 0, long_in_view = 0, long_detected = 0, false_objects = 0;
+  double position_error = 0, speed_error = 0, yaw_error = 0;  ///< m, m/s, rad
+  double update_p99 = 0;                                      ///< ms
 };
+/// Calls `visit(field, Figure)` for every figure in the order of tables.
+template <class Figures, class Visit>
+requires std::derived_from<std::remove_const_t<Figures>, TrackingFigures>
+void visit_figures(Figures& f, Visit&& visit) {
+  visit(f.in_view, Figure{"tracking_in_view", "", "bodies in view, summed over control steps"});
+  visit(f.detected, Figure{"tracking_detected", "", "detected ones of these"});
+  visit(f.long_in_view,
+        Figure{"tracking_long_in_view", "", "bodies that have been in view for 0.2 s without a break"});
+  visit(f.long_detected, Figure{"tracking_long_detected", "", "detected ones of these"});
+  visit(f.false_objects,
+        Figure{"tracking_false_objects", "", "objects that were reported as seen where no body is"});
+  visit(f.position_error, Figure{"tracking_position_error", "m", "root mean square over tracking_detected"});
+  visit(f.speed_error, Figure{"tracking_speed_error", "m/s", "root mean square over tracking_detected"});
+  visit(f.yaw_error,
+        Figure{"tracking_yaw_error", "rad", "the same; of a body that stands, to the nearer of its ends"});
+  visit(f.update_p99, Figure{"tracking_update_p99", "ms", "99th percentile of the time of an update", true});
+}
 
 /// The same figures with the times of the tracker.
 struct TrackingRecord : TrackingFigures {

@@ -21,12 +21,15 @@ inline const char* const* enum_names(BaseKind) {
 }
 
 /// A velocity in the robot's frame.
-struct Velocity {
+template <class T>
+struct VelocityOf {
   static constexpr double largest = 100;  ///< m/s and rad/s, largest magnitude that a navigator takes
-  double forward = 0;                     ///< m/s
-  double left = 0;                        ///< m/s; 0 but for omnidirectional bases
-  double turn = 0;                        ///< rad/s, counter-clockwise
+  T forward{};                            ///< m/s
+  T left{};                               ///< m/s; 0 but for omnidirectional bases
+  T turn{};                               ///< rad/s, counter-clockwise
 };
+/// A velocity as commands and measurements have it.
+using Velocity = VelocityOf<double>;
 
 /// Limits of a base. `visit_options` below describes the fields.
 struct BaseOptions {
@@ -106,23 +109,17 @@ inline std::array<AxisLimits, 3> axis_limits(const BaseOptions& base) noexcept {
             base.dead_band_turn}}};
 }
 
-/// The motion of a step: speeds in the robot's frame.
-template <class T>
-struct Motion {
-  T forward, left, turn;  ///< m/s, m/s, rad/s
-};
-
 /// The inputs of a differential base: speed (m/s) and yaw rate (rad/s).
 struct DifferentialBase {
   static constexpr int inputs = 2;  ///< inputs of a step
   /// Does not use the limits: the problem takes them as bounds of the inputs.
   explicit DifferentialBase(const BaseOptions&) {}
-  /// The motion of an input.
+  /// The velocity of an input.
   template <class T>
-  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, 2>& u) const {
+  SLALOM_INLINE_CALLS VelocityOf<T> velocity(const Input<T, 2>& u) const {
     return {u[0], T(0), u[1]};
   }
-  /// The input of a motion.
+  /// The input of a velocity.
   static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
   /// Selects the values of the inputs from those of the axes forward, sideways and turning.
   template <class Value>
@@ -136,12 +133,12 @@ struct OmnidirectionalBase {
   static constexpr int inputs = 3;  ///< inputs of a step
   /// Does not use the limits: the problem takes them as bounds of the inputs.
   explicit OmnidirectionalBase(const BaseOptions&) {}
-  /// The motion of an input.
+  /// The velocity of an input.
   template <class T>
-  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, 3>& u) const {
+  SLALOM_INLINE_CALLS VelocityOf<T> velocity(const Input<T, 3>& u) const {
     return {u[0], u[1], u[2]};
   }
-  /// The input of a motion.
+  /// The input of a velocity.
   static Input<double, 3> input(const Velocity& v) { return {{v.forward, v.left, v.turn}}; }
   /// Selects the values of the inputs from those of the axes forward, sideways and turning.
   template <class Value>
@@ -156,9 +153,9 @@ struct AckermannBase : DifferentialBase {
   /// Takes the smallest turning radius from the limits.
   explicit AckermannBase(const BaseOptions& limits)
       : DifferentialBase(limits), largest_curvature_(1 / limits.min_turning_radius) {}
-  /// The motion of an input.
+  /// The velocity of an input.
   template <class T>
-  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, 2>& u) const {
+  SLALOM_INLINE_CALLS VelocityOf<T> velocity(const Input<T, 2>& u) const {
     const T most = abs(u[0]) * T(largest_curvature_);
     return {u[0], T(0), clamp(u[1], T(0) - most, most)};
   }

@@ -75,27 +75,27 @@ class BodyCheck {
   }
 
  private:
-  struct Place {
+  struct BodyPoint {
     Coefficient x, y;  ///< m, robot's frame
   };
   struct Part {
-    Place middle;
+    BodyPoint middle;
     Coefficient contained;   ///< m; an obstacle whose distance is less is inside
     Coefficient covering;    ///< m
     std::size_t begin, end;  ///< first of its points, and the one after its last
   };
 
   template <class T>
-  SLALOM_INLINE_CALLS static T look_up_at(const GridView<1>& distances, const Place& place, const T& x,
+  SLALOM_INLINE_CALLS static T look_up_at(const GridView<1>& distances, const BodyPoint& point, const T& x,
                                           const T& y, const T& sine, const T& cosine) {
-    return look_up(distances, x + cosine * T(place.x) - sine * T(place.y),
-                   y + sine * T(place.x) + cosine * T(place.y));
+    return look_up(distances, x + cosine * T(point.x) - sine * T(point.y),
+                   y + sine * T(point.x) + cosine * T(point.y));
   }
 
   std::array<Part, Footprint::part_count> parts_;
-  std::array<Place, max_points> points_;  ///< points of the outline, part by part
-  Coefficient unsure_;                    ///< m of clearance below which the outline decides
-  Coefficient half_cell_;                 ///< m
+  std::array<BodyPoint, max_points> points_;  ///< points of the outline, part by part
+  Coefficient unsure_;                        ///< m of clearance below which the outline decides
+  Coefficient half_cell_;                     ///< m
 };
 
 /// The maps of a solve, in the map frame, and the goal.
@@ -173,10 +173,10 @@ class NavigationProblem {
     }
     return u;
   }
-  /// The motion of an input that is driven.
+  /// The velocity of an input that is driven.
   template <class T>
-  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, inputs>& u) const {
-    return base_.motion(u);
+  SLALOM_INLINE_CALLS VelocityOf<T> velocity(const Input<T, inputs>& u) const {
+    return base_.velocity(u);
   }
 
   /// Sets the maps of the next rollouts, which the maps and the data of their views must outlive.
@@ -234,12 +234,12 @@ class NavigationProblem {
   template <class T>
   SLALOM_INLINE_CALLS State<T> step(const State<T>& x, const Seen<T>& seen, const Input<T, inputs>& u) const {
     const Input<T, inputs> now = driven(x.before, u);
-    const Motion<T> motion = base_.motion(now);
-    const T forward = motion.forward * T(step_), left = motion.left * T(step_);
+    const VelocityOf<T> velocity = base_.velocity(now);
+    const T forward = velocity.forward * T(step_), left = velocity.left * T(step_);
     const T dx = forward * seen.cosine - left * seen.sine, dy = forward * seen.sine + left * seen.cosine;
     const T projected = seen.foot.d + seen.along + dx * seen.path_cosine + dy * seen.path_sine;
     const T progress = clamp(projected, x.progress - T(reach_), x.progress + T(reach_));
-    return {x.x + dx, x.y + dy, x.yaw + motion.turn * T(step_), clamp(progress, T(0), T(window_length_)),
+    return {x.x + dx, x.y + dy, x.yaw + velocity.turn * T(step_), clamp(progress, T(0), T(window_length_)),
             now};
   }
 
@@ -253,11 +253,11 @@ class NavigationProblem {
     const T heading_error =
         T(1) - T(direction_) * (seen.cosine * seen.path_cosine + seen.sine * seen.path_sine);
     const T turn_left = abs(x.yaw - T(end_yaw_));
-    const Motion<T> motion = base_.motion(driven(x.before, u));
-    const T hurry = max((abs(motion.forward) + abs(motion.left)) * T(per_usual_speed), T(1));
-    const T drifting = T(drift_weight_) * (square(motion.forward) + square(motion.left));
-    const T moving = drifting + T(costs_.reverse) * max(T(0) - T(direction_) * motion.forward, T(0)) +
-                     T(costs_.sideways) * abs(motion.left) + T(turning_weight_) * square(motion.turn) +
+    const VelocityOf<T> velocity = base_.velocity(driven(x.before, u));
+    const T hurry = max((abs(velocity.forward) + abs(velocity.left)) * T(per_usual_speed), T(1));
+    const T drifting = T(drift_weight_) * (square(velocity.forward) + square(velocity.left));
+    const T moving = drifting + T(costs_.reverse) * max(T(0) - T(direction_) * velocity.forward, T(0)) +
+                     T(costs_.sideways) * abs(velocity.left) + T(turning_weight_) * square(velocity.turn) +
                      T(costs_.unknown) * seen.price;
     const Cost<T> met = others_.cost(x.x, x.y, seen.sine, seen.cosine, k);
     return {

@@ -23,7 +23,7 @@ class LapPath {
   struct Place {
     std::size_t segment = 0;  ///< index of the point before the position
     double arc = 0;           ///< m from the first point, in [0, length)
-    double lateral = 0;       ///< m, to the left positive
+    double offset = 0;        ///< m, to the left positive
     double distance = 0;      ///< m
   };
 
@@ -65,7 +65,7 @@ class LapTimer {
   double progress() const noexcept { return progress_; }  ///< m since the start, backwards counts down
   double last_lap_time() const noexcept { return last_lap_time_; }  ///< s; 0 before the first is complete
   double lap_start_time() const noexcept { return lap_start_; }     ///< s, when the present lap began
-  double lateral() const noexcept { return place_.lateral; }        ///< m off the path, to the left positive
+  double offset() const noexcept { return place_.offset; }          ///< m off the path, to the left positive
   double arc() const noexcept { return place_.arc; }                ///< m along the path from its first point
 
  private:

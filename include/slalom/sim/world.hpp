@@ -176,8 +176,8 @@ class World {
   const Lidar& lidar() const noexcept { return lidar_; }             ///< the scanner of all cars
 
  private:
-  struct Car {
-    explicit Car(Plant made) : plant(std::move(made)) {}
+  struct DrivenCar {
+    explicit DrivenCar(Plant made) : plant(std::move(made)) {}
     Plant plant;
     CarState before;
     StartZoneLaps zone;
@@ -214,10 +214,10 @@ class World {
   bool was_struck(std::size_t car) const noexcept;
   bool is_free(std::size_t car, const maps::Pose& pose) const noexcept;
   void slide(std::size_t car, const CarState& tried, CarState& state) const noexcept;
-  void scan_walls(Car& car) noexcept;
+  void scan_walls(DrivenCar& car) noexcept;
   void cast_bodies(std::size_t car) noexcept;
-  void add_noise(Car& car) noexcept;
-  void publish(Car& car) noexcept;
+  void add_noise(DrivenCar& car) noexcept;
+  void publish(DrivenCar& car) noexcept;
   void gym_scan_and_collisions() noexcept;
   void scan_if_due() noexcept;
   void count_laps() noexcept;
@@ -226,7 +226,7 @@ class World {
   std::shared_ptr<const Track> track_;
   Lidar lidar_;
   TimeToCollision time_to_collision_;
-  std::vector<Car> cars_;
+  std::vector<DrivenCar> cars_;
   std::vector<Fixed> fixed_;
   std::vector<Box> boxes_;  ///< boxes of driven cars, as moved in this step
   std::vector<std::uint8_t> flags_;

@@ -37,9 +37,9 @@ concept MethodOptions = requires {
 class SolverOptions {
  public:
   /// A pointer to an option, by the type of the option.
-  using Field = std::variant<bool*, int*, std::uint64_t*, double*, PerInput*, Choice>;
+  using OptionPointer = std::variant<bool*, int*, std::uint64_t*, double*, PerInput*, Choice>;
   /// Function that is called with an option and its declaration.
-  using FieldVisitor = std::function<void(const Field&, const Declaration&)>;
+  using OptionVisitor = std::function<void(const OptionPointer&, const Declaration&)>;
 
   /// Takes the options of a method.
   template <MethodOptions Options>
@@ -67,7 +67,7 @@ class SolverOptions {
   template <class Type>
   Type* find(std::string_view name) {
     Type* found = nullptr;
-    held_->for_each([&](const Field& field, const Declaration& declaration) {
+    held_->for_each([&](const OptionPointer& field, const Declaration& declaration) {
       if (name != declaration.name) return;
       if (Type* const* pointer = std::get_if<Type*>(&field)) found = *pointer;
     });
@@ -80,7 +80,7 @@ class SolverOptions {
   }
 
   /// Calls `visit` with every option in the order of the declarations.
-  void for_each(const FieldVisitor& visit) const { const_cast<Base&>(*held_).for_each(visit); }
+  void for_each(const OptionVisitor& visit) const { const_cast<Base&>(*held_).for_each(visit); }
 
   /// Checks all options and makes the solver. Throws std::invalid_argument that names the option, its value
   /// and the rule.
@@ -93,7 +93,7 @@ class SolverOptions {
     virtual ~Base() = default;
     virtual const char* method() const noexcept = 0;
     virtual std::unique_ptr<Base> clone() const = 0;
-    virtual void for_each(const FieldVisitor& visit) = 0;
+    virtual void for_each(const OptionVisitor& visit) = 0;
     virtual std::unique_ptr<Solver> make(int inputs, std::shared_ptr<ThreadPool> pool) const = 0;
   };
 
@@ -102,7 +102,7 @@ class SolverOptions {
     explicit Held(Options o) : options(std::move(o)) {}
     const char* method() const noexcept override { return Options::method; }
     std::unique_ptr<Base> clone() const override { return std::make_unique<Held>(options); }
-    void for_each(const FieldVisitor& visit) override {
+    void for_each(const OptionVisitor& visit) override {
       visit_options(options, [&](auto& field, const Declaration& declaration) {
         if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(field)>>) {
           visit(Choice(field), declaration);
@@ -124,7 +124,7 @@ class SolverOptions {
 template <class Options, class Visit>
 requires is_options_of<Options, SolverOptions>
 void visit_options(Options& options, Visit&& visit) {
-  options.for_each([&](const SolverOptions::Field& any, const Declaration& declaration) {
+  options.for_each([&](const SolverOptions::OptionPointer& any, const Declaration& declaration) {
     std::visit(
         [&](auto field) {
           if constexpr (std::is_same_v<decltype(field), Choice>) {

@@ -24,18 +24,19 @@ class FaultJudge {
   bool at_fault(std::size_t car, std::size_t other) const noexcept;
 
  private:
-  /// A car along the course.
-  struct Place {
+  /// The position and the velocity of a car along the course.
+  struct CourseState {
     double arc = 0;       ///< m
     double offset = 0;    ///< m left of the course line
     double sideways = 0;  ///< m/s, to the left of the course
   };
-  static Place place(const sim::World& world, std::size_t car);
+  static CourseState course_state(const sim::World& world, std::size_t car);
 
-  std::vector<Place> before_, long_before_;  ///< places of each car: 0 to 0.05 s ago, and 0.05 s before that
-  double snapshot_ = 0;                      ///< s, when `before_` was
-  double length_;                            ///< m, of the course
-  double wheelbase_;                         ///< m
+  std::vector<CourseState> before_,
+      long_before_;      ///< states of each car: 0 to 0.05 s ago, and 0.05 s before that
+  double snapshot_ = 0;  ///< s, when `before_` was
+  double length_;        ///< m, of the course
+  double wheelbase_;     ///< m
 };
 
 }  // namespace slalom::evaluation

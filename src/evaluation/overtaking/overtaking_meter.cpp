@@ -58,7 +58,7 @@ void OvertakingMeter::meet(const sim::World& world, std::size_t car) {
 
 /// Counts a change of the side on which the first car is near an opponent.
 void OvertakingMeter::note_side(const sim::World& world, std::size_t car, Encounter& encounter) {
-  const double left = world.laps(0)->lateral() - world.laps(car)->lateral();
+  const double left = world.laps(0)->offset() - world.laps(car)->offset();
   if (std::abs(left) < width_) return;
   int& side = opponents_[car - 1].side;
   const int now = left > 0 ? 1 : -1;

@@ -52,11 +52,11 @@ void RacingOpponent::look(const World& world) {
     if (car == car_ || !world.on_track(car) || std::hypot(box.pose.x - own.x, box.pose.y - own.y) > sight)
       continue;
     const LapPath::Place place = line_->project_near({box.pose.x, box.pose.y}, place_, sight);
-    if (std::abs(place.lateral) > widest) continue;
+    if (std::abs(place.offset) > widest) continue;
     const double turned = box.pose.yaw - line_->at(place.arc).yaw;
     const double c = std::abs(std::cos(turned)), s = std::abs(std::sin(turned));
     neighbours_.push_back({.gap = line_->between(place_.arc, place.arc),
-                           .offset = place.lateral,
+                           .offset = place.offset,
                            .half_length = 0.5 * (box.length * c + box.width * s),
                            .half_width = 0.5 * (box.length * s + box.width * c),
                            .speed = world.state(car).speed * std::cos(turned)});
@@ -93,16 +93,16 @@ double RacingOpponent::wanted_lane(double time) {
 /// m left of the path, `ahead` (m) on the way into the lane.
 double RacingOpponent::offset_at(double ahead) const noexcept {
   const RacingLine::Point at = line_->at(place_.arc + ahead), here = line_->at(place_.arc);
-  const double from = place_.lateral - here.offset, share = std::clamp(ahead / change_, 0.0, 1.0);
+  const double from = place_.offset - here.offset, share = std::clamp(ahead / change_, 0.0, 1.0);
   double offset = at.offset + from + (lane_ - from) * share * share * (3 - 2 * share);
   for (const Neighbour& other : neighbours_) {
     if (!alongside(other)) continue;
     // A distance that is less than wanted already may stay as it is.
     const double apart = other.half_width + half_width_ + room;
-    if (other.offset > place_.lateral)
-      offset = std::min(offset, std::max(other.offset - apart, place_.lateral));
+    if (other.offset > place_.offset)
+      offset = std::min(offset, std::max(other.offset - apart, place_.offset));
     else
-      offset = std::max(offset, std::min(other.offset + apart, place_.lateral));
+      offset = std::max(offset, std::min(other.offset + apart, place_.offset));
   }
   return std::clamp(offset, at.least, at.most);
 }
@@ -118,7 +118,7 @@ double RacingOpponent::wanted_speed() const noexcept {
   for (const Neighbour& other : neighbours_) {
     if (other.gap <= 0) continue;
     const double half_widths = other.half_width + half_width_;
-    if (alongside(other) && std::abs(place_.lateral - other.offset) >= half_widths) continue;
+    if (alongside(other) && std::abs(place_.offset - other.offset) >= half_widths) continue;
     if (std::abs(offset_at(other.gap) - other.offset) > half_widths + room) continue;
     const double gap = other.gap - other.half_length - half_length_ - follow_gap;
     speed = std::min(speed, std::max(other.speed + gap / headway, 0.0));
@@ -130,7 +130,7 @@ Command RacingOpponent::command(const World& world) {
   look(world);
   lane_ = wanted_lane(world.time());
   // A cubic of length l has an acceleration of at most 6 |offset| (v / l)^2.
-  const double aside = std::abs(lane_ + line_->at(place_.arc).offset - place_.lateral);
+  const double aside = std::abs(lane_ + line_->at(place_.arc).offset - place_.offset);
   change_ = std::max(shortest_change, speed_ * std::sqrt(6 * aside / side_acceleration));
   const CarParameters& car = world.options().car;
   const double ahead = least_aim + aim_time * speed_;

@@ -56,7 +56,7 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
   fixed_.assign(parked.size(), Fixed{.box = body});
   for (std::size_t i = 0; i < parked.size(); ++i) fixed_[i].box.pose = parked[i];
   boxes_.assign(cars.size(), body);
-  cars_.resize(cars.size(), Car(Plant(options_.car, options_.plant, options_.time_step)));
+  cars_.resize(cars.size(), DrivenCar(Plant(options_.car, options_.plant, options_.time_step)));
   for (std::size_t i = 0; i < cars.size(); ++i) {
     place(i, cars[i], cars[0].yaw);
     cars_[i].noise.reset(seed, i);
@@ -75,7 +75,7 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
 
 /// Puts a driven car at its start, where its laps begin; `heading` (rad) is the yaw of the first car.
 void World::place(std::size_t index, const maps::Pose& start, double heading) {
-  Car& car = cars_[index];
+  DrivenCar& car = cars_[index];
   car.before = {.x = start.x, .y = start.y, .yaw = start.yaw};
   car.plant.reset(car.before);
   car.zone.reset({start.x, start.y}, heading);
@@ -112,7 +112,7 @@ int World::add(const Fixed& body) {
   fixed_.push_back(body);
   flags_.push_back(0);
   partners_.push_back(-1);
-  for (Car& car : cars_) car.colliding.reserve(bodies());
+  for (DrivenCar& car : cars_) car.colliding.reserve(bodies());
   find_fixed_partners();
   return static_cast<int>(bodies()) - 1;
 }
@@ -145,7 +145,7 @@ void World::remove_body(int body) {
   flags_.erase(flags_.begin() + body);
   partners_.erase(partners_.begin() + body);
   for (int& partner : partners_) partner = partner == body ? -1 : partner > body ? partner - 1 : partner;
-  for (Car& car : cars_) {
+  for (DrivenCar& car : cars_) {
     std::erase(car.colliding, body);
     for (int& other : car.colliding) other -= other > body;
   }
@@ -161,7 +161,7 @@ void World::set_state(std::size_t car, const CarState& state) {
 }
 
 void World::take_away(std::size_t car) {
-  Car& taken = cars_.at(car);
+  DrivenCar& taken = cars_.at(car);
   taken.away = true;
   CarState state = taken.plant.state();
   state.speed = state.yaw_rate = state.slip = 0;
@@ -169,7 +169,7 @@ void World::take_away(std::size_t car) {
   taken.before = state;
   taken.wall = false;
   taken.colliding.clear();
-  for (Car& other : cars_) std::erase(other.colliding, static_cast<int>(car));
+  for (DrivenCar& other : cars_) std::erase(other.colliding, static_cast<int>(car));
   flags_[car] = 0;
   partners_[car] = -1;
 }
@@ -179,7 +179,7 @@ void World::set_scanning(std::size_t car, bool scans) {
 }
 
 Observation World::observe(std::size_t index) const noexcept {
-  const Car& car = cars_[index];
+  const DrivenCar& car = cars_[index];
   const CarState& s = car.plant.state();
   return {.pose = s.pose(),
           .sensor = car.sensor,
@@ -212,7 +212,7 @@ std::optional<Disc> World::disc(std::size_t body) const noexcept {
 StepStatus World::step(std::span<const Command> commands) noexcept {
   StepStatus status = commands.size() < cars_.size() ? StepStatus::missing_command : StepStatus::ok;
   for (std::size_t i = 0; i < cars_.size(); ++i) {
-    Car& car = cars_[i];
+    DrivenCar& car = cars_[i];
     if (car.away) continue;
     car.before = car.plant.state();
     if (i >= commands.size()) {
@@ -242,7 +242,7 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
 }
 
 void World::count_laps() noexcept {
-  for (Car& car : cars_) {
+  for (DrivenCar& car : cars_) {
     if (car.away) continue;
     const maps::Point at{car.plant.state().x, car.plant.state().y};
     car.zone.update(at, time_);

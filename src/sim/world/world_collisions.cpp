@@ -39,7 +39,7 @@ void World::find_fixed_partners() noexcept {
 
 void World::find_collisions() noexcept {
   std::fill(partners_.begin(), partners_.end(), -1);
-  for (Car& car : cars_) car.colliding.clear();
+  for (DrivenCar& car : cars_) car.colliding.clear();
   const std::size_t driven = cars_.size();
   for (std::size_t i = 0; i < fixed_.size(); ++i) partners_[driven + i] = fixed_[i].last_partner;
   for (std::size_t i = 0; i < driven; ++i) {
@@ -67,7 +67,7 @@ void World::find_collisions() noexcept {
 }
 
 void World::respond(std::size_t index) noexcept {
-  Car& car = cars_[index];
+  DrivenCar& car = cars_[index];
   const bool at_bodies = !car.colliding.empty() && options_.body_response != CollisionResponse::count_only;
   const bool zeroes = car.wall && options_.gym;
   const bool at_wall = zeroes || (car.wall && options_.wall_response != CollisionResponse::count_only);

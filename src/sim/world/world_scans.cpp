@@ -4,7 +4,7 @@
 
 namespace slalom::sim {
 
-void World::scan_walls(Car& car) noexcept {
+void World::scan_walls(DrivenCar& car) noexcept {
   car.sensor = lidar_.sensor_pose(car.plant.state().pose());
   car.scan_time = time_;
   if (options_.gym)
@@ -14,7 +14,7 @@ void World::scan_walls(Car& car) noexcept {
 }
 
 void World::cast_bodies(std::size_t index) noexcept {
-  Car& car = cars_[index];
+  DrivenCar& car = cars_[index];
   const auto cast = [&](const auto& body) {
     if (options_.gym)
       lidar_.gym_cast(car.sensor, body, car.gym_ranges);
@@ -31,7 +31,7 @@ void World::cast_bodies(std::size_t index) noexcept {
   }
 }
 
-void World::add_noise(Car& car) noexcept {
+void World::add_noise(DrivenCar& car) noexcept {
   const LidarOptions& lidar = options_.lidar;
   if (lidar.noise == 0 && lidar.dropout == 0) return;
   if (options_.gym)
@@ -40,7 +40,7 @@ void World::add_noise(Car& car) noexcept {
     car.noise.add(car.ranges, lidar.beams, lidar.noise, lidar.range_max, lidar.dropout);
 }
 
-void World::publish(Car& car) noexcept {
+void World::publish(DrivenCar& car) noexcept {
   std::transform(car.gym_ranges.begin(), car.gym_ranges.end(), car.ranges.begin(),
                  [](double range) { return static_cast<float>(range); });
 }
@@ -60,7 +60,7 @@ void World::scan_if_due() noexcept {
 /// The order of f1tenth_gym: all cars scan the walls; a car that its scan shows to be at a wall stops; the
 /// others enter its scan.
 void World::gym_scan_and_collisions() noexcept {
-  for (Car& car : cars_) {
+  for (DrivenCar& car : cars_) {
     car.wall = false;
     if (!car.scans || car.away) continue;
     scan_walls(car);
@@ -77,7 +77,7 @@ void World::gym_scan_and_collisions() noexcept {
     cars_[i].sensor = lidar_.sensor_pose(cars_[i].plant.state().pose());
   };
   for (std::size_t i = 0; i < cars_.size(); ++i) {
-    Car& car = cars_[i];
+    DrivenCar& car = cars_[i];
     if (!car.scans || car.away) continue;
     if (time_to_collision_.first_hit(car.gym_ranges, car.plant.state().speed) >= 0) stop_at_wall(i);
     cast_bodies(i);

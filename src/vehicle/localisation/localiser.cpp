@@ -14,8 +14,8 @@
 namespace slalom::vehicle {
 namespace {
 
+using detail::Displacement;
 using detail::FreeCells;
-using detail::Motion;
 using detail::Particles;
 using detail::ScanBeams;
 using detail::SensorTables;
@@ -132,33 +132,33 @@ struct Localiser::Implementation {
 /// Moves the particles by what the odometry says since the last update.
 LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noexcept {
   LocaliserStatus status = LocaliserStatus::ok;
-  Motion motion;
+  Displacement moved;
   if (has_odometry) {
     elapsed = input.stamp - stamp;
-    motion.step = relative(odometry, input.odometry);
-    const double distance = std::hypot(motion.step.x, motion.step.y);
+    moved.step = relative(odometry, input.odometry);
+    const double distance = std::hypot(moved.step.x, moved.step.y);
     const bool jumped = elapsed <= 0 || distance > options.max_speed * elapsed + jump_slack ||
-                        std::abs(motion.step.yaw) > max_yaw_rate * elapsed + jump_slack;
+                        std::abs(moved.step.yaw) > max_yaw_rate * elapsed + jump_slack;
     if (jumped) {
       const double guess = std::clamp(elapsed, 0.0, max_prediction);
-      motion.step = {velocity.x * guess, velocity.y * guess, velocity.yaw * guess};
+      moved.step = {velocity.x * guess, velocity.y * guess, velocity.yaw * guess};
       status = LocaliserStatus::odometry_jump;
     } else {
-      velocity = {motion.step.x / elapsed, motion.step.y / elapsed, motion.step.yaw / elapsed};
+      velocity = {moved.step.x / elapsed, moved.step.y / elapsed, moved.step.yaw / elapsed};
     }
   } else {
     velocity = {};
     elapsed = 0;
   }
-  const double distance = std::hypot(motion.step.x, motion.step.y);
+  const double distance = std::hypot(moved.step.x, moved.step.y);
   const double doubt = status == LocaliserStatus::ok ? 1 : 3;
-  motion.along = doubt * (options.along_noise * distance + options.position_noise);
-  motion.across = doubt * (options.across_noise * distance + options.position_noise);
-  motion.turn = doubt * (options.turn_noise * std::abs(motion.step.yaw) + options.drift_noise * distance +
-                         options.yaw_noise);
-  step = motion.step;
-  particles.move(motion, next_key());
-  output.pose = compose(output.pose, motion.step);
+  moved.along = doubt * (options.along_noise * distance + options.position_noise);
+  moved.across = doubt * (options.across_noise * distance + options.position_noise);
+  moved.turn = doubt * (options.turn_noise * std::abs(moved.step.yaw) + options.drift_noise * distance +
+                        options.yaw_noise);
+  step = moved.step;
+  particles.move(moved, next_key());
+  output.pose = compose(output.pose, moved.step);
   has_odometry = true;
   odometry = input.odometry;
   stamp = input.stamp;

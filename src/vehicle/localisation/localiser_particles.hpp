@@ -1,11 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "localiser_bins.hpp"
@@ -54,8 +51,8 @@ class FreeCells {
   double resolution_;
 };
 
-/// The motion of the car between two updates, in its frame at the first one, and its uncertainty.
-struct Motion {
+/// The displacement of the car between two updates, in its frame at the first one, and its uncertainty.
+struct Displacement {
   maps::Pose step;    ///< m, rad
   double along = 0;   ///< m, standard deviations
   double across = 0;  ///< m
@@ -66,98 +63,19 @@ struct Motion {
 /// done to them. Nothing allocates after construction.
 class Particles {
  public:
-  Particles(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells)
-      : options_(options),
-        free_cells_(std::move(free_cells)),
-        now_(1, 3, options.max_particles),
-        next_(1, 3, options.max_particles),
-        noise_(1, 3, options.max_particles),
-        log_fit_(padded(options.max_particles)),
-        weights_(options.max_particles),
-        cumulative_(weights_.size()),
-        guide_(weights_.size()),
-        bins_(options.max_particles, bin_size, bin_angle),
-        places_(options.max_particles, place_size, place_angle) {}
+  Particles(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells);
 
-  void spread_about(const maps::Pose& pose, double deviation, double yaw_deviation, RandomKey key) noexcept {
-    fill_normal(noise_, 0, noise_.stride(), key);
-    for (int i = 0; i < options_.max_particles; ++i)
-      put_pose(now_, i,
-               {pose.x + deviation * noise_.at(0, 0, i), pose.y + deviation * noise_.at(0, 1, i),
-                maps::wrap_angle(pose.yaw + yaw_deviation * noise_.at(0, 2, i))});
-    make_uniform(options_.max_particles);
-  }
+  void spread_about(const maps::Pose& pose, double deviation, double yaw_deviation, RandomKey key) noexcept;
 
-  void spread_everywhere(RandomKey key) noexcept {
-    RandomStream random(key);
-    for (int i = 0; i < options_.max_particles; ++i) put_pose(now_, i, free_cells_->random_pose(random));
-    make_uniform(options_.max_particles);
-  }
+  void spread_everywhere(RandomKey key) noexcept;
 
-  void move(const Motion& motion, RandomKey key) noexcept {
-    fill_normal(noise_, 0, padded(count_), key);
-    const float along = static_cast<float>(motion.step.x), across = static_cast<float>(motion.step.y);
-    const float turn = static_cast<float>(motion.step.yaw);
-    const float along_deviation = static_cast<float>(motion.along);
-    const float across_deviation = static_cast<float>(motion.across);
-    const float turn_deviation = static_cast<float>(motion.turn);
-    float *x = now_.row(0, 0), *y = now_.row(0, 1), *yaw = now_.row(0, 2);
-    const float *a = noise_.row(0, 0), *b = noise_.row(0, 1), *c = noise_.row(0, 2);
-    for (int i = 0; i < count_; ++i) {
-      const float dx = along + along_deviation * a[i], dy = across + across_deviation * b[i];
-      const float cosine = std::cos(yaw[i]), sine = std::sin(yaw[i]);
-      x[i] += cosine * dx - sine * dy;
-      y[i] += sine * dx + cosine * dy;
-      yaw[i] = slalom::wrap_angle(yaw[i] + turn + turn_deviation * c[i]);
-    }
-  }
+  void move(const Displacement& moved, RandomKey key) noexcept;
 
   /// Multiplies the weights by the fits to the power of `exponent`. Returns the effective sample size.
-  double weigh(const SensorTables& sensor, const ScanBeams& beams, double exponent) noexcept {
-    float* log_fit = log_fit_.data();
-    sensor.weigh(poses_of(now_, padded(count_)), beams, log_fit);
-    const float best = *std::max_element(log_fit, log_fit + count_);
-    const int used = sensor.model() == SensorModel::beam ? beams.count : beams.hits;
-    const float power = static_cast<float>(exponent * used);
-    double sum = 0;
-    for (int i = 0; i < count_; ++i) {
-      double& weight = weights_[i];
-      weight *= static_cast<double>(std::exp(power * (log_fit[i] - best)));
-      sum += weight;
-    }
-    // The best particle's own weight may have been tiny before.
-    if (!(sum > 1e-290)) {
-      make_uniform(count_);
-      return count_;
-    }
-    double squares = 0;
-    for (int i = 0; i < count_; ++i) {
-      double& weight = weights_[i];
-      weight /= sum;
-      squares += weight * weight;
-    }
-    return 1 / squares;
-  }
+  double weigh(const SensorTables& sensor, const ScanBeams& beams, double exponent) noexcept;
 
   /// Draws particles by weight; their number depends on the spread.
-  void resample(RandomKey key) noexcept {
-    accumulate_weights();
-    const double shift = RandomStream(key).uniform();
-    bins_.clear();
-    int drawn = 0;
-    double wanted = options_.min_particles;
-    while (drawn < wanted && drawn < options_.max_particles) {
-      double uniform = radical_inverse(static_cast<std::uint32_t>(drawn)) + shift;
-      uniform -= uniform >= 1;
-      const maps::Pose chosen = pose(draw(uniform));
-      put_pose(next_, drawn++, chosen);
-      if (bins_.add(chosen.x, chosen.y, chosen.yaw, 1))
-        wanted = std::max<double>(options_.min_particles,
-                                  kld_sample_size(bins_.occupied(), kld_error, kld_quantile));
-    }
-    std::swap(now_, next_);
-    make_uniform(drawn);
-  }
+  void resample(RandomKey key) noexcept;
 
   struct Estimate {
     maps::Pose pose;
@@ -166,40 +84,7 @@ class Particles {
   };
 
   /// Returns mean and spread of the particles about the heaviest bin.
-  Estimate estimate() noexcept {
-    places_.clear();
-    for (int i = 0; i < count_; ++i) places_.add(x(i), y(i), yaw(i), weight(i));
-    maps::Pose middle;
-    for (int i = 0; i < count_; ++i) {
-      if (!places_.in_heaviest(x(i), y(i), yaw(i))) continue;
-      middle = pose(i);
-      break;
-    }
-    Estimate found;
-    // The window about any particle of the bin is moved onto the mean of what lies in it, twice.
-    for (int pass = 0; pass < 3; ++pass) {
-      double sum = 0, m[3] = {}, second[3][3] = {};
-      for (int i = 0; i < count_; ++i) {
-        const double d[3] = {x(i) - middle.x, y(i) - middle.y, maps::wrap_angle(yaw(i) - middle.yaw)};
-        if (d[0] * d[0] + d[1] * d[1] > near_distance * near_distance || std::abs(d[2]) > near_angle)
-          continue;
-        const double w = weight(i);
-        sum += w;
-        for (int a = 0; a < 3; ++a) {
-          m[a] += w * d[a];
-          for (int b = 0; b < 3; ++b) second[a][b] += w * d[a] * d[b];
-        }
-      }
-      if (!(sum > 0)) break;
-      for (double& mean : m) mean /= sum;
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) found.covariance[a][b] = second[a][b] / sum - m[a] * m[b];
-      middle = {middle.x + m[0], middle.y + m[1], maps::wrap_angle(middle.yaw + m[2])};
-      found.share = std::min(1.0, sum);
-    }
-    found.pose = middle;
-    return found;
-  }
+  Estimate estimate() noexcept;
 
   int count() const noexcept { return count_; }
   maps::Pose pose(int i) const noexcept { return {x(i), y(i), yaw(i)}; }
@@ -213,41 +98,15 @@ class Particles {
   static constexpr double place_size = 0.5, place_angle = 0.5;     ///< m, rad
   static constexpr double near_distance = 0.75, near_angle = 0.6;  ///< m, rad
 
-  /// The binary digits of i after the point, an evenly spread sequence in [0, 1) (van der Corput 1935).
-  static double radical_inverse(std::uint32_t i) {
-    i = (i << 16) | (i >> 16);
-    i = ((i & 0x00ff00ffu) << 8) | ((i >> 8) & 0x00ff00ffu);
-    i = ((i & 0x0f0f0f0fu) << 4) | ((i >> 4) & 0x0f0f0f0fu);
-    i = ((i & 0x33333333u) << 2) | ((i >> 2) & 0x33333333u);
-    i = ((i & 0x55555555u) << 1) | ((i >> 1) & 0x55555555u);
-    return i * 0x1p-32;
-  }
-
   double x(int i) const noexcept { return now_.row(0, 0)[i]; }
   double y(int i) const noexcept { return now_.row(0, 1)[i]; }
   double yaw(int i) const noexcept { return now_.row(0, 2)[i]; }
 
-  void make_uniform(int count) noexcept {
-    count_ = count;
-    std::fill_n(weights_.begin(), count, 1.0 / count);
-  }
+  void make_uniform(int count) noexcept;
 
-  void accumulate_weights() noexcept {
-    double sum = 0;
-    int part = 0;
-    for (int i = 0; i < count_; ++i) {
-      sum += weights_[i];
-      cumulative_[i] = sum;
-      for (; part < count_ && part < sum * count_; ++part) guide_[part] = i;
-    }
-    for (; part < count_; ++part) guide_[part] = count_ - 1;
-  }
+  void accumulate_weights() noexcept;
 
-  int draw(double uniform) const noexcept {
-    int i = guide_[saturate_cast<std::size_t>(uniform * count_)];
-    while (i + 1 < count_ && cumulative_[i] <= uniform) ++i;
-    return i;
-  }
+  int draw(double uniform) const noexcept;
 
   LocaliserOptions options_;
   std::shared_ptr<const FreeCells> free_cells_;

@@ -15,11 +15,6 @@ namespace {
 
 constexpr int parameters = 6;  // gain, offset, delay, time constant, wheelbase, understeer
 
-constexpr double max_gap = 0.2;    // s
-constexpr double settling = 0.5;   // s at the beginning of a segment, while the wheels' angle is not known
-constexpr double max_delay = 0.3;  // s
-constexpr int min_samples = 200;
-
 /// The change of yaw from one sample to the next.
 struct Turn {
   double begin = 0, end = 0;  ///< s
@@ -39,14 +34,14 @@ std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double min_spe
     const double dt = b.time - a.time;
     const double all =
         a.time + b.time + a.yaw + b.yaw + a.speed + b.speed + a.steer_command + a.x + b.x + a.y + b.y;
-    if (!std::isfinite(all) || dt <= 0 || dt > max_gap) {
+    if (!std::isfinite(all) || dt <= 0 || dt > detail::DriveLimits::gap) {
       first = true;
       continue;
     }
     Turn t{a.time, b.time, maps::wrap_angle(b.yaw - a.yaw), 0.5 * (a.speed + b.speed), i, first, false};
     if (first) segment_begin = a.time;
     first = false;
-    t.counts = std::abs(t.speed) >= min_speed && a.time - segment_begin >= settling;
+    t.counts = std::abs(t.speed) >= min_speed && a.time - segment_begin >= detail::DriveLimits::settling;
     turns.push_back(t);
   }
   return turns;
@@ -89,7 +84,7 @@ void predict(std::span<const DrivenSample> samples, const std::vector<Turn>& tur
 std::array<detail::FitParameter, parameters> fit_parameters(bool wheelbase_given) {
   return {{{0.05, 20, 1e-4},
            {-0.5, 0.5, 1e-5},
-           {0, max_delay, 1e-4},
+           {0, detail::DriveLimits::delay, 1e-4},
            {2e-3, 2, 1e-4},
            {0.02, 20, 1e-4, !wheelbase_given},
            {-0.02, 1, 1e-5}}};
@@ -104,9 +99,9 @@ void require_enough(std::span<const DrivenSample> samples, const std::vector<Tur
     low = std::min(low, samples[t.sample].steer_command);
     high = std::max(high, samples[t.sample].steer_command);
   }
-  if (used < min_samples)
+  if (used < detail::DriveLimits::samples)
     throw std::invalid_argument("identify: " + std::to_string(used) + " usable samples, must be at least " +
-                                std::to_string(min_samples) + "; drive for longer");
+                                std::to_string(detail::DriveLimits::samples) + "; drive for longer");
   if (high - low < 0.1)
     throw std::invalid_argument("identify: the steering commands span " + std::to_string(high - low) +
                                 " rad, must span at least 0.1 rad; drive curves to both sides");

@@ -12,7 +12,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int iterations = 60;
+constexpr int iterations = 60;  // steps of a fit, at most
 
 /// Solves a x = b, a symmetric, for the parameters that are sought and that the residuals depend on, the
 /// others being 0; empty if a is not positive definite without them.

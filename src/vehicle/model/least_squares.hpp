@@ -7,6 +7,16 @@
 
 namespace slalom::vehicle::detail {
 
+/// The limits of drives that identify a car.
+struct DriveLimits {
+  static constexpr double gap = 0.2;       ///< s between samples of a segment, at most
+  static constexpr double settling = 0.5;  ///< s at the beginning of a segment that are not compared: the
+                                           ///< angle of the wheels is not known
+  static constexpr double delay = 0.3;     ///< s, of commands, at most
+  static constexpr int samples = 200;      ///< samples that can be used, at least
+  static constexpr int windows = samples / 4;
+};
+
 /// A parameter of a least-squares fit.
 struct FitParameter {
   double low = 0, high = 0;  ///< its range

@@ -9,7 +9,7 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double most_checks = 1000;
+constexpr double most_checks = 1000;  // places of the body on its way between two states
 
 /// The radius of three equal discs that cover the body's rectangle, m.
 double disc_radius(const BodyOptions& options) {
@@ -134,22 +134,21 @@ KinematicBicycle::State<double> KinematicBicycle::start(const VehicleStart& star
 }
 
 VehicleTraits traits_of(const PathTrackingOptions& options, bool plans_speed) {
-  VehicleTraits traits;
-  traits.time_step = options.time_step;
-  traits.wheelbase = options.wheelbase();
-  traits.rear_length = options.rear_length;
-  traits.dead_time = options.hold_first_input ? 0 : options.dead_time;
-  traits.max_acceleration = options.max_acceleration;
-  traits.max_deceleration = options.max_deceleration;
-  traits.unlimited_acceleration = !options.limit_acceleration;
-  traits.plans_speed = plans_speed;
-  traits.follows_path = !options.localisation_less;
-  traits.reference_speed = options.reference_speed;
   const bool discs = options.body.model == BodyModel::discs;
-  traits.obstacle_map = discs ? ObstacleMap::clearance : ObstacleMap::inflated;
-  traits.clearance_reach = ObstacleCost::clearance_reach(options.body);
-  traits.body = options.body;
-  return traits;
+  return {.time_step = options.time_step,
+          .dead_time = options.hold_first_input ? 0 : options.dead_time,
+          .wheelbase = options.wheelbase(),
+          .rear_length = options.rear_length,
+          .max_acceleration = options.max_acceleration,
+          .max_deceleration = options.max_deceleration,
+          .body = options.body,
+          .obstacles = {.map = discs ? ObstacleMap::clearance : ObstacleMap::inflated,
+                        .reach = ObstacleCost::clearance_reach(options.body)},
+          .speed = {.planned = plans_speed,
+                    .unlimited_acceleration = !options.limit_acceleration,
+                    .follows_path = !options.localisation_less,
+                    .reference = options.reference_speed},
+          .tyres = {}};
 }
 
 }  // namespace slalom::vehicle

@@ -79,13 +79,13 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
 }
 
 void SingleTrack::complete(VehicleTraits& traits) const noexcept {
-  traits.friction = own_.friction;
-  traits.usable_grip = own_.usable_grip;
-  traits.braking_share = own_.braking_share;
-  traits.seeks_lap_time = seeks_lap_time();
-  traits.half_steer_speed = own_.half_steer_speed;
-  traits.switch_speed = own_.switch_speed;
-  traits.stopping_deceleration = braking_share * own_.usable_grip * gravity * own_.friction;
+  traits.tyres = {.friction = own_.friction,
+                  .usable_grip = own_.usable_grip,
+                  .braking_share = own_.braking_share,
+                  .seeks_lap_time = seeks_lap_time(),
+                  .half_steer_speed = own_.half_steer_speed,
+                  .stopping_deceleration = braking_share * own_.usable_grip * gravity * own_.friction,
+                  .switch_speed = own_.switch_speed};
 }
 
 SingleTrack::State<double> SingleTrack::start(const VehicleStart& start, double) const noexcept {

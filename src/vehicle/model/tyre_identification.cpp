@@ -17,30 +17,27 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double longest_gap = 0.2;          // s between samples
-constexpr double settling_time = 0.5;        // s at the begin of a segment
 constexpr double window_length = 0.2;        // s
 constexpr double longest_step = 0.005;       // s of the prediction
 constexpr double largest_acceleration = 15;  // m/s^2
 constexpr double outlier = 5;                // deviations
-constexpr std::size_t min_windows = 50;
-constexpr double first_yaw = 0.01, first_sideways = 0.01;  // rad, m, deviations before the first fit
+constexpr double first_deviation = 0.01;     // rad and m, before the first fit
 
 /// The parameters by their index.
 struct At {
-  static constexpr std::size_t friction = 0, front = 1, rear = 2, gain = 3, offset = 4, delay = 5, lag = 6,
-                               count = 7;
+  enum : std::size_t { friction, front, rear, gain, offset, delay, lag, count };
 };
+/// The least and the largest value of each, and the step of derivatives by it.
 constexpr std::array<detail::FitParameter, At::count> tyre_parameters{{{0.1, 2.5, 1e-4},
                                                                        {0.5, 100, 1e-3},
                                                                        {0.5, 100, 1e-3},
                                                                        {0.3, 3, 1e-4},
                                                                        {-0.3, 0.3, 1e-5},
-                                                                       {0, 0.3, 1e-4},
+                                                                       {0, detail::DriveLimits::delay, 1e-4},
                                                                        {2e-3, 1, 1e-4}}};
 
 /// The drive from one sample to the next.
-struct Step {
+struct SampleInterval {
   std::size_t sample = 0;            ///< index of the first of the two
   double begin = 0, end = 0;         ///< s
   double speed = 0, next_speed = 0;  ///< m/s
@@ -50,7 +47,7 @@ struct Step {
 
 /// A stretch that is compared with the poses.
 struct Window {
-  std::size_t begin = 0, end = 0;   ///< steps, `end` the one after the last
+  std::size_t begin = 0, end = 0;   ///< intervals, `end` the one after the last
   double turned = 0;                ///< rad, as measured
   double sideways = 0;              ///< m, as measured, in the frame of the pose at the begin
   double lateral_acceleration = 0;  ///< m/s^2
@@ -65,7 +62,7 @@ double acceleration_at(std::span<const DrivenSample> samples, std::size_t i) {
   std::size_t low = i, high = i + 1;
   const auto joined = [&](std::size_t a) {
     const double dt = samples[a + 1].time - samples[a].time;
-    return is_usable(samples[a]) && is_usable(samples[a + 1]) && dt > 0 && dt <= longest_gap;
+    return is_usable(samples[a]) && is_usable(samples[a + 1]) && dt > 0 && dt <= detail::DriveLimits::gap;
   };
   for (int k = 0; k < 2 && low > 0 && joined(low - 1); ++k) --low;
   for (int k = 0; k < 2 && high + 1 < samples.size() && joined(high); ++k) ++high;
@@ -73,35 +70,37 @@ double acceleration_at(std::span<const DrivenSample> samples, std::size_t i) {
   return std::clamp(slope, -largest_acceleration, largest_acceleration);
 }
 
-std::vector<Step> steps_of(std::span<const DrivenSample> samples, double min_speed) {
-  std::vector<Step> steps;
+std::vector<SampleInterval> intervals_of(std::span<const DrivenSample> samples, double min_speed) {
+  std::vector<SampleInterval> intervals;
   bool first = true;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const DrivenSample &a = samples[i], &b = samples[i + 1];
     const double dt = b.time - a.time;
-    if (!is_usable(a) || !is_usable(b) || dt <= 0 || dt > longest_gap ||
+    if (!is_usable(a) || !is_usable(b) || dt <= 0 || dt > detail::DriveLimits::gap ||
         std::min(a.speed, b.speed) < min_speed) {
       first = true;
       continue;
     }
-    steps.push_back({i, a.time, b.time, a.speed, b.speed, acceleration_at(samples, i), first});
+    intervals.push_back({i, a.time, b.time, a.speed, b.speed, acceleration_at(samples, i), first});
     first = false;
   }
-  return steps;
+  return intervals;
 }
 
-std::vector<Window> windows_of(std::span<const DrivenSample> samples, const std::vector<Step>& steps) {
+std::vector<Window> windows_of(std::span<const DrivenSample> samples,
+                               const std::vector<SampleInterval>& intervals) {
   std::vector<Window> windows;
   double segment_begin = 0;
-  for (std::size_t i = 0; i < steps.size();) {
-    if (steps[i].first) segment_begin = steps[i].begin;
+  for (std::size_t i = 0; i < intervals.size();) {
+    if (intervals[i].first) segment_begin = intervals[i].begin;
     std::size_t end = i + 1;
-    while (end < steps.size() && !steps[end].first &&
-           steps[end - 1].end - steps[i].begin < window_length - 1e-9)
+    while (end < intervals.size() && !intervals[end].first &&
+           intervals[end - 1].end - intervals[i].begin < window_length - 1e-9)
       ++end;
-    const double duration = steps[end - 1].end - steps[i].begin;
-    if (duration >= window_length - 1e-9 && steps[i].begin - segment_begin >= settling_time) {
-      const DrivenSample &a = samples[steps[i].sample], &b = samples[steps[end - 1].sample + 1];
+    const double duration = intervals[end - 1].end - intervals[i].begin;
+    if (duration >= window_length - 1e-9 &&
+        intervals[i].begin - segment_begin >= detail::DriveLimits::settling) {
+      const DrivenSample &a = samples[intervals[i].sample], &b = samples[intervals[end - 1].sample + 1];
       const double turned = maps::wrap_angle(b.yaw - a.yaw);
       windows.push_back({i, end, turned, maps::inverse_transform({a.x, a.y, a.yaw}, {b.x, b.y}).y,
                          0.5 * (a.speed + b.speed) * turned / duration});
@@ -119,8 +118,8 @@ class Drive {
       : samples_(samples),
         car_(car),
         own_(own),
-        steps_(steps_of(samples, min_speed)),
-        windows_(windows_of(samples, steps_)) {}
+        intervals_(intervals_of(samples, min_speed)),
+        windows_(windows_of(samples, intervals_)) {}
 
   std::vector<Window>& windows() { return windows_; }
 
@@ -137,19 +136,19 @@ class Drive {
     maps::Pose begin;
     std::size_t acting = 0, next = 0;
     double drag = 0;
-    for (std::size_t i = 0; i < steps_.size() && next < windows_.size(); ++i) {
-      const Step& step = steps_[i];
-      if (step.first) {
-        acting = step.sample;
+    for (std::size_t i = 0; i < intervals_.size() && next < windows_.size(); ++i) {
+      const SampleInterval& interval = intervals_[i];
+      if (interval.first) {
+        acting = interval.sample;
         s = {};
         drag = 0;
         s.steer = p[At::gain] * samples_[acting].steer_command + p[At::offset];
-        s.yaw_rate = step.speed * std::tan(s.steer) / car_.wheelbase();
+        s.yaw_rate = interval.speed * std::tan(s.steer) / car_.wheelbase();
         s.lateral = s.yaw_rate * car_.rear_length;
       }
       const Window& compared = windows_[next];
       if (i == compared.begin) begin = {s.x, s.y, s.yaw};
-      advance(s, step, p, dynamics, acting, drag);
+      advance(s, interval, p, dynamics, acting, drag);
       if (i + 1 < compared.end) continue;
       const double sideways = maps::inverse_transform(begin, {s.x, s.y}).y;
       out.push_back((s.yaw - begin.yaw - compared.turned) / yaw_deviation);
@@ -160,17 +159,17 @@ class Drive {
 
  private:
   /// Moves the car from one sample to the next. `drag` is the acceleration (m/s^2) by tyres that slip.
-  void advance(SingleTrackState<double>& s, const Step& step, std::span<const double> p,
+  void advance(SingleTrackState<double>& s, const SampleInterval& interval, std::span<const double> p,
                const SingleTrackDynamics& dynamics, std::size_t& acting, double& drag) const {
-    const double duration = step.end - step.begin;
+    const double duration = interval.end - interval.begin;
     const int pieces = std::max(1, saturate_cast<int>(std::ceil(duration / longest_step - 1e-9)));
     const double dt = duration / pieces;
     for (int k = 0; k < pieces; ++k) {
-      const double time = step.begin + k * dt;
-      s.speed = step.speed + (step.next_speed - step.speed) * k / pieces;
-      const double angle = servo(s.steer, time, time + dt, step.sample, p, acting);
+      const double time = interval.begin + k * dt;
+      s.speed = interval.speed + (interval.next_speed - interval.speed) * k / pieces;
+      const double angle = servo(s.steer, time, time + dt, interval.sample, p, acting);
       // The gain of the speed is the motor's force less that of tyres that slip.
-      const double motor = step.acceleration - drag;
+      const double motor = interval.acceleration - drag;
       const double before = s.speed;
       s = dynamics.advance(s, angle, motor, p[At::friction], dt);
       drag = std::clamp((s.speed - before) / dt - motor, -largest_acceleration, 0.0);
@@ -194,7 +193,7 @@ class Drive {
   std::span<const DrivenSample> samples_;
   PathTrackingOptions car_;
   SingleTrackOptions own_;
-  std::vector<Step> steps_;
+  std::vector<SampleInterval> intervals_;
   std::vector<Window> windows_;
 };
 
@@ -214,10 +213,10 @@ Deviations spread(const std::vector<double>& residuals, const Deviations& before
 }
 
 void require_windows(std::span<const DrivenSample> samples, const std::vector<Window>& windows) {
-  if (windows.size() < min_windows)
+  if (windows.size() < detail::DriveLimits::windows)
     throw std::invalid_argument("identify: " + std::to_string(windows.size()) +
                                 " windows of 0.2 s are usable, must be at least " +
-                                std::to_string(min_windows) + "; drive for longer");
+                                std::to_string(detail::DriveLimits::windows) + "; drive for longer");
   double low = 1e9, high = -1e9;
   for (const DrivenSample& s : samples)
     if (is_usable(s)) low = std::min(low, s.steer_command), high = std::max(high, s.steer_command);
@@ -264,7 +263,7 @@ TyreIdentification identify_tyres(std::span<const DrivenSample> samples, const P
   for (const double share : {0.4, 0.7, 1.0})
     for (const double wait : {0.02, 0.08})
       starts.push_back({share * own.friction, own.cornering_front, own.cornering_rear, 1, 0, wait, 0.05});
-  Deviations deviations{first_yaw, first_sideways};
+  Deviations deviations{first_deviation, first_deviation};
   detail::Fit best = best_fit(drive, deviations, starts);
 
   std::vector<double> residuals;

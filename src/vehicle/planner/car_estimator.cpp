@@ -9,9 +9,9 @@ CarEstimator::CarEstimator(const PlannerOptions& options, const DynamicVehicleMo
     : identify_(options.estimation.identify),
       latency_(options.latency),
       steer_resolution_(options.steer_resolution),
-      friction_(model.traits().friction),
+      friction_(model.traits().tyres.friction),
       observer_(options.estimation, options.control_period, options.latency, model.traits().dead_time),
-      parameters_(model.dynamics(), options.estimation, model.traits().friction,
+      parameters_(model.dynamics(), options.estimation, model.traits().tyres.friction,
                   options.latency + model.traits().dead_time, options.control_period) {}
 
 void CarEstimator::reset() noexcept {

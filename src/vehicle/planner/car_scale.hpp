@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "slalom/maps/body_room.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 
 namespace slalom::vehicle::detail {
@@ -15,8 +16,7 @@ struct CarScale {
   double speed = 1;                      ///< factor of speeds and times
 
   static CarScale of(const BodyOptions& body) noexcept {
-    const BodyOptions standard;
-    const double length = (body.front + body.rear) / (standard.front + standard.rear);
+    const double length = maps::body_scale(body.front + body.rear);
     return {length, std::sqrt(length)};
   }
 };

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slalom/maps/body_room.hpp"
-
 namespace slalom::vehicle::detail {
 namespace {
 
@@ -36,16 +34,16 @@ Detour::Detour(std::span<const maps::ReferencePoint> course, bool closed, const 
       closed_(closed),
       front_(body.front),
       needed_(0.5 * body.width + body.margin),
-      scale_(maps::body_scale(body.front + body.rear)),
-      speed_limit_(1.5 * std::sqrt(scale_)),
-      grid_(cells, cells, spacing * scale_, max_points),
-      field_(any_path(), field_options(scale_)) {
-  grid_.set_corner({-2 * scale_, -0.5 * cells * spacing * scale_});
+      scale_(CarScale::of(body)),
+      speed_limit_(1.5 * scale_.speed),
+      grid_(cells, cells, spacing * scale_.length, max_points),
+      field_(any_path(), field_options(scale_.length)) {
+  grid_.set_corner({-2 * scale_.length, -0.5 * cells * spacing * scale_.length});
   path_.reserve(max_points);
 }
 
 void Detour::note(const maps::Recovery& recovery, const maps::Pose& pose) noexcept {
-  const double radius = 0.4 * scale_;  // m, of a dead end
+  const double radius = 0.4 * scale_.length;  // m, of a dead end
   if (recovery.reverses() && on_detour_)
     dead_ends_.add_dead_end({maps::transform(pose, {front_, 0}), radius});
   on_detour_ = recovery.retries();
@@ -63,8 +61,8 @@ bool Detour::search(const maps::ClearanceMap& obstacles, const maps::Pose& pose,
   if (end < 0) return false;
   const maps::ReferencePoint& goal = course_[end];
   path_.clear();
-  for (const maps::Point& point :
-       grid_.path_to(grid_.cell_at(maps::inverse_transform(pose, {goal.x, goal.y})), spacing * scale_)) {
+  for (const maps::Point& point : grid_.path_to(
+           grid_.cell_at(maps::inverse_transform(pose, {goal.x, goal.y})), spacing * scale_.length)) {
     const maps::Point moved = maps::transform(pose, point);
     path_.push_back({moved.x, moved.y, 0, speed_limit_});
   }
@@ -75,7 +73,7 @@ bool Detour::search(const maps::ClearanceMap& obstacles, const maps::Pose& pose,
 
 /// Sets the price of each cell; 0 where the car cannot be, but for the place where it is.
 void Detour::set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& pose) noexcept {
-  const double cautious = 0.2 * scale_, start_reach = 0.5 * scale_;  // m
+  const double cautious = 0.2 * scale_.length, start_reach = 0.5 * scale_.length;  // m
   grid_.set_prices([&](const maps::Point& at) { return obstacles.at(at.x, at.y) - needed_; }, cautious);
   grid_.open_around({0, 0}, start_reach);
   for (const maps::ClosedDisc& place : dead_ends_.all())
@@ -85,7 +83,7 @@ void Detour::set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& p
 /// Returns the index of the furthest point of the course that the search has reached before the course leaves
 /// the grid; -1 if there is none.
 int Detour::furthest_reached(const maps::Pose& pose, int nearest) const noexcept {
-  const double least_way = 3 * scale_;  // m along the course to the end
+  const double least_way = 3 * scale_.length;  // m along the course to the end
   std::size_t at = static_cast<std::size_t>(nearest);
   const std::size_t count = points_from(at);
   int furthest = -1;
@@ -108,7 +106,7 @@ void Detour::follow_course(int from) noexcept {
   const std::size_t count = points_from(first);
   for (std::size_t k = 0; k < count && path_.size() < max_points; ++k) {
     const maps::ReferencePoint& next = course_[(first + k) % course_.size()];
-    if (std::hypot(next.x - path_.back().x, next.y - path_.back().y) < spacing * scale_) continue;
+    if (std::hypot(next.x - path_.back().x, next.y - path_.back().y) < spacing * scale_.length) continue;
     path_.push_back({next.x, next.y, 0, std::min(next.speed, speed_limit_)});
   }
   for (std::size_t i = 0; i + 1 < path_.size(); ++i)

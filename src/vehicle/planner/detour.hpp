@@ -11,6 +11,7 @@
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
+#include "vehicle/planner/car_scale.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -52,9 +53,9 @@ class Detour {
 
   std::vector<maps::ReferencePoint> course_;
   bool closed_;
-  double front_;        ///< m, from the pose to the car's front
-  double needed_;       ///< m, from the car's middle to an obstacle
-  double scale_;        ///< length of the body over that of a 1/10-scale car
+  double front_;   ///< m, from the pose to the car's front
+  double needed_;  ///< m, from the car's middle to an obstacle
+  CarScale scale_;
   double speed_limit_;  ///< m/s
   maps::GridSearch grid_;
   ReservedVector<maps::ReferencePoint> path_;

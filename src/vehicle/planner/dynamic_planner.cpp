@@ -32,8 +32,8 @@ class DynamicPlanner final : public PlannerBase {
         manoeuvre_(parts.path, speeds_.length() > 0, traits_.body, traits_.wheelbase, options_.steer_limit),
         ways_(parts.path, speeds_.length() > 0, solver_->horizon(), solver_->inputs(), traits_,
               options_.steer_limit) {
-    set_friction(traits_.friction);
-    if (traits_.seeks_lap_time) field_.set_curvatures(speeds_.curvatures(), speeds_.length() > 0);
+    set_friction(traits_.tyres.friction);
+    if (traits_.tyres.seeks_lap_time) field_.set_curvatures(speeds_.curvatures(), speeds_.length() > 0);
   }
   std::unique_ptr<PlannerBase> clone() const override { return std::make_unique<DynamicPlanner>(*this); }
 
@@ -54,8 +54,8 @@ class DynamicPlanner final : public PlannerBase {
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     conditions_.top_speed = options_.max_speed;
     conditions_.margin_share = conditions_.soft_share = 1;
-    if (traits_.seeks_lap_time && options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);
-    if (options_.back_up && traits_.obstacle_map == ObstacleMap::clearance)
+    if (traits_.tyres.seeks_lap_time && options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);
+    if (options_.back_up && traits_.obstacles.map == ObstacleMap::clearance)
       fit_margins(scan_pose, 1 + fastest * horizon_time());
     if (options_.back_up) recover(odometry, start.pose);
     if (options_.back_up && manoeuvres(input, scan_pose)) return;
@@ -98,7 +98,7 @@ class DynamicPlanner final : public PlannerBase {
 
   /// The time of a plan and of stopping after it, s.
   double time_in_view() const noexcept {
-    return horizon_time() + stopping_time_ * traits_.friction / path_friction_;
+    return horizon_time() + stopping_time_ * traits_.tyres.friction / path_friction_;
   }
 
   /// Limits the speed, so that the car can stop within the part of the path that is in sight.
@@ -153,7 +153,7 @@ class DynamicPlanner final : public PlannerBase {
     const bool stands = std::abs(speed) < lengths.standing;
     const bool was_active = recovery_.state() == maps::DriveState::manoeuvring;
     const bool begins = (recovery_.reverses() && recovery_.begins()) || (turned && stands);
-    if (traits_.obstacle_map != ObstacleMap::clearance || (!was_active && !begins)) return false;
+    if (traits_.obstacles.map != ObstacleMap::clearance || (!was_active && !begins)) return false;
     const maps::ClearanceMap& obstacles = obstacles_.clearance_map();
     const auto find = [&] {
       return manoeuvre_.search(obstacles, pose, nearest, turned ? -1e3 : 3 * lengths.progress,
@@ -189,7 +189,7 @@ class DynamicPlanner final : public PlannerBase {
     const bool solution_collides = chosen.cost.collided;
     if (!recovery_.reverses()) {
       ways_.draw(start, field_.nearest(), speeds_.speeds(), path_friction_);
-      if (traits_.seeks_lap_time) choice_.consider_last(options_.control_period);
+      if (traits_.tyres.seeks_lap_time) choice_.consider_last(options_.control_period);
       choice_.consider_slower();
       choice_.consider(ways_.cheapest(model_->evaluator()));
     }
@@ -211,7 +211,7 @@ class DynamicPlanner final : public PlannerBase {
   void forget() noexcept override {
     car_.reset();
     path_friction_ = 0;
-    set_friction(traits_.friction);
+    set_friction(traits_.tyres.friction);
     recovery_.reset();
     manoeuvre_.cancel();
   }

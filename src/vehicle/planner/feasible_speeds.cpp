@@ -11,13 +11,13 @@
 namespace slalom::vehicle::detail {
 
 DrivingLimits driving_limits(const VehicleTraits& traits, double friction) {
-  return {.grip = friction * gravity * traits.usable_grip,
+  return {.grip = friction * gravity * traits.tyres.usable_grip,
           .acceleration = traits.max_acceleration,
           .braking = traits.max_deceleration,
-          .braking_share = traits.braking_share,
-          .delay = traits.seeks_lap_time ? 0 : traits.time_step,
-          .lead = traits.seeks_lap_time ? traits.time_step : 0,
-          .switch_speed = traits.switch_speed};
+          .braking_share = traits.tyres.braking_share,
+          .delay = traits.tyres.seeks_lap_time ? 0 : traits.time_step,
+          .lead = traits.tyres.seeks_lap_time ? traits.time_step : 0,
+          .switch_speed = traits.tyres.switch_speed};
 }
 
 FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path,

@@ -27,7 +27,7 @@ class KinematicPlanner final : public PlannerBase {
     const VehicleStart start = history_.lead_ahead({odometry.pose, odometry.speed, history_.steer()});
 
     // Maps: the path and the obstacles around it, as far as the car can get.
-    const bool jumps = traits_.unlimited_acceleration;
+    const bool jumps = traits_.speed.unlimited_acceleration;
     const double gain = jumps ? 0 : traits_.max_acceleration * horizon_time();
     const double fastest = std::max(std::abs(odometry.speed), 1.0) + gain;
     field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), jumps ? horizon_time() : 0);
@@ -56,8 +56,8 @@ class KinematicPlanner final : public PlannerBase {
 
   /// Returns the speed to command; `here` is the speed of the path.
   double command_speed(double here) const noexcept {
-    if (!traits_.follows_path) return std::min(traits_.reference_speed, options_.max_speed);
-    const bool planned = traits_.plans_speed;
+    if (!traits_.speed.follows_path) return std::min(traits_.speed.reference, options_.max_speed);
+    const bool planned = traits_.speed.planned;
     if (options_.speed_lookahead <= 0 && !planned) return here;
     const std::span<const PredictedState> states = choice_.states();
     const double last = static_cast<double>(states.size() - 1),

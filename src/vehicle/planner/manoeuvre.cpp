@@ -10,7 +10,6 @@ namespace {
 
 constexpr double usable_steering = 0.85;  // share of the largest curvature of arcs; the rest corrects
 constexpr double kept_share = 0.4;        // share of the margin that arcs keep
-constexpr std::size_t most_goals = 96;
 
 double largest_curvature(double wheelbase, double steer_limit) {
   return std::tan(std::min(steer_limit, 1.2)) / wheelbase;
@@ -59,33 +58,29 @@ Manoeuvre::Manoeuvre(std::span<const maps::ReferencePoint> path, bool closed, co
       follower_(maps::LegOptions::of(length_of(body), largest_curvature(wheelbase, steer_limit))) {
   constexpr auto most = static_cast<double>(maps::ManoeuvreSearch::max_steps);
   way_.reserve(saturate_cast<std::size_t>(most * search_.options().step / maps::PathCurve::spacing) + 3);
-  goals_.reserve(most_goals);
+  goals_.reserve(96);
   poses_.reserve(maps::ManoeuvreSearch::max_poses);
 }
 
-/// Collects the part of the path around the car at which a way may end.
+/// Collects the part of the path around the car at which a way may end, on both sides of the nearest point.
 void Manoeuvre::find_goals(const maps::Pose& pose, std::size_t nearest, double ahead) noexcept {
-  goals_.clear();
   const double scale = maps::body_scale(length_of(body_)), reach = 4 * scale, spacing = 0.1 * scale;  // m
-  const auto add = [&](std::size_t i, double way) {
-    const maps::ReferencePoint& point = course_[i];
-    const maps::Point local = maps::inverse_transform(pose, {point.x, point.y});
-    if (way >= ahead) goals_.push_back({{local.x, local.y, point.yaw - pose.yaw}});
-  };
-  add(nearest, 0);
-  for (const int direction : {1, -1}) {
-    double way = 0, since = 0;
-    const std::size_t most = direction > 0 ? most_goals / 2 : most_goals - 1;
-    for (std::size_t i = nearest; way < reach && goals_.size() < most;) {
-      if (!closed_ && i == (direction > 0 ? course_.size() - 1 : 0)) break;
-      const std::size_t next = (i + course_.size() + static_cast<std::size_t>(direction)) % course_.size();
-      const double gap = std::hypot(course_[next].x - course_[i].x, course_[next].y - course_[i].y);
-      i = next;
+  const std::size_t count = course_.size();
+  goals_.clear();
+  for (const bool forward : {true, false}) {
+    double way = 0, since = spacing;
+    for (std::size_t k = 0, at = nearest; k < count && way < reach; ++k) {
+      const maps::ReferencePoint& point = course_[at];
+      if (since >= spacing && (forward ? way : -way) >= ahead && goals_.size() < goals_.capacity()) {
+        const maps::Point local = maps::inverse_transform(pose, {point.x, point.y});
+        goals_.push_back({{local.x, local.y, point.yaw - pose.yaw}});
+        since = 0;
+      }
+      if (!closed_ && at == (forward ? count - 1 : 0)) break;
+      at = (at + (forward ? 1 : count - 1)) % count;
+      const double gap = std::hypot(course_[at].x - point.x, course_[at].y - point.y);
       way += gap;
       since += gap;
-      if (since < spacing) continue;
-      since = 0;
-      add(i, direction * way);
     }
   }
 }
@@ -117,7 +112,7 @@ std::optional<Command> Manoeuvre::follow(const maps::ClearanceMap& obstacles, co
   if (!made) return std::nullopt;
   // The wheels need time to turn, so the car waits for them.
   const double wanted = std::atan(made->curvature * wheelbase_);
-  return Command{wanted, made->speed * std::max(1 - 2 * std::abs(wanted - steer), 0.1)};
+  return Command{wanted, made->speed * std::max(1 - 4 * std::abs(wanted - steer), 0.0)};
 }
 
 }  // namespace slalom::vehicle::detail

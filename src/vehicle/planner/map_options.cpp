@@ -29,7 +29,7 @@ void stop_at_end(std::vector<maps::ReferencePoint>& path, double deceleration) {
 
 double fastest(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                const VehicleTraits& traits) {
-  if (traits.seeks_lap_time) return options.max_speed;
+  if (traits.tyres.seeks_lap_time) return options.max_speed;
   double speed = 0;
   for (const maps::ReferencePoint& point : path) speed = std::max(speed, point.speed);
   return std::min(speed, options.max_speed);
@@ -41,13 +41,13 @@ double map_scale(const PlannerOptions& options) {
 
 double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                      const VehicleTraits& traits) {
-  if (!(traits.stopping_deceleration > 0)) return 0;
-  return fastest(path, options, traits) / (2 * traits.stopping_deceleration);
+  if (!(traits.tyres.stopping_deceleration > 0)) return 0;
+  return fastest(path, options, traits) / (2 * traits.tyres.stopping_deceleration);
 }
 
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                   const VehicleTraits& traits, double duration) {
-  constexpr double least = 6, most = 30;
+  constexpr double least = 6, most = 30;  // m, reach of the maps
   const double scale = map_scale(options);
   return std::clamp(fastest(path, options, traits) * duration + 1.5, scale * least, scale * most);
 }
@@ -76,8 +76,8 @@ maps::ClearanceMapOptions clearance_options(const PlannerOptions& options, const
   const double scale = map_scale(options), behind = 3 * scale, widest = 8 * scale;  // m
   maps::ClearanceMapOptions made;
   made.resolution *= scale;
-  if (traits.obstacle_map == ObstacleMap::clearance) made.reach = traits.clearance_reach;
-  if (traits.friction > 0) {
+  if (traits.obstacles.map == ObstacleMap::clearance) made.reach = traits.obstacles.reach;
+  if (traits.tyres.friction > 0) {
     made.length_x = reach + behind;
     made.center_x = 0.5 * (reach - behind);
     made.length_y = 2 * std::min(reach, widest);
@@ -91,7 +91,7 @@ maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const V
   maps::ReferenceFieldOptions made;
   made.resolution *= map_scale(options);
   made.spacing *= map_scale(options);
-  if (traits.friction > 0) {
+  if (traits.tyres.friction > 0) {
     made.length_x = made.length_y = 2 * reach + 1;
     made.spacing = std::max(made.spacing, (reach + 1) / 200);
     made.points = saturate_cast<int>((reach + 1) / made.spacing);
@@ -103,7 +103,7 @@ std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePo
                                                const PlannerOptions& options, const VehicleTraits& traits) {
   std::vector<maps::ReferencePoint> made(path.begin(), path.end());
   for (auto& point : made)
-    point.speed = traits.seeks_lap_time ? options.max_speed : std::min(point.speed, options.max_speed);
+    point.speed = traits.tyres.seeks_lap_time ? options.max_speed : std::min(point.speed, options.max_speed);
   if (options.profile_friction > 0)
     make_feasible(made, grip_limits(options.profile_friction, options.max_speed, traits.max_acceleration,
                                     traits.max_deceleration));

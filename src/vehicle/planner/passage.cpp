@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slalom/maps/body_room.hpp"
-
 namespace slalom::vehicle::detail {
 namespace {
 
@@ -17,14 +15,14 @@ Passage::Passage(std::span<const maps::ReferencePoint> path, bool closed, const 
     : path_(path.begin(), path.end()),
       closed_(closed),
       body_(body),
-      scale_(maps::body_scale(body.front + body.rear)),
+      scale_(CarScale::of(body)),
       radius_(std::hypot((body.front + body.rear) / 6, body.width / 2)) {}
 
 WidestWay Passage::search(const maps::ClearanceMap& obstacles, const maps::Pose& pose, int nearest,
                           double reach) noexcept {
   constexpr double braking = 4;  // m/s^2
-  const double station = 0.1 * scale_,
-               leeway = 0.06 * scale_;  // m along the path; m to each side, to steer in
+  const double station = 0.1 * scale_.length,
+               leeway = 0.06 * scale_.length;  // m along the path; m to each side, to steer in
   WidestWay way;
   auto at = static_cast<std::size_t>(nearest);
   const maps::ReferencePoint& first = path_[at];
@@ -58,16 +56,17 @@ WidestWay Passage::search(const maps::ClearanceMap& obstacles, const maps::Pose&
 /// The speed (m/s) in a place that leaves so much room (m) around the body. The map knows no more than the
 /// margins.
 double Passage::passing_speed(double room) const noexcept {
-  const double root = std::sqrt(scale_);
-  return room < std::min(0.2 * scale_, body_.margin + body_.soft_margin)
-             ? 0.8 * root + 15 / root * std::max(room - 0.03 * scale_, 0.0)
+  const double root = scale_.speed;
+  return room < std::min(0.2 * scale_.length, body_.margin + body_.soft_margin)
+             ? 0.8 * root + 15 / root * std::max(room - 0.03 * scale_.length, 0.0)
              : 1e3;
 }
 
 /// Begins with ways near this offset (m) to the left of the path.
 void Passage::begin(double offset) noexcept {
   for (int k = 0; k < count; ++k)
-    rooms_[k] = std::abs((k - sides) * lane * scale_ - offset) < 2 * lane * scale_ ? soft_end() : -1;
+    rooms_[k] =
+        std::abs((k - sides) * lane * scale_.length - offset) < 2 * lane * scale_.length ? soft_end() : -1;
 }
 
 /// Advances all ways to a point of the path. Returns the room (m) of the widest one.
@@ -82,7 +81,7 @@ double Passage::advance(const maps::ClearanceMap& obstacles, const maps::Pose& p
     double room = -1;
     for (int from = std::max(k - steepest, 0); from <= std::min(k + steepest, count - 1); ++from)
       room = std::max(room, before[from]);
-    const double offset = (k - sides) * lane * scale_;
+    const double offset = (k - sides) * lane * scale_.length;
     const double clearance =
         room < 0 ? -1
                  : static_cast<double>(obstacles.at(middle.x + offset * left_x, middle.y + offset * left_y));

@@ -8,6 +8,7 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
+#include "vehicle/planner/car_scale.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -46,7 +47,7 @@ class Passage {
   std::vector<maps::ReferencePoint> path_;
   bool closed_;
   BodyOptions body_;
-  double scale_;   ///< length of the body over that of a 1/10-scale car
+  CarScale scale_;
   double radius_;  ///< m, of the discs that cover the body
   std::array<double, count> rooms_{};
 };

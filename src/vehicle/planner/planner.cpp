@@ -117,7 +117,7 @@ void PlannerBase::stop(PlannerStatus status) noexcept {
 }
 
 bool PlannerBase::must_stop(const maps::ReferenceCell& here) const noexcept {
-  return traits_.follows_path && options_.stop_when_blocked &&
+  return traits_.speed.follows_path && options_.stop_when_blocked &&
          here.distance >= field_.options().outside.distance;
 }
 
@@ -130,7 +130,8 @@ void PlannerBase::begin_rollouts(const maps::Pose& robot, const VehicleStart& st
 void PlannerBase::take_own_maps() noexcept {
   if (!rollouts_) return;
   model_->set_maps(obstacles_.seen_from(rollouts_->robot, followed(), origin_));
-  model_->set_start(rollouts_->start, traits_.follows_path ? rollouts_->path_speed : traits_.reference_speed);
+  model_->set_start(rollouts_->start,
+                    traits_.speed.follows_path ? rollouts_->path_speed : traits_.speed.reference);
 }
 
 const SolveResult& PlannerBase::solve() noexcept {

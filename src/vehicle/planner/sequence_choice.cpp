@@ -17,7 +17,7 @@ constexpr double braking_share = 0.8, accelerating_share = 0.4;
 /// The body without margin, or smaller by `less` (m), for look-ups in the map of these traits.
 BodyOptions bare(const VehicleTraits& traits, double less) {
   BodyOptions body = traits.body;
-  body.model = traits.obstacle_map == ObstacleMap::clearance ? BodyModel::discs : BodyModel::box;
+  body.model = traits.obstacles.map == ObstacleMap::clearance ? BodyModel::discs : BodyModel::box;
   body.margin = std::min(body.margin, -less);
   body.soft_margin = 0;
   return body;
@@ -53,8 +53,8 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
       states_(static_cast<std::size_t>(horizon) + 1),
       candidate_states_(states_.size()),
       path_(states_.size()),
-      margin_is_cost_(traits.seeks_lap_time && traits.body.margin > 0 &&
-                      traits.obstacle_map == ObstacleMap::clearance),
+      margin_is_cost_(traits.tyres.seeks_lap_time && traits.body.margin > 0 &&
+                      traits.obstacles.map == ObstacleMap::clearance),
       body_(bare(traits, margin_is_cost_ ? SensorErrors::reading : 0)) {}
 
 void SequenceChoice::sees(const VehicleMaps& maps) noexcept {
@@ -197,7 +197,7 @@ void SequenceChoice::follow_slower(int braking_steps) noexcept {
                    : std::min(before + accelerating_share * change * dt, fastest);
     ahead += 0.5 * (before + speed) * dt;
     for (; at + 1 < steps && way() > 0 && ahead >= way(); ++at) ahead -= way();
-    const double slowness = speed / traits_.half_steer_speed;
+    const double slowness = speed / traits_.tyres.half_steer_speed;
     candidate_[k * inputs_] = static_cast<float>(path_[at + 1].steer * (1 + slowness * slowness));
     candidate_[k * inputs_ + 1] = brakes ? -max_deceleration_ : max_deceleration_;
   }

@@ -56,7 +56,7 @@ void WaysAround::draw(const VehicleStart& start, int nearest, std::span<const do
   Bicycle car{start.pose.x, start.pose.y, 0, std::max(start.speed, 0.0), at, at, 0, 1, 0};
   car.turn(start.pose.yaw);
   for (int way = 0; way < count; ++way)
-    draw_way(way, car, path_speeds, turning_share * traits_.usable_grip * friction * gravity);
+    draw_way(way, car, path_speeds, turning_share * traits_.tyres.usable_grip * friction * gravity);
 }
 
 std::span<const float> WaysAround::cheapest(const BatchEvaluator& evaluator) noexcept {
@@ -80,7 +80,7 @@ void WaysAround::draw_way(int way, Bicycle car, std::span<const double> path_spe
     const double wanted = (std::min(path_speeds[car.at], fastest) - car.speed) / dt;
     const double acceleration =
         std::clamp(wanted, -braking * traits_.max_deceleration, accelerating * traits_.max_acceleration);
-    const double share = car.speed / traits_.half_steer_speed;
+    const double share = car.speed / traits_.tyres.half_steer_speed;
     batch_.at(k, 0, way) = static_cast<float>(std::atan(tangent) * (1 + share * share));
     batch_.at(k, 1, way) = static_cast<float>(acceleration);
     car.drive(acceleration, tangent, traits_.wheelbase, dt);

@@ -1,14 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/distance_field.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"
-#include "vehicle/racing/cell_regions.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -17,101 +11,34 @@ class FreeSpace {
  public:
   /// Unknown cells are walls, but for spots of at most `spot` m that touch no occupied cell: gaps between
   /// beams. Cells outside the map are not walls.
-  FreeSpace(const maps::OccupancyGrid& map, double spot)
-      : map_(map), spots_(fill_spots(map_, spot)), field_(maps::distance_transform(map_, true)) {}
+  FreeSpace(const maps::OccupancyGrid& map, double spot);
 
   const maps::OccupancyGrid& map() const { return map_; }  ///< without the spots
   int spots() const { return spots_; }                     ///< number of unknown spots that count as free
 
   /// m, from a point to the nearest wall, to the edge of its cell; 0 in walls, negative outside the map.
-  double clearance(const maps::Point& point) const {
-    const maps::Point at = cell(point);
-    if (!on_map(at)) return -1;
-    const double centre = to_centre(at);  // infinite without any wall
-    return std::isfinite(centre) ? to_edge(at, centre + map_.resolution) : centre;
-  }
+  double clearance(const maps::Point& point) const;
 
   /// Whether clearance() is at least `keep` (m); faster.
-  bool is_clear(const maps::Point& point, double keep) const {
-    const maps::Point at = cell(point);
-    if (!on_map(at)) return false;
-    // Half a diagonal lies between centre and corner, and as much between a point and the centre of its cell.
-    const double centre = to_centre(at), doubt = 1.5 * map_.resolution;
-    if (centre - doubt >= keep) return true;
-    return centre + doubt >= keep && to_edge(at, keep + map_.resolution) >= keep;
-  }
+  bool is_clear(const maps::Point& point, double keep) const;
 
   /// m, from the centre of a cell to the nearest wall; up to 0.2 cells too great where its corner is nearest.
   double clearance(int column, int row) const { return field_.at(column, row) - 0.5 * field_.resolution; }
 
   /// The centre of a cell, map frame.
-  maps::Point centre(int column, int row) const {
-    return maps::transform(map_.origin, {(column + 0.5) * map_.resolution, (row + 0.5) * map_.resolution});
-  }
+  maps::Point centre(int column, int row) const;
 
   /// The column and row of a point as real numbers: whole at the centres of cells.
-  maps::Point cell(const maps::Point& point) const {
-    const maps::Point at = maps::inverse_transform(map_.origin, point);
-    return {at.x / map_.resolution - 0.5, at.y / map_.resolution - 0.5};
-  }
+  maps::Point cell(const maps::Point& point) const;
 
  private:
-  /// Makes small unknown spots free that touch no occupied cell. Returns their number.
-  static int fill_spots(maps::OccupancyGrid& map, double largest) {
-    const int most = saturate_cast<int>(largest / map.resolution);
-    if (most < 1) return 0;
-    const CellRegions unknown(map.width, map.height, true,
-                              [&](int x, int y) { return map.at(x, y) == maps::Occupancy::unknown; });
-    std::vector<char> fill(unknown.regions().size(), 0);
-    for (std::size_t k = 0; k < fill.size(); ++k) {
-      const CellRegion& region = unknown.regions()[k];
-      fill[k] = region.right - region.left < most && region.top - region.bottom < most;
-    }
-    for (int y = 0; y < map.height; ++y)
-      for (int x = 0; x < map.width; ++x) {
-        const int region = unknown.at(x, y);
-        if (region < 0 || !fill[region]) continue;
-        for (int dy = -1; dy <= 1; ++dy)
-          for (int dx = -1; dx <= 1; ++dx)
-            if (!map.contains(x + dx, y + dy) || map.at(x + dx, y + dy) == maps::Occupancy::occupied)
-              fill[region] = 0;
-      }
-    for (int y = 0; y < map.height; ++y)
-      for (int x = 0; x < map.width; ++x)
-        if (const int region = unknown.at(x, y); region >= 0 && fill[region])
-          map.at(x, y) = maps::Occupancy::free;
-    return static_cast<int>(std::count(fill.begin(), fill.end(), 1));
-  }
-
-  bool on_map(const maps::Point& at) const {
-    return at.x >= -0.5 && at.y >= -0.5 && at.x <= map_.width - 0.5 && at.y <= map_.height - 0.5;
-  }
+  bool on_map(const maps::Point& at) const;
 
   /// m, from a point, in cells, to the centre of the nearest wall cell, between the values of cells.
-  double to_centre(const maps::Point& at) const {
-    const double left = std::floor(at.x), low = std::floor(at.y), s = at.x - left, t = at.y - low;
-    const auto distance = [&](double column, double row) {
-      return field_.at(std::clamp(saturate_cast<int>(column), 0, map_.width - 1),
-                       std::clamp(saturate_cast<int>(row), 0, map_.height - 1));
-    };
-    return (1 - t) * ((1 - s) * distance(left, low) + s * distance(left + 1, low)) +
-           t * ((1 - s) * distance(left, low + 1) + s * distance(left + 1, low + 1));
-  }
+  double to_centre(const maps::Point& at) const;
 
   /// m, from a point, in cells, to the nearest wall cell, at most `reach` (m).
-  double to_edge(const maps::Point& at, double reach) const {
-    const int cells = saturate_cast<int>(std::ceil(reach / map_.resolution)) + 1;
-    const int x0 = saturate_cast<int>(std::round(at.x)), y0 = saturate_cast<int>(std::round(at.y));
-    double nearest = reach / map_.resolution;
-    for (int y = y0 - cells; y <= y0 + cells; ++y)
-      for (int x = x0 - cells; x <= x0 + cells; ++x) {
-        if (!map_.contains(x, y) || map_.at(x, y) == maps::Occupancy::free) continue;
-        const double dx = std::max(0.0, std::abs(at.x - x) - 0.5),
-                     dy = std::max(0.0, std::abs(at.y - y) - 0.5);
-        if (dx < nearest && dy < nearest) nearest = std::min(nearest, std::hypot(dx, dy));
-      }
-    return nearest * map_.resolution;
-  }
+  double to_edge(const maps::Point& at, double reach) const;
 
   maps::OccupancyGrid map_;
   int spots_ = 0;

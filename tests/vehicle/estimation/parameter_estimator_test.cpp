@@ -140,23 +140,5 @@ TEST(ParameterEstimator, TheLowerTheQuantileTheMoreCautious) {
   }
 }
 
-TEST(ParameterEstimator, DoesNotAllocateAndGivesTheSameBitsAgainAfterAReset) {
-  const SingleTrackDynamics dynamics(car_options(), {});
-  ParameterEstimator estimator(dynamics, {}, 1, 0.02, period);
-  const auto drive = [&] {
-    for (int i = 0; i < 100; ++i) {
-      estimator.update({{0.1 * i, 0.002 * i * i, 0.01 * i}, 4, 0.4, 0.02});
-      estimator.send(0.03);
-    }
-    return estimator.estimate().friction;
-  };
-  const long before = testing::allocations();
-  const double first = drive();
-  estimator.reset();
-  EXPECT_EQ(estimator.estimate().confidence, 0);
-  EXPECT_EQ(drive(), first);
-  EXPECT_EQ(testing::allocations(), before);
-}
-
 }  // namespace
 }  // namespace slalom::vehicle::detail

@@ -19,8 +19,12 @@ constexpr double wheelbase = 0.33, steer_limit = 0.4189, period = 0.025, sight =
 /// A lane along the x axis, 2 m wide, as a car sees it.
 class Lane {
  public:
-  explicit Lane(double half = 1) {
-    for (double x = 0; x < 20; x += 0.03)
+  explicit Lane(double half = 1, const maps::ClearanceMapOptions& options = {.length_x = 10,
+                                                                             .length_y = 10,
+                                                                             .center_x = 1,
+                                                                             .reach = 0.5})
+      : map_(options) {
+    for (double x = 0; x < 60; x += 0.03)
       for (const double side : {-half, half}) walls_.push_back({x, side});
   }
   const maps::ClearanceMap& seen_from(const maps::Pose& pose) {
@@ -33,11 +37,12 @@ class Lane {
 
  private:
   std::vector<maps::Point> walls_;
-  maps::ClearanceMap map_{{.length_x = 10, .length_y = 10, .center_x = 1, .reach = 0.5}};
+  maps::ClearanceMap map_;
 };
 
 /// Drives a car with exact brakes until its way ends. Returns its last pose.
-maps::Pose driven(Manoeuvre& manoeuvre, Lane& lane, maps::Pose pose) {
+maps::Pose driven(Manoeuvre& manoeuvre, Lane& lane, maps::Pose pose, const BodyOptions& car = body,
+                  double axles = wheelbase, double steer_rate = 3.2) {
   double speed = 0, steer = 0;
   for (int k = 0; k < 2000 && manoeuvre.active(); ++k) {
     auto command = manoeuvre.follow(lane.seen_from(pose), pose, speed, steer, period);
@@ -48,14 +53,15 @@ maps::Pose driven(Manoeuvre& manoeuvre, Lane& lane, maps::Pose pose) {
         EXPECT_TRUE(manoeuvre.search(lane.seen_from(pose), pose, static_cast<int>(10 * pose.x), -1e3, sight));
       }
     }
-    steer += std::clamp(command->steer - steer, -3.2 * period, 3.2 * period);
+    steer += std::clamp(command->steer - steer, -steer_rate * period, steer_rate * period);
     speed += std::clamp(command->speed - speed, -6 * period, 4 * period);
-    const double turned = speed * period * std::tan(steer) / wheelbase, middle = pose.yaw + 0.5 * turned;
+    const double turned = speed * period * std::tan(steer) / axles, middle = pose.yaw + 0.5 * turned;
     pose = {pose.x + speed * period * std::cos(middle), pose.y + speed * period * std::sin(middle),
             maps::wrap_angle(pose.yaw + turned)};
     const maps::ClearanceMap& map = lane.seen_from(pose);
-    for (const double x : {-0.119, 0.17, 0.461})
-      for (const double y : {-0.155, 0.155}) EXPECT_GT(map.at(x, y), 0) << "at " << pose.x << ", " << pose.y;
+    for (const double x : {-car.rear, 0.5 * (car.front - car.rear), car.front})
+      for (const double y : {-0.5 * car.width, 0.5 * car.width})
+        EXPECT_GT(map.at(x, y), 0) << "at " << pose.x << ", " << pose.y;
   }
   return pose;
 }
@@ -89,6 +95,18 @@ TEST(Manoeuvre, AWayThatIsFoundCanBeBegun) {
       EXPECT_TRUE(manoeuvre.follow(map, start, 0, 0, period)) << "from y " << y << ", yaw " << yaw;
     }
   EXPECT_GT(found, 500);
+}
+
+TEST(Manoeuvre, ACarOfFullSizeTurnsRoundInAStreetOfEightMetres) {
+  const BodyOptions passenger{.front = 3.68, .rear = 0.83, .width = 1.61, .margin = 0.3, .soft_margin = 1};
+  Lane street(4, {.length_x = 60, .length_y = 40, .resolution = 0.25, .center_x = 10, .reach = 2});
+  Manoeuvre manoeuvre(testing::lane(5), false, passenger, 2.58, 0.5);
+  const maps::Pose start{30, 0.3, 3.14};
+  ASSERT_TRUE(manoeuvre.search(street.seen_from(start), start, 300, -1e3, sight));
+  const maps::Pose end = driven(manoeuvre, street, start, passenger, 2.58, 0.4);
+  EXPECT_FALSE(manoeuvre.active()) << "at its end";
+  EXPECT_LT(std::abs(end.yaw), 0.7);
+  EXPECT_LT(std::abs(end.y), 4);
 }
 
 TEST(Manoeuvre, FindsNoWayWhereThereIsNone) {

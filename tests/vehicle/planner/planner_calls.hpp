@@ -34,12 +34,6 @@ inline vehicle::Planner sliding_planner(const vehicle::PlannerOptions& options =
   return {options, vehicle::make_vehicle_model(car), lane(3), make_solver(few_samples("svg_mppi"), 2)};
 }
 
-/// The numbers of calls.
-struct PlannerTally {
-  long planners = 0, refused = 0, updates = 0;
-  long statuses[7] = {};
-};
-
 inline maps::LaserScanView any_scan(Adversary& adversary, std::vector<float>& ranges) {
   ranges.resize(static_cast<std::size_t>(adversary.below(20) ? 40 : adversary.below(3000)));
   const bool walls = adversary.below(2) != 0;
@@ -67,8 +61,8 @@ inline void check_output(const vehicle::PlannerOutput& out, const vehicle::Plann
             "predicted states are finite");
 }
 
-/// One planner with some options, and up to `most` updates. Throws Finding.
-inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
+/// One planner with some options, and up to `most` updates. Returns the number of updates. Throws Finding.
+inline int call_planner(Adversary& adversary, int most) {
   vehicle::PlannerOptions options;
   vehicle::VehicleOptions car;
   if (adversary.below(2)) {
@@ -85,20 +79,19 @@ inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
   car.model = vehicle::VehicleModelId{adversary.below(static_cast<int>(vehicle::VehicleModels::size))};
   const auto methods = solver_names();
   const char* method = methods[static_cast<std::size_t>(adversary.below(static_cast<int>(methods.size())))];
-  ++tally.planners;
   std::optional<vehicle::Planner> made;
   try {
     made.emplace(options, vehicle::make_vehicle_model(car), lane(adversary.within(0, 30)),
                  make_solver(few_samples(method), vehicle::input_count(car)));
   } catch (const std::invalid_argument&) {  // options that do not go together
-    ++tally.refused;
-    return;
+    return 0;
   }
   vehicle::Planner& planner = *made;
   AnyOthers others;
   std::vector<float> ranges;
   std::vector<maps::Point> points;
-  for (int i = 0; i < most && !adversary.is_done(); ++i) {
+  int i = 0;
+  for (; i < most && !adversary.is_done(); ++i) {
     const maps::LaserScanView scan = any_scan(adversary, ranges);
     points.resize(adversary.below(3) ? 0 : 3);
     for (maps::Point& point : points) point = {adversary.any(-5, 5), adversary.any(-5, 5)};
@@ -118,10 +111,9 @@ inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
     const vehicle::PlannerOutput& out = planner.update(input);
     limits.check();
     check_output(out, options);
-    ++tally.updates;
-    ++tally.statuses[static_cast<int>(out.status)];
     if (!adversary.below(30)) planner.reset(static_cast<std::uint64_t>(i));
   }
+  return i;
 }
 
 }  // namespace slalom::testing

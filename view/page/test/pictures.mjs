@@ -116,7 +116,7 @@ async function filmTwoWays() {
   const recording = join(h.folder, "two-ways.mcap");
   await (await h.saved("#save-recording")).saveAs(recording);
   const span = ["--from", "0.95", "--to", "1.6", "--speed", "0.2"];
-  execFileSync(program, ["replay", recording, "--video", file, ...span], { stdio: "inherit" });
+  execFileSync(program, ["export", recording, file, ...span], { stdio: "inherit" });
 }
 
 if (name === "two-ways") await filmTwoWays();

@@ -58,7 +58,7 @@ class LocaliserNode : public CoreNode<LocaliserCore> {
     tf_out_ = advertise<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
     LocaliserCore::Settings settings = settings_;
     settings.start = told_;
-    settings.earlier = nodes::read_place(pose_file_, wall_time());
+    settings.earlier = nodes::read_pose(pose_file_, wall_time());
     make_core(settings, {[this](const Pose& base, const LocaliserOutput& estimate, Stamp scan) {
                            publish(base, estimate, scan);
                          },
@@ -94,7 +94,7 @@ class LocaliserNode : public CoreNode<LocaliserCore> {
 
   nodes::Report report() override {
     if (const auto place = core_->reliable();
-        place && !pose_file_.empty() && !nodes::write_place(pose_file_, *place, wall_time()))
+        place && !pose_file_.empty() && !nodes::write_pose(pose_file_, *place, wall_time()))
       RCLCPP_WARN_ONCE(get_logger(), "pose_file: %s cannot be written", pose_file_.c_str());
     if (cloud_out_->get_subscription_count() > 0) {
       PoseArray cloud;

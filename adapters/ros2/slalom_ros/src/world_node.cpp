@@ -1,5 +1,5 @@
 // The simulator as a car: subscribes to `drive` and publishes `scan`, `odom` (wheel odometry) with its
-// transforms, the parked cars, and the true state as `ground_truth`, `laps` and `contacts`. Like a real car
+// transforms, the parked cars, and the true state as `ground_truth`, `laps` and `collisions`. Like a real car
 // it must brake without a finite command for a while, or when two nodes command it.
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ class WorldNode : public ManagedNode {
     odometry_out_ = advertise<Odometry>("odom", rclcpp::QoS(10));
     truth_out_ = advertise<Odometry>("ground_truth", rclcpp::QoS(1));
     laps_out_ = advertise<Int32>("laps", rclcpp::QoS(1));
-    contacts_out_ = advertise<Int32>("contacts", rclcpp::QoS(1));
+    collisions_out_ = advertise<Int32>("collisions", rclcpp::QoS(1));
     tf_out_ = advertise<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
     tf_static_out_ = advertise_latched<TFMessage>("/tf_static");
     markers_out_ = advertise_latched<MarkerArray>("obstacles");
@@ -101,7 +101,7 @@ class WorldNode : public ManagedNode {
     r.about = "simulated car";
     r.add("speed, m/s", car_->odometry().speed());
     r.add("laps", car_->laps());
-    r.add("contacts", car_->contacts());
+    r.add("collisions", car_->collisions());
     r.message = why_.empty() ? "driving" : "braking: " + why_;
     r.level = why_.empty() ? nodes::Level::ok : nodes::Level::warning;
     why_.clear();
@@ -175,11 +175,11 @@ class WorldNode : public ManagedNode {
     truth_out_->publish(odometry(car_->pose(), map_, stamp));
     set_transform(transforms_.transforms[0], car_->odometry().pose(), stamp);
     tf_out_->publish(transforms_);
-    Int32 laps, contacts;
+    Int32 laps, collisions;
     laps.data = car_->laps();
-    contacts.data = car_->contacts();
+    collisions.data = car_->collisions();
     laps_out_->publish(laps);
-    contacts_out_->publish(contacts);
+    collisions_out_->publish(collisions);
     const maps::LaserScanView seen = car_->scan();
     scan_.header.stamp = time_of(stamp);
     scan_.header.frame_id = laser_;
@@ -199,7 +199,7 @@ class WorldNode : public ManagedNode {
   double command_timeout_;  ///< s
   LifecyclePublisher<LaserScan>* scan_out_ = nullptr;
   LifecyclePublisher<Odometry>*odometry_out_ = nullptr, *truth_out_ = nullptr;
-  LifecyclePublisher<Int32>*laps_out_ = nullptr, *contacts_out_ = nullptr;
+  LifecyclePublisher<Int32>*laps_out_ = nullptr, *collisions_out_ = nullptr;
   LifecyclePublisher<TFMessage>*tf_out_ = nullptr, *tf_static_out_ = nullptr;
   LifecyclePublisher<MarkerArray>* markers_out_ = nullptr;
   TFMessage transforms_;

@@ -146,12 +146,12 @@ class NodeTest {
     expect(set("planner.max_speed", rclcpp::ParameterValue(100.0)).successful, "full speed");
     expect(!ask_for_laps(-1), "a negative number of laps is refused");
     expect(ask_for_laps(3), "three laps are asked for");
-    const int contacts = contacts_->back().data;
+    const int collisions = collisions_->back().data;
     const double begin = steady_seconds();
     client_.wait("after three laps the car stops", 270,
                  [&] { return client_.has_said("all laps are driven", begin) && client_.stops(); });
     expect(laps_->back().data >= 3, "the simulator has counted the laps");
-    expect(contacts_->back().data == contacts, "no contacts");
+    expect(collisions_->back().data == collisions, "no collisions");
     expect(!map_->empty() && !path_->empty(), "a map and a path");
     expect(!parked_->empty() && !markers_->empty(), "markers of parked cars and of plans");
     expect_increasing_stamps(*scans_, "scans");
@@ -236,7 +236,7 @@ class NodeTest {
   Recorded<AckermannDriveStamped> commands_ = client_.record<AckermannDriveStamped>("drive", some_);
   Recorded<Odometry> truth_ = client_.record<Odometry>("ground_truth", some_);
   Recorded<Odometry> estimates_ = client_.record<Odometry>("pf/pose/odom", some_);
-  Recorded<Int32> contacts_ = client_.record<Int32>("contacts", some_);
+  Recorded<Int32> collisions_ = client_.record<Int32>("collisions", some_);
   Recorded<Int32> laps_ = client_.record<Int32>("laps", some_);
   Recorded<slalom_msgs::msg::PlannerMetrics> plans_ =
       client_.record<slalom_msgs::msg::PlannerMetrics>("mppi/eval_metrics", some_);

@@ -10,7 +10,7 @@ namespace slalom::vehicle {
 
 /// A motion model for PathTracking:
 ///
-///     struct Motion {
+///     struct Model {
 ///       static constexpr const char* name = "kinematic";            // value of `vehicle.model`
 ///       static constexpr const char* help = "...";
 ///       static constexpr int inputs = 1;
@@ -18,7 +18,7 @@ namespace slalom::vehicle {
 ///       using Options = NoOptions;                                  // the model's own options
 ///       template <class T> struct State { T x, y, yaw, speed, steer; };   // at least these: rear axle, map
 ///                                                                         // frame; m, m, rad, m/s, rad
-///       Motion(const PathTrackingOptions&, const Options&);
+///       Model(const PathTrackingOptions&, const Options&);
 ///       State<double> start(const VehicleStart&, double reference_speed);
 ///       template <class T> State<T> step(const State<T>&, const T& reference_speed, const Input<T, inputs>&,
 ///                                        int k) const;
@@ -45,28 +45,28 @@ concept MotionModel = std::constructible_from<M, const PathTrackingOptions&, con
 /// path's. If the acceleration is an input, too, there is also a cost of the speed: `speed_weight` times the
 /// square of the speed below the path's or, with `single_track`, times the share of a time step that is lost
 /// against the path's speed, and then a cost of the grip.
-template <MotionModel Motion>
+template <MotionModel Model>
 class PathTracking {
  public:
   template <class T>
-  using State = typename Motion::template State<T>;         ///< state of the motion model
-  using Options = typename Motion::Options;                 ///< the model's own options
-  static constexpr const char* name = Motion::name;         ///< name in configurations
-  static constexpr const char* help = Motion::help;         ///< description, in one line
-  static constexpr int inputs = Motion::inputs;             ///< inputs of a step
-  static constexpr auto input_names = Motion::input_names;  ///< names of the inputs
-  static constexpr bool plans_speed = inputs > 1;           ///< the acceleration is an input
-  static constexpr bool long_steps = requires { requires Motion::long_steps; };  ///< see Problem
+  using State = typename Model::template State<T>;         ///< state of the motion model
+  using Options = typename Model::Options;                 ///< the model's own options
+  static constexpr const char* name = Model::name;         ///< name in configurations
+  static constexpr const char* help = Model::help;         ///< description, in one line
+  static constexpr int inputs = Model::inputs;             ///< inputs of a step
+  static constexpr auto input_names = Model::input_names;  ///< names of the inputs
+  static constexpr bool plans_speed = inputs > 1;          ///< the acceleration is an input
+  static constexpr bool long_steps = requires { requires Model::long_steps; };  ///< see Problem
 
   /// Options must be valid (see validate_options).
   explicit PathTracking(const PathTrackingOptions& options, const Options& own = {})
       : options_(options),
-        motion_(options, own),
+        model_(options, own),
         cost_(options),
         obstacles_(options.body),
         collision_weight_(options.cost.collision_weight) {
-    if constexpr (requires { motion_.seeks_lap_time(); }) {
-      if (motion_.seeks_lap_time()) cost_.set_lap_time();
+    if constexpr (requires { model_.seeks_lap_time(); }) {
+      if (model_.seeks_lap_time()) cost_.set_lap_time();
     }
   }
 
@@ -76,14 +76,14 @@ class PathTracking {
   /// The properties of the model.
   VehicleTraits traits() const {
     VehicleTraits traits = traits_of(options_, plans_speed);
-    traits.meets_others = true;
-    if constexpr (requires { motion_.complete(traits); }) motion_.complete(traits);
+    traits.obstacles.meets_others = true;
+    if constexpr (requires { model_.complete(traits); }) model_.complete(traits);
     return traits;
   }
   /// The motion model.
-  Motion& motion() noexcept { return motion_; }
+  Model& model() noexcept { return model_; }
   /// The motion model.
-  const Motion& motion() const noexcept { return motion_; }
+  const Model& model() const noexcept { return model_; }
 
   /// Sets the maps that rollouts look up.
   void set_maps(const VehicleMaps& maps) noexcept {
@@ -93,18 +93,18 @@ class PathTracking {
   }
 
   /// Sets the conditions of the next rollouts.
-  void set_conditions(const DrivingConditions& now) noexcept requires requires(Motion& m) {
+  void set_conditions(const DrivingConditions& now) noexcept requires requires(Model& m) {
     m.set_conditions(now);
   }
   {
-    motion_.set_conditions(now);
+    model_.set_conditions(now);
     cost_.set_conditions(now);
     obstacles_.set_margin_shares(now.margin_share, now.soft_share);
   }
 
   /// The state at the start; `reference_speed` (m/s) is the path's there.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept {
-    return motion_.start(start, reference_speed);
+    return model_.start(start, reference_speed);
   }
 
   /// Returns a state as the planner uses it.
@@ -129,7 +129,7 @@ class PathTracking {
   /// The state after step `k` with inputs `u`: steering, rad, within pi / 2; acceleration, m/s^2.
   template <class T>
   State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, inputs>& u, int k) const {
-    return motion_.step(s, seen.speed, u, k);
+    return model_.step(s, seen.speed, u, k);
   }
 
   /// Cost of step `k`.
@@ -142,11 +142,11 @@ class PathTracking {
   template <class T>
   Cost<T> terminal_cost(const State<T>& s, const Surroundings<T>& seen) const {
     Cost<T> cost = with_speed(cost_.terminal(s.yaw, seen), s, seen);
-    if constexpr (requires { motion_.stopping_distance(s); }) {
-      cost.value = cost.value + motion_.collision_ahead_cost() * speed_of_collision(s);
-      if (motion_.seeks_lap_time())
-        cost.value = cost.value + (cost_.time_cost(motion_.steps_behind(s, seen.speed)) +
-                                   motion_.overspeed_cost(s, seen.speed));
+    if constexpr (requires { model_.stopping_distance(s); }) {
+      cost.value = cost.value + model_.collision_ahead_cost() * speed_of_collision(s);
+      if (model_.seeks_lap_time())
+        cost.value = cost.value + (cost_.time_cost(model_.steps_behind(s, seen.speed)) +
+                                   model_.overspeed_cost(s, seen.speed));
       if (!others_.empty()) cost.value = cost.value + cost_.time_cost(others_.following_cost(s.x, s.y));
     }
     return with_others(cost, s, others_.last_step());
@@ -168,8 +168,8 @@ class PathTracking {
   /// cost makes plans end in states from which the car can stop in time.
   template <class T>
   SLALOM_INLINE T speed_of_collision(const State<T>& s) const {
-    constexpr int pieces = 5;
-    const T piece = motion_.stopping_distance(s) * T(1.0 / pieces);
+    constexpr int pieces = 5;  // parts of the way in which the car stops
+    const T piece = model_.stopping_distance(s) * T(1.0 / pieces);
     const T lead = T(obstacles_.foremost());
     T sine, cosine;
     sin_cos(s.yaw, sine, cosine);
@@ -198,9 +198,9 @@ class PathTracking {
   template <class T>
   SLALOM_INLINE Cost<T> with_speed(const Cost<T>& cost, const State<T>& s,
                                    const Surroundings<T>& seen) const {
-    if constexpr (requires { motion_.grip_cost(s); }) {
+    if constexpr (requires { model_.grip_cost(s); }) {
       const Cost<T> timed = cost_.with_time_lost(cost, s.yaw, s.speed, seen);
-      return {timed.value + motion_.grip_cost(s), timed.collided};
+      return {timed.value + model_.grip_cost(s), timed.collided};
     } else if constexpr (plans_speed) {
       return cost_.with_speed(cost, s.speed, seen);
     } else {
@@ -209,7 +209,7 @@ class PathTracking {
   }
 
   PathTrackingOptions options_;  ///< options of the car
-  Motion motion_;
+  Model model_;
   TrackingCost cost_;       ///< cost of path and speed errors
   ObstacleCost obstacles_;  ///< cost of obstacles
   maps::MovingObstaclesView others_;

@@ -118,22 +118,22 @@ class DynamicProblemModel final : public detail::ProblemModelBase<P, DynamicVehi
     return std::make_unique<DynamicProblemModel>(*this);
   }
   const SingleTrackDynamics& dynamics() const noexcept override {
-    return evaluator_.problem().motion().dynamics();
+    return evaluator_.problem().model().dynamics();
   }
   void set_conditions(const DrivingConditions& conditions) noexcept override {
     evaluator_.problem().set_conditions(conditions);
   }
   VehicleStart advance(const VehicleStart& start, const Command& command, double duration,
                        double friction) const noexcept override {
-    return evaluator_.problem().motion().advance(start, command, duration, friction);
+    return evaluator_.problem().model().advance(start, command, duration, friction);
   }
   Command command(std::span<const float> inputs, double speed, double period) const noexcept override {
     const P& problem = evaluator_.problem();
     const auto seen = slalom::detail::look_up<P, double>(problem, start_);
     const double steering = static_cast<double>(inputs[0]), wanted = static_cast<double>(inputs[1]);
-    const double acceleration = problem.motion().limited(start_, seen.speed, wanted);
-    return {problem.motion().steering(start_, steering),
-            problem.motion().commanded_speed(speed, acceleration, period)};
+    const double acceleration = problem.model().limited(start_, seen.speed, wanted);
+    return {problem.model().steering(start_, steering),
+            problem.model().commanded_speed(speed, acceleration, period)};
   }
 };
 

@@ -54,8 +54,8 @@ class DynamicVehicleModel : public VehicleModel {
 };
 
 /// Makes the model that `options` name; rollouts use the instruction set `target`. It is a
-/// DynamicVehicleModel if tyres slip (`traits().friction` above 0). Throws std::invalid_argument if an option
-/// is out of range or if an option of another model is set.
+/// DynamicVehicleModel if tyres slip (`traits().tyres.friction` above 0). Throws std::invalid_argument if an
+/// option is out of range or if an option of another model is set.
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options,
                                                  simd::Target target = simd::active_target());
 

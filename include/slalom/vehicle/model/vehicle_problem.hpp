@@ -43,7 +43,7 @@ struct PredictedState {
 /// The maps that rollouts look up; they must outlive their use.
 struct VehicleMaps {
   GridView<4> reference;  ///< {distance to the path in m, yaw in rad, speed in m/s, 1 off the map}, map frame
-  GridView<1> obstacles;  ///< map of obstacles as VehicleTraits::obstacle_map says, robot's frame; its ring
+  GridView<1> obstacles;  ///< map of obstacles as ObstacleTraits::map says, robot's frame; its ring
                           ///< is negative
   maps::Pose robot;       ///< the robot's frame, in the map frame
   maps::MovingObstaclesView others{};  ///< obstacles that move, map frame
@@ -82,29 +82,44 @@ struct DrivingConditions {
   double soft_share = 1;             ///< above 0 to 1, share of the soft margin in which nearness has a cost
 };
 
-/// Properties of a vehicle model.
-struct VehicleTraits {
-  double time_step = 0;         ///< s, of the prediction, > 0
-  double wheelbase = 0;         ///< m, > 0
-  double rear_length = 0;       ///< m, centre of gravity to rear axle
-  double dead_time = 0;         ///< s, of the steering, which the planner compensates; 0 if the model does
-  double max_acceleration = 0;  ///< m/s^2, of the predicted speed
-  double max_deceleration = 0;  ///< m/s^2, of a braking car
+/// Demands of a vehicle model on the maps of obstacles.
+struct ObstacleTraits {
+  ObstacleMap map = ObstacleMap::inflated;  ///< content of the map of obstacles
+  double reach = 0;                         ///< m, of the distances in a map of clearance
+  bool meets_others = false;                ///< rollouts meet obstacles that move
+};
+
+/// Origin of the speed that a car without tyre slip is commanded.
+struct SpeedTraits {
+  bool planned = false;                 ///< from the plan, not from the path
   bool unlimited_acceleration = false;  ///< the predicted speed may be at once that of the reference field
-  bool plans_speed = false;             ///< the speed to command is that of the plan, not that of the path
-  bool meets_others = false;            ///< rollouts meet obstacles that move
-  bool follows_path = true;             ///< false: drives by the obstacles alone, at `reference_speed`
-  double reference_speed = 0;           ///< m/s, without a path
-  ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< content of the map of obstacles
-  double clearance_reach = 0;                        ///< m
-  BodyOptions body;                                  ///< the body that must not collide
+  bool follows_path = true;             ///< false: drives by the obstacles alone, at `reference`
+  double reference = 0;                 ///< m/s, without a path
+};
+
+/// Grip, steering and motor of a car whose tyres slip.
+struct TyreTraits {
   double friction = 0;               ///< friction that the options give, > 0 if tyres slip, else 0
   double usable_grip = 0;            ///< the share of the friction that plans may use
   double braking_share = 1;          ///< the share of the usable grip that the mean deceleration may use
   bool seeks_lap_time = false;       ///< plans seek the shortest time, whatever the path's speeds
-  double half_steer_speed = 0;       ///< m/s, with tyre slip: an input steers half as much as at standstill
-  double stopping_deceleration = 0;  ///< m/s^2, with tyre slip: a plan must be able to stop with it
-  double switch_speed = 0;           ///< m/s, with tyre slip: above it the motor's power is the limit
+  double half_steer_speed = 0;       ///< m/s; an input steers half as much as at standstill
+  double stopping_deceleration = 0;  ///< m/s^2; a plan must be able to stop with it
+  double switch_speed = 0;           ///< m/s; above it the motor's power is the limit
+};
+
+/// Properties of a vehicle model.
+struct VehicleTraits {
+  double time_step = 0;         ///< s, of the prediction, > 0
+  double dead_time = 0;         ///< s, of the steering, which the planner compensates; 0 if the model does
+  double wheelbase = 0;         ///< m, > 0
+  double rear_length = 0;       ///< m, centre of gravity to rear axle
+  double max_acceleration = 0;  ///< m/s^2, of the predicted speed
+  double max_deceleration = 0;  ///< m/s^2, of a braking car
+  BodyOptions body;             ///< the body that must not collide
+  ObstacleTraits obstacles;     ///< for the maps of obstacles
+  SpeedTraits speed;            ///< for a planner without tyre slip
+  TyreTraits tyres;             ///< for a planner with tyre slip
 };
 
 /// Returns the traits of a model that uses these options unchanged.
@@ -134,13 +149,13 @@ concept VehicleProblem = Problem<P> && requires(P& p, const P& c, const slalom::
 };
 
 /// A vehicle problem of a car whose tyres slip. `set_conditions` sets the conditions of the next rollouts,
-/// and `motion()` returns a motion model like SingleTrack.
+/// and `model()` returns a motion model like SingleTrack.
 template <class P>
 concept DynamicVehicleProblem = VehicleProblem<P> &&
     requires(P& p, const P& c, const VehicleStart& start, const slalom::detail::StateOf<P, double>& x) {
   p.set_conditions(DrivingConditions{});
-  { c.motion().advance(start, Command{}, 0.1, 1.0) } -> std::same_as<VehicleStart>;
-  { c.motion().limited(x, 1.0, 1.0) } -> std::convertible_to<double>;
+  { c.model().advance(start, Command{}, 0.1, 1.0) } -> std::same_as<VehicleStart>;
+  { c.model().limited(x, 1.0, 1.0) } -> std::convertible_to<double>;
 };
 
 }  // namespace slalom::vehicle

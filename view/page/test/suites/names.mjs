@@ -45,7 +45,7 @@ export default async function (h) {
     const [lap, html] = [join(h.folder, "plain.mcap"), join(h.folder, "hostile.html")];
     const drive = "drive --course wren --method mppi --set mppi.samples=64 --record".split(" ").concat(lap);
     execFileSync(h.program, drive, { stdio: "ignore" });
-    execFileSync(h.program, ["replay", lap, "--html", html], { stdio: "ignore" });
+    execFileSync(h.program, ["export", lap, html], { stdio: "ignore" });
     const segment = /(<script type="application\/x-slalom-replay">)([^<]*)/g;
     const replaced = (_, tag, text) => tag + taintedSegment(Buffer.from(text, "base64")).toString("base64");
     writeFileSync(html, readFileSync(html, "utf8").replace(segment, replaced));

@@ -1,0 +1,215 @@
+// The results of an evaluation: summary.json, and tables in the terminal.
+#include <algorithm>
+#include <cstdio>
+#include <thread>
+
+#include "slalom/core/version.hpp"
+#include "src/evaluation/json.hpp"
+#include "tools/command_line/words.hpp"
+#include "tools/evaluation/build_id.hpp"
+#include "tools/evaluation/comparison.hpp"
+#include "tools/evaluation/evaluation_job.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using namespace evaluation;
+
+/// A share, or null of nothing.
+Json share_json(int part, int whole) {
+  return whole > 0 ? Json(static_cast<double>(part) / whole) : Json(nullptr);
+}
+
+/// The sums and means of the figures, and the rates that follow from them.
+Json tracking_json(const TrackingFigures& t, int laps) {
+  Json json{{"detection_rate", share_json(t.detected, t.in_view)},
+            {"long_detection_rate", share_json(t.long_detected, t.long_in_view)},
+            {"false_objects_per_lap", share_json(t.false_objects, laps)}};
+  visit_figures(t, [&](const auto& value, const Figure& figure) { json[figure.name] = value; });
+  return json;
+}
+Json overtaking_json(const OvertakingFigures& o) {
+  const int decided = o.overtaken + o.not_overtaken;
+  Json json{
+      {"overtaken_rate", share_json(o.overtaken, decided)},
+      {"overtaken_rate_ci",
+       interval_json(decided > 0 ? std::optional(wilson_interval(o.overtaken, decided)) : std::nullopt)}};
+  visit_figures(o, [&](const auto& value, const Figure& figure) { json[figure.name] = value; });
+  return json;
+}
+
+PairedComparison swapped(PairedComparison c) {
+  std::swap(c.a, c.b);
+  std::swap(c.only_a_succeeds, c.only_b_succeeds);
+  c.ms_difference = -c.ms_difference;
+  c.time_difference = -c.time_difference;
+  return c;
+}
+
+/// The numbers of laps, separated by commas.
+std::string listed(const std::vector<int>& laps) {
+  std::string text;
+  for (const int lap : laps) text += (text.empty() ? "" : ", ") + std::to_string(lap);
+  return text;
+}
+
+void print_table(const Evaluated& evaluated, int width, std::FILE* out) {
+  std::fprintf(out, "%-*s  %-3s %5s %9s %10s %19s %24s %25s %9s\n", width, "method", "", "laps", "success",
+               "collisions", "collision rate", "lap time, s", "MS", "solve, ms");
+  for (const ExperimentResult& r : evaluated.results) {
+    const Experiment& e = evaluated.experiment(r.experiment);
+    const std::string rate = r.collision_rate
+                                 ? formatted("%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,
+                                             100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high)
+                                 : "-";
+    std::fprintf(out, "%-*s  %-3s %5d %7.1f %% %10d %19s %24s %25s %9.3f\n", width, e.label().c_str(),
+                 e.scenario.c_str(), r.laps, 100 * r.success_rate, r.collisions, rate.c_str(),
+                 mean_text(r.time_mean, r.time_ci, r.finished).c_str(),
+                 mean_text(r.ms_mean, r.ms_ci, r.laps).c_str(), r.solve_p50);
+  }
+  std::fprintf(
+      out,
+      "lap time: of finished laps. MS: mean cost of the control sequences sent in a lap, lower is better. In "
+      "brackets: 95 %% intervals, from %d laps on. Solve: median over a lap.\n",
+      fewest_laps);
+}
+
+void print_comparisons(const Evaluated& evaluated, int width, std::FILE* out) {
+  const auto pairs = evaluated.against_reference();
+  if (pairs.empty()) return;
+  std::fprintf(out, "\n%-*s  %-3s %5s %18s %-9s %-10s %12s %-9s %10s %-9s  %s\n", width, "paired by lap", "",
+               "laps", "only one succeeds", "p", "collisions", "lap time, s", "p", "MS", "p",
+               "compared with");
+  for (const PairedComparison& c : pairs) {
+    const Experiment &e = evaluated.experiment(c.a), &reference = evaluated.experiment(c.b);
+    std::fprintf(
+        out, "%-*s  %-3s %5d %18s %-9s %-10s %+12.3f %-9s %+10.3f %-9s  %s\n", width, e.label().c_str(),
+        e.scenario.c_str(), c.laps, formatted("%d : %d", c.only_a_succeeds, c.only_b_succeeds).c_str(),
+        p_text(c.success_p).c_str(), p_text(c.collisions_p).c_str(), c.time_difference,
+        p_text(c.time_p).c_str(), c.ms_difference, p_text(c.ms_p).c_str(), reference.label().c_str());
+  }
+  if (std::any_of(pairs.begin(), pairs.end(), [](const auto& c) { return !c.ms_p; }))
+    std::fprintf(out, "MS is not tested where the weights of the two differ.\n");
+}
+
+void print_tracking(const std::string& label, const TrackingFigures& t, int laps, std::FILE* out) {
+  const auto percent = [](int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; };
+  std::fprintf(out,
+               "%s: of cars in view within 8 m %.2f %% detected, after 0.2 s in view %.2f %%; %.2f false "
+               "objects a lap; error "
+               "%.3f m, %.2f m/s, %.3f rad (root mean square); update p99 %.2f ms\n",
+               label.c_str(), percent(t.detected, t.in_view), percent(t.long_detected, t.long_in_view),
+               static_cast<double>(t.false_objects) / std::max(laps, 1), t.position_error, t.speed_error,
+               t.yaw_error, t.update_p99);
+}
+
+/// Names the laps in which a collision could not be avoided. Laps of the same number have the same obstacles:
+/// those of one experiment speak for all.
+void print_hopeless_laps(const Evaluated& evaluated, std::FILE* out) {
+  std::vector<int> laps;
+  int impassable = 0, experiment = -1;
+  for (const LapRow& row : evaluated.rows) {
+    if (row.impassable == 0 || (experiment >= 0 && row.experiment != experiment)) continue;
+    experiment = row.experiment;
+    impassable += row.impassable;
+    laps.push_back(row.lap);
+  }
+  if (impassable > 0)
+    std::fprintf(out, "a car of this width cannot pass %d of the obstacles, in laps %s\n", impassable,
+                 listed(laps).c_str());
+  if (evaluated.results.empty()) return;
+  const std::vector<int> begun = evaluated.laps_begun_in_contact(evaluated.results.front().experiment);
+  if (!begun.empty())
+    std::fprintf(out,
+                 "an obstacle stands where the car starts, in laps %s; no driver avoids these collisions\n",
+                 listed(begun).c_str());
+}
+
+}  // namespace
+
+std::vector<PairedComparison> Evaluated::comparisons() const {
+  std::vector<PairedComparison> pairs = compare_pairs(rows, evaluation.experiments);
+  const Json settings = parse_json(evaluation.settings);
+  for (PairedComparison& c : pairs)
+    if (!same_weights(settings, experiment(c.a), settings, experiment(c.b))) c.ms_p.reset();
+  return pairs;
+}
+
+std::vector<PairedComparison> Evaluated::against_reference() const {
+  const auto reference_of = [&](const std::string& scenario) {
+    int first = -1;
+    for (int i = 0; i < std::ssize(evaluation.experiments); ++i) {
+      if (experiment(i).scenario != scenario) continue;
+      if (experiment(i).method == "svg_mppi" && experiment(i).set.empty()) return i;
+      if (first < 0) first = i;
+    }
+    return first;
+  };
+  std::vector<PairedComparison> pairs;
+  for (const PairedComparison& c : comparisons()) {
+    const int reference = reference_of(experiment(c.a).scenario);
+    if (c.a == reference) pairs.push_back(swapped(c));
+    if (c.b == reference) pairs.push_back(c);
+  }
+  return pairs;
+}
+
+std::vector<int> Evaluated::laps_begun_in_contact(int index) const {
+  std::vector<int> laps;
+  for (const LapRow& row : rows)
+    if (row.experiment == index && began_in_contact(row, evaluation.environment->start))
+      laps.push_back(row.lap);
+  return laps;
+}
+
+Json Evaluated::summary() const {
+  Json list = Json::array(), pairs = Json::array();
+  for (const ExperimentResult& r : results) {
+    const Experiment& e = experiment(r.experiment);
+    Json result{{"method", e.method},
+                {"set", e.set_text()},
+                {"scenario", e.scenario},
+                {"obstacles", e.obstacles},
+                {"began_in_contact", laps_begun_in_contact(r.experiment).size()}};
+    result.update(result_json(r));
+    if (r.tracking) result["tracking"] = tracking_json(*r.tracking, r.laps);
+    if (r.overtaking) result["overtaking"] = overtaking_json(*r.overtaking);
+    list.push_back(std::move(result));
+  }
+  for (const PairedComparison& c : comparisons()) {
+    Json pair{{"scenario", experiment(c.a).scenario},
+              {"a", experiment(c.a).label()},
+              {"b", experiment(c.b).label()}};
+    pair.update(comparison_json(c));
+    pairs.push_back(std::move(pair));
+  }
+  return {{"program", std::string("slalom ") + version()},
+          {"build", build_id()},
+          {"settings", parse_json(evaluation.settings)},
+          {"machine", {{"cores", std::thread::hardware_concurrency()}, {"cpu", processor_name()}}},
+          {"results", list},
+          {"comparisons", pairs}};
+}
+
+void print_results(const Evaluated& evaluated, std::FILE* out) {
+  std::size_t longest = 13;
+  for (const Experiment& e : evaluated.evaluation.experiments) longest = std::max(longest, e.label().size());
+  const int width = static_cast<int>(longest);
+  print_table(evaluated, width, out);
+  print_comparisons(evaluated, width, out);
+  for (const ExperimentResult& r : evaluated.results)
+    if (r.tracking) print_tracking(evaluated.experiment(r.experiment).label(), *r.tracking, r.laps, out);
+  for (const ExperimentResult& r : evaluated.results) {
+    if (!r.overtaking) continue;
+    const OvertakingFigures& o = *r.overtaking;
+    std::fprintf(
+        out,
+        "%s: opponents: %d met, %d overtaken (mean time %.1f s), %d not overtaken; %d contacts, %d caused by "
+        "the car; %d changes of side\n",
+        evaluated.experiment(r.experiment).label().c_str(), o.met, o.overtaken, o.duration, o.not_overtaken,
+        o.contacts, o.caused, o.side_changes);
+  }
+  print_hopeless_laps(evaluated, out);
+}
+
+}  // namespace slalom::tools

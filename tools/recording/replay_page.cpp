@@ -1,0 +1,20 @@
+#include "tools/recording/replay_page.hpp"
+
+#include <cstdio>
+
+#include "view/embedded.hpp"
+#include "view/recording/encodings.hpp"
+#include "view/recording/replay.hpp"
+
+namespace slalom::tools {
+
+std::string page_of_recording(const std::filesystem::path& recording) {
+  std::uint64_t lost = 0;
+  const auto segments = view::load_replay(recording.string(), &lost);
+  if (lost > 0)
+    std::fprintf(stderr, "note: %s was cut: its last %llu bytes cannot be read\n", recording.c_str(),
+                 static_cast<unsigned long long>(lost));
+  return view::replay_page(view::gunzip(view::page_gzip()), segments);
+}
+
+}  // namespace slalom::tools
