@@ -67,7 +67,7 @@ bool shows_the_opponent(const evaluation::ControlStep& tick, const std::string& 
   return true;
 }
 
-TEST(FrameEncoder, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
+TEST(CarFrame, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
   for (const auto mode : {evaluation::TrackingMode::off, evaluation::TrackingMode::exact}) {
     evaluation::LapDrive loop(
         {environment(), {few_samples()}, {.opponents = 1, .opponent_gap = 3, .tracking = mode}}, 5);
