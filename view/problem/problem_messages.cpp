@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "view/problem/problem_session.hpp"
 #include "view/protocol/page_json.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "json/json.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
-#include "src/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/page_json.hpp"
 

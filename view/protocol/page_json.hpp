@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "json/json.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/solvers/symptom.hpp"
-#include "src/evaluation/json.hpp"
 
 namespace slalom::view {
 
