@@ -8,7 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
-#include "view/protocol/frame.hpp"
+#include "view/protocol/car_frame.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
@@ -36,11 +36,11 @@ std::string record(bool wall_clock, int ticks = 12, bool ghost = false, bool eve
   Recorder recorder(stream,
                     {.settings = {{"settings", "{}"}}, .everything = everything, .wall_clock = wall_clock});
   recorder.add_text("{\"type\":\"hello\",\"control_period\":0.025}");
-  recorder.add_course(encode_scene(*where));
-  FrameEncoder encoder;
+  const auto facts = car_facts(where.get());
+  recorder.add_course(encode_scene(*facts));
   for (int i = 0; i < ticks; ++i)
     loop.step([&](const evaluation::ControlStep& tick) {
-      const std::string frame = encoder.encode(tick, {}) + encode_bodies(tick.world);
+      const std::string frame = encode_car(*facts, tick, 0.025, 0.1, 0);
       recorder.add_frame(ghost ? frame + encode_ghost_frame(frame) : frame);
     });
   recorder.finish();
@@ -67,15 +67,15 @@ bool shows_the_opponent(const evaluation::ControlStep& tick, const std::string& 
   return true;
 }
 
-TEST(FrameEncoder, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
+TEST(CarFrame, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
   for (const auto mode : {evaluation::TrackingMode::off, evaluation::TrackingMode::exact}) {
     evaluation::LapDrive loop(
         {environment(), {few_samples()}, {.opponents = 1, .opponent_gap = 3, .tracking = mode}}, 5);
-    FrameEncoder encoder;
+    const auto facts = car_facts();
     int shown = 0;
     for (int i = 0; i < 60; ++i)
       loop.step([&](const evaluation::ControlStep& tick) {
-        shown += shows_the_opponent(tick, encoder.encode(tick, {}));
+        shown += shows_the_opponent(tick, encode_car(*facts, tick, 0.025, 0.1, 0));
       });
     if (mode == evaluation::TrackingMode::off)
       EXPECT_EQ(shown, 0);

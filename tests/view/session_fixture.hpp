@@ -53,7 +53,7 @@ inline SessionOptions session_options() {
 
 /// The figures of a frame by name.
 inline double scalar(std::string_view frame, const std::string& name) {
-  const auto& names = scalar_names();
+  const auto& names = car_scalars();
   const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   double value = 0;
   std::memcpy(&value, frame.data() + 12 + 8 * at, sizeof value);

@@ -13,7 +13,7 @@ TEST_F(ViewSession, FirstMessagesHoldWhatThePageNeeds) {
   EXPECT_EQ(hello["protocol"], 2);
   EXPECT_EQ(hello["terms"].size(), 3u);
   EXPECT_GT(hello["body"]["front"], 0) << "a car has wheels";
-  EXPECT_EQ(hello["scalars"].size(), scalar_names().size());
+  EXPECT_EQ(hello["scalars"].size(), car_scalars().size());
   EXPECT_EQ(hello["courses"], (json{"stag", "eel"}));
   const json options = next("options");
   ASSERT_EQ(options["sections"][0]["name"], "svg_mppi");
@@ -41,7 +41,7 @@ TEST_F(ViewSession, TellsTheSymptomOfTheSolver) {
 TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   // The session first: its client does not stay for as long as a lap may take.
   const std::string fifth = step_to(5);
-  EXPECT_EQ(FrameReader(fifth).block(Block::scalars).size(), 8 * scalar_names().size());
+  EXPECT_EQ(FrameReader(fifth).block(Block::scalars).size(), 8 * car_scalars().size());
   const double x5 = scalar(fifth, "x"), x60 = scalar(step_to(60), "x");
   const evaluation::LapSetup setup{
       session_options().load(session_options().scenario).environment, {small()}, {.obstacles = 2}};
@@ -143,7 +143,7 @@ TEST_F(ViewSession, SendsThePastThatIsAskedFor) {
   while (message.rfind("SLV1", 0) != 0 || message[4] != static_cast<char>(Block::past));
   PayloadReader past(FrameReader(message).block(Block::past));
   for (int tick = 10; tick <= 12; ++tick)
-    for (const std::string& name : scalar_names()) {
+    for (const std::string& name : car_scalars()) {
       const double value = past.get<double>();
       if (name == "tick") {
         EXPECT_EQ(value, tick);

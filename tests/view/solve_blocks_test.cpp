@@ -56,7 +56,7 @@ TEST_P(Solve, TheEffectiveSampleSizeIsTheSolversAtItsTemperatureAndRisesWithIt) 
 
 TEST_P(Solve, TheInputsAreThoseOfPlanNominalAndGuide) {
   FrameWriter to;
-  put_inputs(to, result(), result().inputs, 2);
+  put_inputs(to, result(), 2);
   const std::string message = to.take();
   PayloadReader from(FrameReader(message).block(Block::inputs));
   const std::size_t steps = from.get<std::uint16_t>(), inputs = from.get<std::uint16_t>();

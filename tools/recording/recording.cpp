@@ -23,26 +23,30 @@ view::RecorderOptions recorder_options(const RecordingFacts& facts) {
 
 Recording::Recording(const std::string& file, const RecordingFacts& facts)
     : file_(file),
-      further_arguments_(further_arguments(facts.arguments)),
-      environment_(facts.scenario.environment),
-      configuration_(facts.scenario.configuration),
+      facts_(view::car_facts(facts.scenario.environment.get())),
+      prediction_step_(facts.scenario.configuration.vehicle.time_step),
       choices_(choices()),
-      state_{.names = {.course = environment_->course.name,
-                       .method = facts.method,
-                       .config = facts.arguments.config,
-                       .seed = facts.seed,
-                       .obstacles = facts.scenario.lap.obstacles,
-                       .opponents = facts.scenario.lap.opponents}},
       control_period_(facts.control_period),
       stream_(file, std::ios::binary),
       recorder_(stream_, recorder_options(facts)) {
   if (!stream_) throw cannot_write(file);
-  recorder_.add_text(view::hello_message(*environment_, choices_, 0, control_period_));
-  recorder_.add_course(view::encode_scene(*environment_));
-  recorder_.add_text(view::options_message({.names = state_.names,
-                                            .now = configuration_,
-                                            .loaded = configuration_,
-                                            .further_arguments = further_arguments_}));
+  const evaluation::Environment& environment = *facts.scenario.environment;
+  state_.names = view::with_course({.course = environment.course.name,
+                                    .method = facts.method,
+                                    .config = facts.arguments.config,
+                                    .seed = facts.seed,
+                                    .obstacles = facts.scenario.lap.obstacles,
+                                    .opponents = facts.scenario.lap.opponents},
+                                   environment);
+  state_.control_period = control_period_;
+  state_.bounds = view::bounds_of(facts_->course);
+  recorder_.add_text(view::hello_message(*facts_, choices_, 0, control_period_));
+  recorder_.add_course(view::encode_scene(*facts_));
+  recorder_.add_text(
+      view::options_message({.names = state_.names,
+                             .sections = view::sections_of(facts.scenario.configuration, facts.method),
+                             .fixes_seed = true,
+                             .further_arguments = further_arguments(facts.arguments)}));
 }
 
 void Recording::begin_lap(std::uint64_t seed) {
@@ -53,10 +57,8 @@ void Recording::begin_lap(std::uint64_t seed) {
 
 void Recording::add(const evaluation::ControlStep& tick) {
   ++ticks_;
-  recorder_.add_frame(encoder_.encode(tick, {.deadline = control_period_,
-                                             .prediction_step = configuration_.vehicle.time_step,
-                                             .method = choices_.method_index(state_.names.method)}) +
-                      view::encode_bodies(tick.world));
+  recorder_.add_frame(view::encode_car(*facts_, tick, control_period_, prediction_step_,
+                                       choices_.method_index(state_.names.method)));
 }
 
 void Recording::end_lap(const evaluation::LapResult& lap, int number) {
@@ -76,7 +78,7 @@ void Recording::close() {
 }
 
 void Recording::tell_state() {
-  recorder_.add_text(view::state_message(state_, *environment_, control_period_));
+  recorder_.add_text(view::state_message(state_));
 }
 
 }  // namespace slalom::tools

@@ -8,8 +8,7 @@
 
 #include "slalom/evaluation/lap.hpp"
 #include "tools/scenario/scenario.hpp"
-#include "view/protocol/frame.hpp"
-#include "view/protocol/messages.hpp"
+#include "view/protocol/car_frame.hpp"
 #include "view/recording/recorder.hpp"
 
 namespace slalom::tools {
@@ -41,15 +40,14 @@ class Recording {
  private:
   void tell_state();
 
-  std::string file_, further_arguments_;
-  std::shared_ptr<const evaluation::Environment> environment_;
-  vehicle::Configuration configuration_;
+  std::string file_;
+  std::shared_ptr<const view::SubjectFacts> facts_;
+  double prediction_step_;  ///< s
   view::Choices choices_;
   view::DriveState state_;
   double control_period_;
   int ticks_ = 0;
   std::ofstream stream_;
-  view::FrameEncoder encoder_;
   view::Recorder recorder_;
 };
 

@@ -37,7 +37,7 @@ void Run::advance() {
 }
 
 ProblemSession::ProblemSession(std::unique_ptr<Subject> subject, Server& server) : Playback(server) {
-  for (const char* name : solver_names()) methods_.emplace_back(name);
+  for (const char* name : solver_names()) choices_.methods.emplace_back(name);
   if (const SolverOptions* options = subject->options()) loaded_.emplace(options->method(), *options);
   for (const OptionEntry& each : subject->parameters())
     parameters_.emplace(each.declaration.name, to_text(each.value));
@@ -64,27 +64,27 @@ void ProblemSession::tick() {
 }
 
 /// Drives a run one step further and returns the frame of the step.
-ProblemFrame ProblemSession::drive(Run& run) {
+Frame ProblemSession::drive(Run& run) {
   const auto begin = Clock::now();
   const SolveResult& solve = run.decide();
-  solve_time_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  const auto method = std::find(methods_.begin(), methods_.end(),
-                                run.subject->options() ? run.subject->options()->method() : "");
+  const double solve_time = std::chrono::duration<double>(Clock::now() - begin).count();
+  const SolverOptions* options = run.subject->options();
   const auto earlier = std::lower_bound(collided_.begin(), collided_.end(), run.steps) - collided_.begin();
-  ProblemFrame frame = encode_step(*run.subject, solve,
-                                   {.tick = run.steps,
-                                    .time = run.steps * run.period,
-                                    .period = run.period,
-                                    .solve_time = solve_time_,
-                                    .collisions = static_cast<int>(earlier),
-                                    .method = static_cast<int>(method - methods_.begin()),
-                                    .state = run.state});
+  Frame frame = encode_frame(*run.subject, solve,
+                             {.tick = run.steps,
+                              .measures = {.time = run.steps * run.period,
+                                           .update_time = solve_time,
+                                           .collisions = static_cast<int>(earlier)},
+                              .period = run.period,
+                              .prediction_step = run.period,
+                              .method = choices_.method_index(options ? options->method() : ""),
+                              .state = run.state});
   run.advance();
   return frame;
 }
 
 /// Keeps and shows the last step of the present run.
-void ProblemSession::keep(ProblemFrame frame) {
+void ProblemSession::keep(Frame frame) {
   const int number = drives_->steps - 1;
   collided_.erase(std::lower_bound(collided_.begin(), collided_.end(), number), collided_.end());
   if (frame.collides) collided_.push_back(number);
@@ -110,7 +110,7 @@ void ProblemSession::perform(const Timeline::Action& change) {
   Run run = present();
   action(run);
   Run before = run;
-  ProblemFrame frame;
+  Frame frame;
   if (is_driven_again) frame = drive(run);
   edited_ = is_state_changed_ = true;
   if (period_of(*before.subject) != before.period) {

@@ -8,7 +8,7 @@
 
 #include "slalom/core/polymorphic.hpp"
 #include "slalom/view/subject.hpp"
-#include "view/problem/problem_frame.hpp"
+#include "view/protocol/messages.hpp"
 #include "view/session/playback.hpp"
 
 namespace slalom::view {
@@ -41,8 +41,8 @@ class ProblemSession final : public Playback<Run> {
  private:
   void restart() override;
   void tick() override;
-  ProblemFrame drive(Run& run);
-  void keep(ProblemFrame frame);
+  Frame drive(Run& run);
+  void keep(Frame frame);
   void perform(const Timeline::Action& action);
   const Subject& shown() { return viewed_ >= 0 ? *present().subject : *drives_->subject; }
 
@@ -51,19 +51,18 @@ class ProblemSession final : public Playback<Run> {
   void set_method(const std::string& method);
   void join(std::uint64_t client) override;
   void tell() override;
-  Json hello() const;
-  Json state();
-  Json options();
+  std::string hello() const;
+  std::string state();
+  std::string options();
   double control_period() const override { return drives_->period; }
-  std::size_t scalars() const override { return problem_scalars(drives_->subject->facts()).size(); }
+  std::size_t scalars() const override { return scalar_names(drives_->subject->facts()).size(); }
 
-  std::vector<std::string> methods_;
+  Choices choices_;                                ///< methods
   std::map<std::string, SolverOptions> loaded_;    ///< options of each method before changes
   std::map<std::string, std::string> parameters_;  ///< parameters of the problem before changes
   Bounds bounds_;
   std::vector<int> collided_;  ///< steps that collided
   std::string told_options_;   ///< message with the options that the pages have
-  double solve_time_ = 0;      ///< s of wall clock
   bool edited_ = false;
 };
 

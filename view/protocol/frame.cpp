@@ -1,267 +1,305 @@
 #include "view/protocol/frame.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
-#include "slalom/core/gravity.hpp"
 #include "view/protocol/frame_writer.hpp"
+#include "view/protocol/scene_blocks.hpp"
 #include "view/protocol/solve_blocks.hpp"
 
 namespace slalom::view {
 namespace {
 
-using evaluation::ControlStep;
-using vehicle::PredictedState;
+constexpr std::size_t most_candidates = 160, least_candidates = 20;
+constexpr std::size_t most_step_costs = 100000;  // values in a frame
+constexpr int unknown_place = 255;               // code of a candidate that collides, but not where
+constexpr float nudge = 0.01f;                   // change of an input, for the derivative of the plan
+constexpr double course_room = 1.5;              // m beside the line of a course
 
-constexpr const char* scalar_labels =
-    "tick time x y yaw speed steer yaw_rate slip command_steer command_speed steer_estimate status "
-    "distance_cost yaw_cost collision_cost minimum_cost expected_cost effective_samples samples "
-    "collided_share temperature iterations tick_ms draw_ms evaluate_ms guide_ms update_ms solve_ms "
-    "deadline_ms lap lap_time progress path_distance clearance contact contacts sequence_cost "
-    "prediction_step method plan_cost slip_estimate grip_used friction_estimate friction_relied_on "
-    "steering_gain_estimate steering_offset_estimate delay_estimate odometry_x odometry_y odometry_yaw "
-    "odometry_speed symptom";
+using Poses = std::span<const maps::Pose>;
 
-constexpr int sent_candidates = 160;  // samples that are sent
-
-/// Returns the number of states that a sequence of inputs leads through.
-std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
-  return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
+/// The largest distance along an axis of some points from the first, m.
+double reach_of(Poses poses) {
+  double reach = 1e-3;
+  for (const maps::Pose& p : poses)
+    reach = std::max({reach, std::abs(p.x - poses.front().x), std::abs(p.y - poses.front().y)});
+  return reach;
 }
 
-void put_scan(FrameWriter& to, const ControlStep& tick) {
-  to.begin(Block::scan);
-  to.put_pose(tick.seen.sensor);
-  to.put(static_cast<std::uint32_t>(tick.scan.ranges.size()));
-  for (const float range : tick.scan.ranges) {
-    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
-    to.put(static_cast<std::uint16_t>(millimetres));
+/// Writes trajectories in mm: in finer units where all is near, which keeps their resolution, and in coarser
+/// ones that reach all their points up to `most` (m).
+void put_points(FrameWriter& to, Poses poses, double most) {
+  const double reach = std::min(reach_of(poses), most);
+  to.begin_points({poses.front().x, poses.front().y}, std::max(reach / 32000, std::min(0.001, reach / 2000)));
+  for (const maps::Pose& p : poses) to.put_point({p.x, p.y});
+}
+
+/// Encodes one control step. The control sequences are rolled out together: plan, nominal, candidates,
+/// guides, then the plan with each of its inputs changed a little.
+class StepEncoder {
+ public:
+  StepEncoder(FrameSource& source, const SolveResult& solve, const StepFacts& step)
+      : source_(source),
+        facts_(source.facts()),
+        solve_(solve),
+        step_(step),
+        terms_(facts_.terms.size()),
+        inputs_(source.inputs_per_step()),
+        points_(solve.inputs.size() / inputs_ + 1),
+        now_(source.poses(step.state).front()) {
+    if (!solve.inputs.empty()) roll_out();
+    frame_.collides = source.measures() ? step.measures.collides
+                                        : !rolled_.collisions.empty() && rolled_.collisions[0] == 0;
   }
-  to.end();
-}
 
-void put_cost_map(FrameWriter& to, const ControlStep& tick) {
-  const maps::LocalCostMap& map = tick.planner.cost_map();
-  const maps::GridGeometry& geometry = map.geometry();
-  to.begin(Block::cost_map);
-  to.put_pose(tick.odometry.pose);
-  to.put(static_cast<std::uint16_t>(geometry.rows));
-  to.put(static_cast<std::uint16_t>(geometry.columns));
-  to.put_f32({geometry.resolution, geometry.center_x, geometry.center_y});
-  unsigned bits = 0;
-  int filled = 0;
-  for (int row = 0; row < geometry.rows; ++row) {
-    for (int column = 0; column < geometry.columns; ++column) {
-      bits |= static_cast<unsigned>(*map.cells().at(row, column) > 0) << filled;
-      if (++filled < 8) continue;
-      to.put(static_cast<std::uint8_t>(bits));
-      bits = 0;
-      filled = 0;
+  Frame encode() {
+    const std::vector<Shape> shapes = source_.shapes();
+    const std::vector<Line> figure = source_.figure(step_.state), lines = source_.lines();
+    find_bounds(shapes, figure, lines);
+    put_scalars();
+    to_.append(source_.blocks());
+    const Shape body{
+        .pose = now_, .length = facts_.length, .width = facts_.width, .touched = frame_.collides};
+    put_bodies(to_, body, shapes);
+    put_lines(to_, Block::figure, figure);
+    put_lines(to_, Block::lines, lines);
+    if (!solve_.inputs.empty()) put_trajectories();
+    frame_.message = to_.take();
+    return std::move(frame_);
+  }
+
+ private:
+  void add(std::span<const float> sequence) {
+    sequences_.insert(sequences_.end(), sequence.begin(), sequence.end());
+  }
+  /// Adds samples that are evenly spread over the batch, so that the picture is as dense in every region.
+  void add_candidates() {
+    const SequenceBatch* batch = solve_.samples;
+    if (!batch || solve_.costs.empty()) return;
+    const std::size_t most = std::clamp(most_step_costs / std::max<std::size_t>(1, points_ * terms_),
+                                        least_candidates, most_candidates);
+    const auto samples = static_cast<std::size_t>(batch->samples());
+    const std::size_t count = std::min(most, samples);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t k = i * samples / count;
+      candidates_.push_back(k);
+      for (int row = 0; row < static_cast<int>(solve_.inputs.size()); ++row)
+        sequences_.push_back(batch->at(row / batch->inputs(), row % batch->inputs(), static_cast<int>(k)));
     }
   }
-  if (filled > 0) to.put(static_cast<std::uint8_t>(bits));
-  to.end();
-}
 
-/// Writes the cars that are tracked: the box of now, and the places of all hypotheses.
-void put_others(FrameWriter& to, const ControlStep& tick) {
-  if (tick.others.empty()) return;
-  to.begin(Block::others);
-  to.put(static_cast<std::uint32_t>(tick.others.size()));
-  for (const maps::PredictedObstacle& other : tick.others) {
-    to.put_f32({other.length, other.width, other.poses.front().pose.yaw});
-    to.put(static_cast<std::uint16_t>(other.hypotheses));
-    to.put(static_cast<std::uint16_t>(other.times()));
-    for (int k = 0; k < other.hypotheses; ++k) to.put_f32(other.weights[static_cast<std::size_t>(k)]);
-    to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
-    for (const maps::PredictedPose& place : other.poses) to.put_point({place.pose.x, place.pose.y});
+  void roll_out() {
+    add(solve_.inputs);
+    add(solve_.nominal.size() == solve_.inputs.size() ? solve_.nominal : solve_.inputs);
+    add_candidates();
+    const SequenceList& guides = solve_.guide_path.sequences > 0 ? solve_.guide_path : solve_.guides;
+    guides_ = static_cast<std::size_t>(guides.sequences);
+    add(guides.values);
+    if (facts_.length > 0 && solve_.variances.size() == solve_.inputs.size())
+      for (std::size_t i = 0; i < solve_.inputs.size(); ++i) {
+        add(solve_.inputs);
+        sequences_[sequences_.size() - solve_.inputs.size() + i] += nudge;
+      }
+    rolled_ = source_.roll_out(step_.state, sequences_);
+    poses_ = source_.poses(rolled_.states);
   }
-  to.end();
-}
+  /// The poses of some of the sequences.
+  Poses poses(std::size_t from, std::size_t count = 1) const {
+    return Poses(poses_).subspan(from * points_, count * points_);
+  }
+
+  void find_bounds(const std::vector<Shape>& shapes, const std::vector<Line>& figure,
+                   const std::vector<Line>& lines) {
+    Bounds& b = frame_.bounds = {now_.x, now_.y, now_.x, now_.y};
+    if (!facts_.course.empty()) {
+      b = bounds_of(facts_.course);
+      return;
+    }
+    if (!poses_.empty())
+      for (const maps::Pose& p : poses(0, 2)) b.include(p.x, p.y);
+    for (const auto* all : {&figure, &lines})
+      for (const Line& line : *all)
+        for (const maps::Point& p : line) b.include(p.x, p.y);
+    for (const Shape& s : shapes) {
+      const double reach = 0.5 * std::max(s.length, s.width);
+      if (s.corners.empty()) {
+        b.include(s.pose.x - reach, s.pose.y - reach);
+        b.include(s.pose.x + reach, s.pose.y + reach);
+      }
+      for (const maps::Point& p : s.corners) b.include(p.x, p.y);
+    }
+    if (const auto& map = facts_.map)
+      for (const double x : {0.0, map->width * map->resolution})
+        for (const double y : {0.0, map->height * map->resolution}) {
+          const maps::Point corner = maps::transform(map->origin, {x, y});
+          b.include(corner.x, corner.y);
+        }
+  }
+
+  void put_scalars() {
+    const bool is_solved = !solve_.inputs.empty();
+    std::vector<double> sums(terms_);
+    for (std::size_t i = 0; is_solved && i < points_ * terms_; ++i) sums[i % terms_] += rolled_.costs[i];
+    double cost = 0;
+    for (const double sum : sums) cost += sum;
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const auto known = [&](double value) { return is_solved ? value : none; };
+    const StepMeasures& m = step_.measures;
+    const bool counts = source_.measures().has_value();
+    to_.begin(Block::scalars);
+    to_.put({static_cast<double>(step_.tick), m.time, now_.x, now_.y, now_.yaw});
+    to_.put({static_cast<double>(source_.status(solve_)), known(solve_.minimum_cost)});
+    to_.put({known(solve_.expected_cost), known(solve_.effective_sample_size)});
+    to_.put({solve_.samples ? solve_.samples->samples() : 0.0, known(solve_.collided_share)});
+    to_.put({known(solve_.temperature), static_cast<double>(solve_.iterations), 1e3 * m.update_time});
+    to_.put({1e3 * step_.period, frame_.collides ? 1.0 : 0.0});
+    to_.put({static_cast<double>(m.collisions + (counts ? 0 : frame_.collides)), step_.prediction_step});
+    to_.put({static_cast<double>(step_.method), cost, static_cast<double>(solve_.symptom())});
+    for (const double sum : sums) to_.put(sum);
+    if (facts_.figures.empty()) {
+      for (const double value : step_.state) to_.put(value);
+      for (std::size_t i = 0; i < inputs_; ++i) to_.put(source_.inputs()[i]);
+    }
+    for (const double value : source_.figures()) to_.put(value);
+    to_.end();
+  }
+
+  void put_trajectories() {
+    const Bounds& b = frame_.bounds;
+    const double reach = 20 * std::max({b.x1 - b.x0, b.y1 - b.y0, 1e-3});
+    if (!candidates_.empty()) put_candidates(reach);
+    if (guides_ > 0) put_guides(reach);
+    to_.begin(Block::nominal);
+    to_.put(static_cast<std::uint32_t>(points_));
+    put_points(to_, poses(1), reach);
+    to_.end();
+    put_plan();
+    to_.begin(Block::covariance);  // variances of the first input
+    for (std::size_t i = 0; i < solve_.variances.size(); i += inputs_) to_.put(solve_.variances[i]);
+    to_.end();
+    put_inputs(to_, solve_, inputs_);
+    put_effective_samples(to_, solve_);
+    std::vector<double> costs = rolled_.costs;  // those of plan and candidates
+    const auto block = static_cast<std::ptrdiff_t>(points_ * terms_);
+    costs.erase(costs.begin() + block, costs.begin() + 2 * block);
+    costs.resize((1 + candidates_.size()) * points_ * terms_);
+    put_step_costs(to_, costs, terms_, points_);
+  }
+
+  /// Writes candidates: each term of their costs, the solver's cost, the weight, and 1 + the first state that
+  /// collides.
+  void put_candidates(double reach) {
+    to_.begin(Block::candidates);
+    to_.put(static_cast<std::uint16_t>(candidates_.size()));
+    to_.put(static_cast<std::uint16_t>(points_));
+    const std::size_t first = 2;  // candidate among the sequences
+    std::string collided;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      for (std::size_t t = 0; t < terms_; ++t) {
+        double sum = 0;
+        for (std::size_t k = 0; k < points_; ++k)
+          sum += rolled_.costs[((first + i) * points_ + k) * terms_ + t];
+        to_.put_f32(sum);
+      }
+      const std::size_t sample = candidates_[i];
+      to_.put(solve_.costs[sample]);
+      to_.put(sample < solve_.weights.size() ? solve_.weights[sample] : 0.0f);
+      const int at = rolled_.collisions[first + i];
+      const int place = at < 0 ? unknown_place : std::min(1 + at, unknown_place - 1);
+      collided += static_cast<char>(solve_.collided[sample] ? place : 0);
+    }
+    to_.append(collided);
+    to_.pad();
+    put_points(to_, poses(first, candidates_.size()), reach);
+    to_.end();
+  }
+
+  void put_guides(double reach) {
+    const auto guides = static_cast<std::size_t>(std::max(1, solve_.guides.sequences));
+    to_.begin(Block::guides);
+    to_.put(static_cast<std::uint16_t>(guides));
+    to_.put(static_cast<std::uint16_t>(guides_ / guides));
+    to_.put(static_cast<std::uint16_t>(points_));
+    to_.put(std::uint16_t{0});
+    put_points(to_, poses(2 + candidates_.size(), guides_), reach);
+    to_.end();
+  }
+
+  /// Returns the variance (m^2) of each state of the plan across its heading: the solver's variances of the
+  /// inputs, carried through the model to first order, by a difference quotient for each input.
+  std::vector<double> lateral_variances() const {
+    std::vector<double> variances(points_);
+    const Poses plan = poses(0);
+    const std::size_t first = 2 + candidates_.size() + guides_;
+    for (std::size_t j = 0; (first + j + 1) * points_ <= poses_.size(); ++j) {
+      const Poses moved = poses(first + j);
+      for (std::size_t k = j / inputs_ + 1; k < points_; ++k) {
+        const maps::Pose& p = plan[k];
+        const double across = -std::sin(p.yaw) * (moved[k].x - p.x) + std::cos(p.yaw) * (moved[k].y - p.y);
+        variances[k] +=
+            across * across / static_cast<double>(nudge * nudge) * static_cast<double>(solve_.variances[j]);
+      }
+    }
+    return variances;
+  }
+
+  void put_plan() {
+    const std::vector<double> variances = lateral_variances();
+    const std::size_t width = rolled_.states.size() / poses_.size();
+    const auto value = [&](std::size_t k, int index) {
+      return index < 0 ? 0 : rolled_.states[k * width + static_cast<std::size_t>(index)];
+    };
+    to_.begin(Block::plan);
+    to_.put(static_cast<std::uint32_t>(points_));
+    to_.put({now_.x, now_.y});
+    for (std::size_t k = 0; k < points_; ++k) {
+      const maps::Pose& p = poses_[k];
+      to_.put_f32({p.x - now_.x, p.y - now_.y, p.yaw, value(k, facts_.speed), value(k, facts_.steering)});
+      to_.put_f32(std::sqrt(variances[k]));
+    }
+    to_.end();
+  }
+
+  FrameSource& source_;
+  const SubjectFacts& facts_;
+  const SolveResult& solve_;
+  const StepFacts& step_;
+  std::size_t terms_, inputs_, points_;
+  maps::Pose now_;
+  std::vector<float> sequences_;         ///< [sequence][step][input]
+  std::vector<std::size_t> candidates_;  ///< index in the batch of each
+  std::size_t guides_ = 0;               ///< sequences of guides, in all iterations
+  Trajectories rolled_;
+  std::vector<maps::Pose> poses_;  ///< [sequence][point]
+  FrameWriter to_;
+  Frame frame_;
+};
 
 }  // namespace
 
-const std::vector<std::string>& scalar_names() {
-  static const std::vector<std::string> names = words_of(scalar_labels);
+Bounds bounds_of(std::span<const maps::ReferencePoint> course) {
+  Bounds b{course[0].x, course[0].y, course[0].x, course[0].y};
+  for (const maps::ReferencePoint& p : course) b.include(p.x, p.y);
+  return {b.x0 - course_room, b.y0 - course_room, b.x1 + course_room, b.y1 + course_room};
+}
+
+std::vector<std::string> scalar_names(const SubjectFacts& facts) {
+  std::vector<std::string> names = words_of(
+      "tick time x y yaw status minimum_cost expected_cost effective_samples samples collided_share "
+      "temperature iterations tick_ms deadline_ms contact contacts prediction_step method plan_cost "
+      "symptom");
+  for (const std::string& term : facts.terms) names.push_back(term + "_cost");
+  if (facts.figures.empty()) {
+    for (const std::string& state : facts.states) names.push_back("state." + state);
+    for (const std::string& input : facts.inputs) names.push_back("input." + input);
+  }
+  names.insert(names.end(), facts.figures.begin(), facts.figures.end());
   return names;
 }
 
-std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts) {
-  const sim::World& world = tick.world;
-  const sim::CarState& car = world.state(0);
-  const vehicle::PlannerOutput& out = tick.output;
-  const SolveResult* solve = out.solve;
-  const vehicle::ParameterEstimate& estimate = out.parameters;
-  const sim::LapTimer& laps = *world.laps(0);
-  const StageTimes times = solve ? solve->times : StageTimes{};
-  cost_ = {};
-  step_costs_.clear();
-  if (solve && !out.inputs.empty()) add_step_costs(predict(tick.planner, out.inputs));
-  FrameWriter to;
-  to.begin(Block::scalars);
-  const double none = std::numeric_limits<double>::quiet_NaN(), step = tick.step;
-  to.put({step, tick.time, car.x, car.y, car.yaw, car.speed, car.steer, car.yaw_rate, car.slip});
-  to.put({out.command.steer, out.command.speed, out.steer_estimate, static_cast<double>(out.status)});
-  to.put({cost_.distance, cost_.state - cost_.distance, cost_.collision});
-  if (solve) {
-    const double samples = solve->samples ? solve->samples->samples() : 0;
-    to.put({solve->minimum_cost, solve->expected_cost, solve->effective_sample_size, samples});
-    to.put({solve->collided_share, solve->temperature, static_cast<double>(solve->iterations)});
-  } else {
-    to.put({none, none, none, 0, none, none, 0});
-  }
-  to.put({1e3 * out.tick_time, 1e3 * times.draw, 1e3 * times.evaluate, 1e3 * times.guide});
-  to.put({1e3 * times.update, 1e3 * times.total, 1e3 * facts.deadline});
-  const int lap = laps.laps();
-  to.put({static_cast<double>(lap), tick.time - laps.lap_start_time()});
-  to.put({laps.progress() / world.track().lap_path()->length() - lap, laps.offset(), clearance_of(world)});
-  to.put({tick.seen.collides() ? 1.0 : 0.0, static_cast<double>(tick.collisions), tick.cost.total()});
-  to.put({facts.prediction_step, static_cast<double>(facts.method), cost_.state + cost_.collision});
-  if (estimate.friction > 0) {
-    const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
-    to.put({out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction});
-    to.put({estimate.cautious_friction, estimate.steering_gain, estimate.steering_offset, estimate.delay});
-  } else {
-    to.put({none, none, none, none, none, none, none});  // the tyres do not slip
-  }
-  const maps::Pose& rear = tick.odometry.pose;
-  to.put({rear.x, rear.y, rear.yaw, tick.odometry.speed,
-          static_cast<double>(solve ? solve->symptom() : Symptom::none)});
-  to.end();
-  put_scan(to, tick);
-  put_cost_map(to, tick);
-  put_others(to, tick);
-  if (!solve) return to.take();
-  put_candidates(to, tick);
-  put_guides(to, tick);
-  to.begin(Block::nominal);
-  to.put(static_cast<std::uint32_t>(states_of(tick.planner, solve->nominal)));
-  to.begin_points({car.x, car.y});
-  put_states(to, tick.planner, solve->nominal);
-  to.end();
-  put_plan(to, tick);
-  const auto inputs = static_cast<std::size_t>(tick.planner.solver().inputs());
-  to.put_covariance(solve->variances, inputs);
-  put_inputs(to, *solve, out.inputs, inputs);
-  put_effective_samples(to, *solve);
-  if (!out.inputs.empty()) put_step_costs(to, step_costs_, 3, states_of(tick.planner, out.inputs));
-  return to.take();
-}
-
-FrameEncoder::States FrameEncoder::predict(const vehicle::Planner& planner, std::span<const float> inputs) {
-  const std::size_t count = states_of(planner, inputs);
-  if (states_.size() < count) states_.resize(count);
-  const States states(states_.data(), count);
-  cost_ = planner.predict(inputs, states);
-  return states;
-}
-
-/// Keeps the cost of each state by term: distance, yaw and speed, collision.
-void FrameEncoder::add_step_costs(States states) {
-  vehicle::PredictedCost before;
-  for (const PredictedState& state : states) {
-    const vehicle::PredictedCost& sum = state.cost;
-    const double distance = sum.distance - before.distance;
-    step_costs_.insert(step_costs_.end(),
-                       {distance, sum.state - before.state - distance, sum.collision - before.collision});
-    before = sum;
-  }
-}
-
-void FrameEncoder::put_states(FrameWriter& to, const vehicle::Planner& planner,
-                              std::span<const float> inputs) {
-  for (const PredictedState& state : predict(planner, inputs)) to.put_point({state.pose.x, state.pose.y});
-}
-
-void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
-  const SolveResult& solve = *tick.output.solve;
-  if (!solve.samples || solve.costs.empty()) return;
-  const SequenceBatch& batch = *solve.samples;
-  const int count = std::min(sent_candidates, batch.samples()), steps = batch.steps();
-  const int inputs = batch.inputs();
-  sequence_.resize(static_cast<std::size_t>(steps * inputs));
-  FrameWriter points;  // the points follow the terms, and one prediction makes both
-  points.begin_points({tick.seen.pose.x, tick.seen.pose.y});
-  to.begin(Block::candidates);
-  to.put(static_cast<std::uint16_t>(count));
-  to.put(static_cast<std::uint16_t>(steps + 1));
-  std::string collided;  // 1 + the first state that collides
-  for (int i = 0; i < count; ++i) {
-    // Evenly spread over the samples, so that the picture is as dense in every region as they are.
-    const auto k = static_cast<int>(std::int64_t{i} * batch.samples() / count);
-    for (int row = 0; row < steps * inputs; ++row)
-      sequence_[static_cast<std::size_t>(row)] = batch.at(row / inputs, row % inputs, k);
-    const States states = predict(tick.planner, sequence_);
-    for (const PredictedState& state : states) points.put_point({state.pose.x, state.pose.y});
-    add_step_costs(states);
-    const auto first =
-        std::find_if(states.begin(), states.end(), [](const auto& each) { return each.cost.collided; });
-    const auto place =
-        first == states.end() ? unknown_place : std::min<std::ptrdiff_t>(1 + (first - states.begin()), 254);
-    const auto at = static_cast<std::size_t>(k);
-    to.put_f32({cost_.distance, cost_.state - cost_.distance, cost_.collision});
-    to.put(solve.costs[at]);
-    to.put(at < solve.weights.size() ? solve.weights[at] : 0.0f);
-    collided += static_cast<char>(solve.collided[at] ? place : 0);
-  }
-  to.append(collided);
-  to.pad();
-  to.append(points.take_blocks());
-  to.end();
-}
-
-void FrameEncoder::put_guides(FrameWriter& to, const ControlStep& tick) {
-  const SolveResult& solve = *tick.output.solve;
-  const SequenceList& guides = solve.guides;
-  const int path = guides.sequences > 0 ? solve.guide_path.sequences / guides.sequences : 0;
-  if (guides.sequences == 0) return;
-  const SequenceList& shown = path > 0 ? solve.guide_path : guides;
-  const std::size_t length = shown.values.size() / static_cast<std::size_t>(shown.sequences);
-  to.begin(Block::guides);
-  to.put(static_cast<std::uint16_t>(guides.sequences));
-  to.put(static_cast<std::uint16_t>(std::max(1, path)));
-  to.put(static_cast<std::uint16_t>(states_of(tick.planner, shown.values.first(length))));
-  to.put(std::uint16_t{0});
-  to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
-  const int sequences = std::max(1, path) * guides.sequences;
-  for (int i = 0; i < sequences; ++i)
-    put_states(to, tick.planner, shown.values.subspan(static_cast<std::size_t>(i) * length, length));
-  to.end();
-}
-
-/// Writes the plan with its lateral standard deviation: the solver's variances of the inputs, carried through
-/// the model to first order, by a difference quotient for each input.
-void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
-  const auto inputs = tick.output.inputs;
-  const auto& plan = tick.output.predicted;
-  const auto variances = tick.output.solve->variances;
-  constexpr float nudge = 0.01f;  // rad, m/s^2
-  const auto width = static_cast<std::size_t>(tick.output.inputs_per_step);
-  std::vector<double> spread(plan.size(), 0.0);
-  sequence_.assign(inputs.begin(), inputs.end());
-  for (std::size_t j = 0; j < inputs.size() && j < variances.size(); ++j) {
-    sequence_[j] += nudge;
-    const States moved = predict(tick.planner, sequence_);
-    sequence_[j] = inputs[j];
-    for (std::size_t k = j / width + 1; k < plan.size(); ++k) {
-      const maps::Pose& p = plan[k].pose;
-      const double across =
-          -std::sin(p.yaw) * (moved[k].pose.x - p.x) + std::cos(p.yaw) * (moved[k].pose.y - p.y);
-      spread[k] += across * across / static_cast<double>(nudge * nudge) * static_cast<double>(variances[j]);
-    }
-  }
-  to.begin(Block::plan);
-  to.put(static_cast<std::uint32_t>(plan.size()));
-  to.put(tick.seen.pose.x);
-  to.put(tick.seen.pose.y);
-  for (std::size_t k = 0; k < plan.size(); ++k) {
-    const PredictedState& state = plan[k];
-    to.put_f32({state.pose.x - tick.seen.pose.x, state.pose.y - tick.seen.pose.y, state.pose.yaw, state.speed,
-                state.steer, std::sqrt(spread[k])});
-  }
-  to.end();
+Frame encode_frame(FrameSource& source, const SolveResult& solve, const StepFacts& step) {
+  return StepEncoder(source, solve, step).encode();
 }
 
 }  // namespace slalom::view

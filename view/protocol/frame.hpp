@@ -1,55 +1,55 @@
 #pragma once
 
-#include <memory>
+#include <algorithm>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "slalom/evaluation/lap.hpp"
+#include "slalom/view/subject.hpp"
 
 /// The message of a control step contains everything that the page draws.
 namespace slalom::view {
 
 /// The names of the figures that each frame begins with, in their order.
-const std::vector<std::string>& scalar_names();
+std::vector<std::string> scalar_names(const SubjectFacts& facts);
 
-/// Facts about a control step that ControlStep does not contain.
+/// Facts about a control step whose plan has been made and not yet applied.
 struct StepFacts {
-  double deadline = 0;         ///< s that an update may take before the next is due
-  double prediction_step = 0;  ///< s, of the plan
-  int method = 0;              ///< index of the method that drove
+  int tick = 0;                ///< index of the control step
+  StepMeasures measures{};     ///< `collisions` without this step where the subject measures nothing itself
+  double period = 0;           ///< s of a control step
+  double prediction_step = 0;  ///< s of a step of the plan
+  int method = 0;              ///< index of the method
+  std::vector<double> state{};
 };
 
-/// Encodes control steps. The planner predicts where the candidates lead, outside of its measured time.
-class FrameEncoder {
- public:
-  /// Returns the message of a control step, without its bodies.
-  std::string encode(const evaluation::ControlStep& tick, const StepFacts& facts);
-
- private:
-  using States = std::span<vehicle::PredictedState>;
-  States predict(const vehicle::Planner& planner, std::span<const float> inputs);
-  void put_states(class FrameWriter& to, const vehicle::Planner& planner, std::span<const float> inputs);
-  void put_candidates(FrameWriter& to, const evaluation::ControlStep& tick);
-  void put_guides(FrameWriter& to, const evaluation::ControlStep& tick);
-  void put_plan(FrameWriter& to, const evaluation::ControlStep& tick);
-  void add_step_costs(States states);
-
-  std::vector<vehicle::PredictedState> states_;
-  std::vector<float> sequence_;
-  std::vector<double> step_costs_;  ///< those of plan and candidates, [trajectory][point][term]
-  vehicle::PredictedCost cost_;
+/// A rectangle along the axes, m.
+struct Bounds {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  /// Grows to include a point.
+  void include(double x, double y) {
+    x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+  }
 };
 
-/// Returns the block with the bodies of a world, to be appended to a frame. Body 0 is the driven car.
-std::string encode_bodies(const sim::World& world);
+/// Returns a rectangle around the line of a course, with some room beside it.
+Bounds bounds_of(std::span<const maps::ReferencePoint> course);
+
+/// A frame, and what else follows from its trajectories.
+struct Frame {
+  std::string message;
+  bool collides = false;  ///< whether the present state collides
+  Bounds bounds;          ///< around all that is drawn
+};
+
+/// Encodes a control step for which has just been solved. It rolls out plan, candidates and guides,
+/// outside of the measured time.
+Frame encode_frame(FrameSource& source, const SolveResult& solve, const StepFacts& step);
+
 /// Returns the block with the message `frame` of the ghost's control step, to be appended to a frame.
 std::string encode_ghost_frame(std::string_view frame);
-/// Returns the message with the map and the line of the course.
-std::string encode_scene(const evaluation::Environment& environment);
-
-/// Returns the distance from the driven car to the nearest wall or other body, m; negative if they overlap.
-double clearance_of(const sim::World& world);
+/// Returns the message with the map and the line of the course; empty if there is neither.
+std::string encode_scene(const SubjectFacts& facts);
 
 }  // namespace slalom::view

@@ -24,20 +24,6 @@ void FrameWriter::end() {
   pad();
 }
 
-void FrameWriter::put_body(std::size_t id, int kind, bool touched, const maps::Pose& at, double length,
-                           double width) {
-  put(static_cast<std::uint16_t>(id));
-  put(static_cast<std::uint8_t>(kind));
-  put(static_cast<std::uint8_t>(touched));
-  put_f32({at.x, at.y, at.yaw, length, width});
-}
-
-void FrameWriter::put_covariance(std::span<const float> variances, std::size_t inputs) {
-  begin(Block::covariance);
-  for (std::size_t row = 0; row < variances.size(); row += inputs) put(variances[row]);
-  end();
-}
-
 void FrameWriter::put_grid(const maps::OccupancyGrid& grid) {
   std::vector<std::uint32_t> runs;
   for (const maps::Occupancy cell : grid.cells) {

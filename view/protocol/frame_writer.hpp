@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,8 +36,6 @@ enum class Block : std::uint16_t {
   file = 30,
 };
 
-constexpr int unknown_place = 255;  ///< code of a candidate that collides, but not where
-
 /// The words of a text.
 std::vector<std::string> words_of(const char* text);
 
@@ -67,11 +64,6 @@ class FrameWriter {
     for (const double value : values) put_f32(value);
   }
   void put_pose(const maps::Pose& pose) { put({pose.x, pose.y, pose.yaw}); }
-  /// Writes a body of the block `bodies`; its length and width in m.
-  void put_body(std::size_t id, int kind, bool touched, const maps::Pose& at, double length, double width);
-  /// Writes the variance of the first input of each step, [step][input].
-  void put_covariance(std::span<const float> variances, std::size_t inputs);
-
   /// Writes the block with a map: runs of equal cells, the value in the upper 8 bits, the length in the
   /// lower 24.
   void put_grid(const maps::OccupancyGrid& grid);

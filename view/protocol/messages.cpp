@@ -4,34 +4,47 @@
 #include <cmath>
 
 #include "json/json.hpp"
-#include "slalom/core/option_access.hpp"
-#include "slalom/vehicle/planner/planner.hpp"
-#include "view/protocol/frame.hpp"
-#include "view/protocol/page_json.hpp"
+#include "slalom/solvers/symptom.hpp"
 
 namespace slalom::view {
 namespace {
 
-/// A lap's seed and the program's threads take their place.
-bool is_shown(const std::string& section, const std::string& option, const std::string& method) {
-  if (section == "vehicle" || section == "planner") return true;
-  return section == method && option != "seed" && option != "threads";
+/// Whether the page shows an option. In a scenario, a lap's seed and the program's threads take their place.
+bool is_shown(const OptionsFacts& facts, const std::string& section, const std::string& option) {
+  if (!facts.fixes_seed || section == "vehicle" || section == "planner") return true;
+  return section == facts.names.method && option != "seed" && option != "threads";
 }
 
-/// "section.option=value" of all that differs from the configuration that was loaded.
+/// The declaration of an option, its value, and the value that was loaded.
+Json option_json(const OptionEntry& entry, const std::string& loaded) {
+  const Declaration& d = entry.declaration;
+  Json json = {{"name", d.name},   {"symbol", d.symbol},       {"unit", d.unit},
+               {"help", d.help},   {"type", type_name(entry)}, {"value", to_text(entry.value)},
+               {"default", loaded}};
+  if (std::isfinite(d.min)) json["min"] = d.min;
+  if (std::isfinite(d.max)) json["max"] = d.max;
+  if (!entry.choices.empty()) json["choices"] = entry.choices;
+  return json;
+}
+
+std::string loaded_text(const OptionsFacts& facts, const std::string& key, const OptionEntry& entry) {
+  const auto found = facts.loaded.find(key);
+  return found == facts.loaded.end() ? to_text(entry.value) : found->second;
+}
+
+/// "section.option=value" of all that differs from what was loaded.
 std::vector<std::string> changed_options(const OptionsFacts& facts) {
   std::vector<std::string> changed;
-  const auto now = vehicle::list_sections(facts.now), loaded = vehicle::list_sections(facts.loaded);
-  for (std::size_t i = 0; i < now.size(); ++i)
-    for (std::size_t k = 0; k < now[i].options.size(); ++k)
-      if (!(now[i].options[k] == loaded[i].options[k]))
-        changed.push_back(now[i].name + "." + now[i].options[k].declaration.name + "=" +
-                          to_text(now[i].options[k].value));
+  for (const OptionSection& section : facts.sections)
+    for (const OptionEntry& entry : section.options) {
+      const std::string key = section.name + "." + entry.declaration.name, now = to_text(entry.value);
+      if (now != loaded_text(facts, key, entry)) changed.push_back(key + "=" + now);
+    }
   return changed;
 }
 
 std::string changed_yaml(const OptionsFacts& facts, const std::vector<std::string>& changed) {
-  std::string yaml = "base: " + facts.names.config + "\n", section;
+  std::string yaml = facts.names.config.empty() ? "" : "base: " + facts.names.config + "\n", section;
   for (const std::string& each : changed) {
     const auto dot = each.find('.'), equals = each.find('=');
     if (each.substr(0, dot) != section) {
@@ -43,14 +56,96 @@ std::string changed_yaml(const OptionsFacts& facts, const std::vector<std::strin
   return yaml;
 }
 
+std::vector<std::string> abilities(const SubjectFacts& facts) {
+  std::vector<std::string> words;
+  if (facts.can_place) words.emplace_back("place");
+  if (facts.can_move) words.emplace_back("move");
+  if (!facts.course.empty())
+    words.insert(words.end(), {"add", "scenario", "real_time", "save", "ghost", "undo"});
+  return words;
+}
+
+Json statuses_json(const SubjectFacts& facts) {
+  if (!facts.statuses.empty()) return facts.statuses;
+  Json names = Json::array();
+  for (int i = 0; i <= static_cast<int>(Status::invalid_time); ++i)
+    names.push_back(name(static_cast<Status>(i)));
+  return names;
+}
+
+/// The names of all symptoms of a solve and what they mean, by their values.
+Json symptoms_json() {
+  Json symptoms = Json::array();
+  for (int i = 0; i <= static_cast<int>(Symptom::no_progress); ++i) {
+    const auto symptom = static_cast<Symptom>(i);
+    symptoms.push_back({{"name", name(symptom)}, {"explanation", explanation(symptom)}});
+  }
+  return symptoms;
+}
+
 }  // namespace
 
 int Choices::method_index(const std::string& method) const {
   return static_cast<int>(std::ranges::find(methods, method) - methods.begin());
 }
 
+std::string hello_message(const SubjectFacts& facts, const Choices& choices, double history,
+                          double control_period) {
+  Json hello = {
+      {"type", "hello"},
+      {"protocol", 2},
+      {"title", facts.title.empty() ? "your problem" : facts.title},
+      {"scalars", scalar_names(facts)},
+      {"statuses", statuses_json(facts)},
+      {"symptoms", symptoms_json()},
+      {"courses", choices.courses},
+      {"methods", choices.methods},
+      {"configurations", choices.configurations},
+      {"terms", facts.terms},
+      {"states", facts.states},
+      {"inputs", facts.inputs},
+      {"body",
+       {{"length", facts.length}, {"width", facts.width}, {"front", facts.front}, {"rear", facts.rear}}},
+      {"can", abilities(facts)},
+      {"history_seconds", history},
+      {"control_period", control_period}};
+  if (const auto& scanner = facts.scanner)
+    hello["lidar"] = {{"angle_min", scanner->angle_min},
+                      {"angle_increment", scanner->angle_increment},
+                      {"range_max", scanner->range_max}};
+  return json_text(hello);
+}
+
+void add_texts(OptionTexts& to, const std::vector<OptionSection>& sections) {
+  for (const OptionSection& section : sections)
+    for (const OptionEntry& entry : section.options)
+      to.emplace(section.name + "." + entry.declaration.name, to_text(entry.value));
+}
+
+std::string options_message(const OptionsFacts& facts) {
+  Json sections = Json::array();
+  for (const OptionSection& section : facts.sections) {
+    Json options = Json::array();
+    for (const OptionEntry& entry : section.options) {
+      const std::string option = entry.declaration.name;
+      if (is_shown(facts, section.name, option))
+        options.push_back(option_json(entry, loaded_text(facts, section.name + "." + option, entry)));
+    }
+    if (!options.empty()) sections.push_back({{"name", section.name}, {"options", options}});
+  }
+  const std::vector<std::string> changed = changed_options(facts);
+  return json_text({{"type", "options"},
+                    {"sections", sections},
+                    {"changed", changed},
+                    {"command_line", command_line(facts)},
+                    {"yaml", changed_yaml(facts, changed)},
+                    {"undo", facts.undo},
+                    {"redo", facts.redo}});
+}
+
 std::string command_line(const OptionsFacts& facts) {
   const ScenarioNames& names = facts.names;
+  if (names.course.empty()) return "";
   std::string line = "slalom drive --course " + names.course + " --method " + names.method + " --config " +
                      names.config + " --seed " + std::to_string(names.seed) + " --obstacles " +
                      std::to_string(names.obstacles) +
@@ -60,43 +155,7 @@ std::string command_line(const OptionsFacts& facts) {
   return line;
 }
 
-std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
-                          double control_period) {
-  const sim::WorldOptions world = environment.world_options();
-  const sim::CarParameters& car = world.car;
-  return json_text({{"type", "hello"},
-                    {"protocol", 2},
-                    {"title", environment.course.name},
-                    {"scalars", scalar_names()},
-                    {"statuses", names_json(vehicle::PlannerStatus::solver_degenerate)},
-                    {"symptoms", symptoms_json()},
-                    {"courses", choices.courses},
-                    {"methods", choices.methods},
-                    {"configurations", choices.configurations},
-                    {"terms", {"distance", "yaw", "collision"}},
-                    {"states", Json::array()},
-                    {"inputs", {"steering, rad", "acceleration, m/s^2"}},
-                    {"body", body_json(car.length, car.width, car.front_length, car.rear_length)},
-                    {"can", {"place", "move", "add", "scenario", "real_time", "save", "ghost", "undo"}},
-                    {"lidar",
-                     {{"angle_min", world.lidar.angle_min()},
-                      {"angle_increment", world.lidar.angle_increment()},
-                      {"range_max", world.lidar.range_max}}},
-                    {"history_seconds", history},
-                    {"control_period", control_period}});
-}
-
-/// Around the line of a course.
-Bounds bounds_of(const evaluation::Environment& environment) {
-  constexpr double room = 1.5;  // m beside the line
-  const auto& path = environment.path;
-  Bounds b{path[0].x, path[0].y, path[0].x, path[0].y};
-  for (const maps::ReferencePoint& p : path) b.include(p.x, p.y);
-  return {b.x0 - room, b.y0 - room, b.x1 + room, b.y1 + room};
-}
-
-std::string state_message(const DriveState& facts, const evaluation::Environment& environment,
-                          double control_period) {
+std::string state_message(const DriveState& facts) {
   Json laps = Json::array();
   for (const LapNote& lap : facts.laps)
     laps.push_back({{"lap", lap.lap},
@@ -105,58 +164,33 @@ std::string state_message(const DriveState& facts, const evaluation::Environment
                     {"method", lap.method},
                     {"ghost", lap.ghost}});
   const ScenarioNames& names = facts.names;
-  Json state = {{"type", "state"},
-                {"course", names.course},
-                {"description", environment.course.description},
-                {"length", environment.course.length},
-                {"method", names.method},
-                {"config", names.config},
-                {"evaluation", evaluation::name(environment.protocol)},
-                {"seed", std::to_string(names.seed)},
-                {"obstacles", names.obstacles},
-                {"opponents", names.opponents},
-                {"paused", facts.paused},
-                {"real_time", facts.real_time},
-                {"rate", facts.rate},
-                {"pace", facts.pace},
-                {"tick", facts.tick},
-                {"newest", facts.newest},
-                {"oldest", facts.oldest},
-                {"time", facts.time},
-                {"control_period", control_period},
-                {"laps", laps},
-                {"ghost", facts.ghost},
-                {"ghost_label", facts.ghost_label},
-                {"generation", facts.generation},
-                {"edited", facts.edited},
-                {"introduction", facts.introduction},
-                {"bounds", bounds_json(bounds_of(environment))}};
-  return json_text(state);
-}
-
-std::string options_message(const OptionsFacts& facts) {
-  std::vector<Json> sections;
-  const auto now = vehicle::list_sections(facts.now), loaded = vehicle::list_sections(facts.loaded);
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    Json options = Json::array();
-    for (std::size_t k = 0; k < now[i].options.size(); ++k) {
-      const OptionEntry& entry = now[i].options[k];
-      if (is_shown(now[i].name, entry.declaration.name, facts.names.method))
-        options.push_back(option_json(entry, to_text(loaded[i].options[k].value)));
-    }
-    if (options.empty()) continue;
-    // The method's own options come first: they are changed most often.
-    const auto place = now[i].name == facts.names.method ? sections.begin() : sections.end();
-    sections.insert(place, Json{{"name", now[i].name}, {"options", options}});
-  }
-  const auto changed = changed_options(facts);
-  return json_text({{"type", "options"},
-                    {"sections", sections},
-                    {"changed", changed},
-                    {"command_line", command_line(facts)},
-                    {"yaml", changed_yaml(facts, changed)},
-                    {"undo", facts.undo},
-                    {"redo", facts.redo}});
+  const Bounds& b = facts.bounds;
+  return json_text({{"type", "state"},
+                    {"course", names.course},
+                    {"description", names.description},
+                    {"length", names.length},
+                    {"method", names.method},
+                    {"config", names.config},
+                    {"evaluation", names.evaluation},
+                    {"seed", std::to_string(names.seed)},
+                    {"obstacles", names.obstacles},
+                    {"opponents", names.opponents},
+                    {"paused", facts.paused},
+                    {"real_time", facts.real_time},
+                    {"rate", facts.rate},
+                    {"pace", facts.pace},
+                    {"tick", facts.tick},
+                    {"newest", facts.newest},
+                    {"oldest", facts.oldest},
+                    {"time", facts.time},
+                    {"control_period", facts.control_period},
+                    {"laps", laps},
+                    {"ghost", facts.ghost},
+                    {"ghost_label", facts.ghost_label},
+                    {"generation", facts.generation},
+                    {"edited", facts.edited},
+                    {"introduction", facts.introduction},
+                    {"bounds", {b.x0, b.y0, b.x1, b.y1}}});
 }
 
 }  // namespace slalom::view

@@ -47,7 +47,8 @@ double effective_samples(std::span<const float> costs, float least, double tempe
 
 }  // namespace
 
-void put_inputs(FrameWriter& to, const SolveResult& solve, std::span<const float> plan, std::size_t inputs) {
+void put_inputs(FrameWriter& to, const SolveResult& solve, std::size_t inputs) {
+  const std::span<const float> plan = solve.inputs;
   to.begin(Block::inputs);
   to.put(static_cast<std::uint16_t>(plan.size() / inputs));
   to.put(static_cast<std::uint16_t>(inputs));

@@ -8,9 +8,9 @@
 /// The blocks of a message that follow from a solver's result alone.
 namespace slalom::view {
 
-/// Writes the inputs of each step: those of the plan, the nominal sequence, and the guide that became
-/// most like it, after its first of several steps.
-void put_inputs(FrameWriter& to, const SolveResult& solve, std::span<const float> plan, std::size_t inputs);
+/// Writes the `inputs` of each step: those of the plan, the nominal sequence, and the guide that became most
+/// like it, after its first of several steps.
+void put_inputs(FrameWriter& to, const SolveResult& solve, std::size_t inputs);
 
 /// Writes the cost of each state by term, [trajectory][point][term], as a byte between the least and the
 /// largest value of its trajectory and term.

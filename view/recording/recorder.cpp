@@ -8,7 +8,7 @@
 
 #include "json/json.hpp"
 #include "view/embedded.hpp"
-#include "view/protocol/frame.hpp"
+#include "view/protocol/car_frame.hpp"
 #include "view/recording/small_frame.hpp"
 
 namespace slalom::view {
@@ -46,7 +46,7 @@ Json figures_schema(bool wall_clock) {
   Json properties = {{"timestamp",
                       {{"type", "object"},
                        {"properties", {{"sec", {{"type", "integer"}}}, {"nsec", {{"type", "integer"}}}}}}}};
-  for (const std::string& name : scalar_names())
+  for (const std::string& name : car_scalars())
     if (is_wall_clock(name) == wall_clock) properties[name] = {{"type", {"number", "null"}}};
   if (!wall_clock) {
     properties["covariance"] = {{"type", "array"}, {"items", {{"type", "number"}}}};
@@ -149,7 +149,7 @@ void Recorder::add_course(std::string_view message) {
 std::string Recorder::without_wall_clock(std::string_view frame, const FrameReader& reader) const {
   std::string copy(frame);
   const double none = std::numeric_limits<double>::quiet_NaN();
-  const auto& names = scalar_names();
+  const auto& names = car_scalars();
   const auto erase = [&](std::size_t scalars) {
     for (std::size_t i = 0; i < names.size(); ++i)
       if (is_wall_clock(names[i])) std::memcpy(copy.data() + scalars + 8 * i, &none, sizeof none);
@@ -163,7 +163,7 @@ std::string Recorder::without_wall_clock(std::string_view frame, const FrameRead
 void Recorder::add_frame(std::string_view frame) {
   const FrameReader reader(frame);
   PayloadReader payload(reader.block(Block::scalars));
-  std::vector<double> scalars(scalar_names().size());
+  std::vector<double> scalars(car_scalars().size());
   for (double& each : scalars) each = payload.get<double>();
   constexpr std::size_t time_index = 1;
   time_ = offset_ + static_cast<std::uint64_t>(std::llround(1e9 * scalars[time_index]));
@@ -193,7 +193,7 @@ void Recorder::finish() {
 
 void Recorder::add_tick(const FrameReader& reader, const std::vector<double>& scalars) {
   Json tick = {{"timestamp", foxglove::timestamp(time_)}}, times = tick;
-  const auto& names = scalar_names();
+  const auto& names = car_scalars();
   for (std::size_t i = 0; i < names.size(); ++i)
     (is_wall_clock(names[i]) ? times : tick)[names[i]] =
         is_exact(names[i]) ? scalars[i] : short_value(scalars[i]);

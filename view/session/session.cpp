@@ -18,13 +18,6 @@ constexpr double beside = 1.5;          // m to either side of the car's axis
 constexpr double behind = 0.6;          // m from the centre of a car to that of a car that it has passed
 constexpr int max_passing_ticks = 120;  // a car may be blocked
 
-/// The message of a tick: the blocks of the car, the bodies of its world, and the same of the ghost.
-std::string frame_of(const std::string& car, const std::string& ghost, const Drives& drives) {
-  const std::string frame = car + encode_bodies(drives.world());
-  if (!drives.ghost || ghost.empty()) return frame;
-  return frame + encode_ghost_frame(ghost + encode_bodies(drives.ghost->world()));
-}
-
 /// Whether a body that does not drive lies ahead of the first car of a world, or beside it.
 bool has_obstacle_near(const sim::World& world) {
   const sim::CarState& car = world.state(0);
@@ -48,9 +41,13 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   // Everything that may throw comes before anything is replaced.
   const evaluation::Driver driver{loaded.configuration, names.method};
   Drives drives{evaluation::LapDrive({loaded.environment, driver, loaded.lap}, names.seed)};
-  scene_ = shared(encode_scene(*loaded.environment));
+  facts_ = car_facts(loaded.environment.get());
+  scene_ = shared(encode_scene(*facts_));
   loaded_ = std::move(loaded.configuration);
-  state_.names = names;
+  loaded_texts_.clear();
+  add_texts(loaded_texts_, sections_of(loaded_, names.method));
+  state_.names = with_course(names, *loaded.environment);
+  state_.bounds = bounds_of(facts_->course);
   undo_.clear();
   redo_.clear();
   server_.send(0, {scene_, true});
@@ -84,12 +81,12 @@ void Session::drive_tick(bool is_shown) {
   std::string ghost, frame;
   const Delays delays = state_.real_time ? last_updates_ : Delays{};
   const auto on_ghost = [&](const evaluation::ControlStep& step) {
-    ghost = encoder_.encode(step, facts_of(*drives.ghost));
+    ghost = encode_ghost_frame(frame_of(*drives.ghost, step));
     last_updates_.ghost = step.output.tick_time;
   };
   const int number = drives.ticks();
   const auto on_car = [&](const evaluation::ControlStep& step) {
-    frame = frame_of(encoder_.encode(step, facts_of(drives.car)), ghost, drives);
+    frame = frame_of(drives.car, step) + ghost;
     last_updates_.car = step.output.tick_time;
   };
   drives.tick(delays, on_car, on_ghost);
@@ -102,11 +99,10 @@ void Session::drive_tick(bool is_shown) {
   if (is_shown) offer_newest();
 }
 
-StepFacts Session::facts_of(const evaluation::LapDrive& drive) const {
+std::string Session::frame_of(const evaluation::LapDrive& drive, const evaluation::ControlStep& step) const {
   const evaluation::Driver& driver = drive.setup().driver;
-  return {.deadline = drive.setup().control_period(),
-          .prediction_step = driver.configuration.vehicle.time_step,
-          .method = options_.choices.method_index(driver.method)};
+  return encode_car(*facts_, step, drive.setup().control_period(), driver.configuration.vehicle.time_step,
+                    options_.choices.method_index(driver.method));
 }
 
 void Session::note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost) {

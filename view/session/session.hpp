@@ -7,8 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "view/protocol/frame.hpp"
-#include "view/protocol/messages.hpp"
+#include "view/protocol/car_frame.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/session/drives.hpp"
 #include "view/session/playback.hpp"
@@ -62,7 +61,7 @@ class Session final : public Playback<Drives> {
   void drive_tick(bool is_shown);
   void slow_down();
   void note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost);
-  StepFacts facts_of(const evaluation::LapDrive& drive) const;
+  std::string frame_of(const evaluation::LapDrive& drive, const evaluation::ControlStep& step) const;
 
   // Changing the drive, from the tick that is shown on.
   bool prepare_change() override;
@@ -92,17 +91,18 @@ class Session final : public Playback<Drives> {
   const evaluation::LapSetup& setup() const { return drives_->car.setup(); }
   const evaluation::Driver& driver() const { return setup().driver; }
   double control_period() const override { return setup().control_period(); }
-  std::size_t scalars() const override { return scalar_names().size(); }
+  std::size_t scalars() const override { return car_scalars().size(); }
 
   SessionOptions options_;
-  vehicle::Configuration loaded_;             ///< the configuration of the scenario, without changes
+  vehicle::Configuration loaded_;  ///< the configuration of the scenario, without changes
+  OptionTexts loaded_texts_;       ///< the same as text
+  std::shared_ptr<const SubjectFacts> facts_;
   std::shared_ptr<const std::string> scene_;  ///< message with the course
   int acted_ = 0;                             ///< ticks before the last change
   std::vector<Change> undo_, redo_;           ///< changes to undo and to do again, newest last
   int drag_ = 0;                              ///< the drag of the last change
   DriveState state_;                          ///< `state` fills in what follows from drives and timeline
 
-  FrameEncoder encoder_;
   Delays last_updates_;     ///< s of wall clock
   int passing_ticks_ = -1;  ///< ticks of the introduction since the cars came to the obstacle; -1 before
   bool are_options_changed_ = false;

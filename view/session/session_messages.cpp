@@ -41,7 +41,7 @@ void Session::tell() {
 }
 
 std::string Session::hello() const {
-  return hello_message(*setup().environment, options_.choices, stored_seconds, control_period());
+  return hello_message(*facts_, options_.choices, stored_seconds, control_period());
 }
 
 std::string Session::state() const {
@@ -58,15 +58,17 @@ std::string Session::state() const {
   now.edited = drives_->edited;
   now.ghost = drives_->ghost ? drives_->ghost->setup().driver.method : "";
   now.ghost_label = drives_->ghost_label;
-  return state_message(now, *setup().environment, control_period());
+  now.control_period = control_period();
+  return state_message(now);
 }
 
 OptionsFacts Session::options_facts() const {
   ScenarioNames names = state_.names;
   names.method = driver().method;
   return {.names = names,
-          .now = driver().configuration,
-          .loaded = loaded_,
+          .sections = sections_of(driver().configuration, names.method),
+          .fixes_seed = true,
+          .loaded = loaded_texts_,
           .further_arguments = options_.further_arguments,
           .undo = undo_.size(),
           .redo = redo_.size()};
