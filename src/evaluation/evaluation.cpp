@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "evaluation/json.hpp"
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/worker_threads.hpp"

@@ -15,8 +15,6 @@ sim::WorldOptions world_options(const LapSetup& setup);
 long long steps_per_command(const LapSetup& setup, const sim::WorldOptions& world) noexcept;
 /// The path of the environment with the speeds of the lap's settings.
 std::vector<maps::ReferencePoint> path_of(const LapSetup& setup);
-/// Makes the planner that `setup.driver` describes.
-vehicle::Planner make_planner(const LapSetup& setup);
 /// m before the end of an open path, from where on a car that stands has finished.
 constexpr double finish_tolerance = 0.5;
 /// Whether the finish of a lap is the end of an open path.

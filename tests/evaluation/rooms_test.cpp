@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/rooms/mover_watch.hpp"
 #include "slalom/core/random.hpp"
+#include "slalom/evaluation/rooms/mover_watch.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "slalom/sim/room/crowd.hpp"

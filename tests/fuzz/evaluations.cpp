@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "fuzz/target.hpp"
+#include "json/json.hpp"
 #include "slalom/evaluation/lap_log.hpp"
 #include "slalom/evaluation/results.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/racing/race_result.hpp"
 

@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "fuzz/target.hpp"
+#include "json/json.hpp"
 #include "slalom/vehicle/model/identification.hpp"
-#include "src/evaluation/json.hpp"
 #include "support/promise.hpp"
 #include "tools/recording/driven_recording.hpp"
 #include "view/recording/mcap_writer.hpp"

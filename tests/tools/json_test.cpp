@@ -1,5 +1,5 @@
 // JSON that is read from files: limits, and errors that name the key.
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "bench/workload/measurements.hpp"
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/build_id.hpp"
 #include "tools/scenario/scenario.hpp"

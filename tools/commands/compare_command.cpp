@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/results.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/comparison.hpp"

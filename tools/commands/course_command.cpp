@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_pictures.hpp"

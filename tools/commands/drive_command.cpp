@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/statistics.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_pictures.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"

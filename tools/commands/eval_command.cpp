@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/report/report.hpp"

@@ -1,9 +1,9 @@
 #include <memory>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/model/identification.hpp"
 #include "slalom/vehicle/model/tyre_identification.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/recording/driven_recording.hpp"
 #include "tools/scenario/scenario.hpp"

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <memory>
 
+#include "json/json.hpp"
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/commands/navigate_report.hpp"
 #include "tools/scenario/scenario.hpp"

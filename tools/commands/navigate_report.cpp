@@ -6,8 +6,8 @@
 #include <numbers>
 #include <span>
 
+#include "json/json.hpp"
 #include "slalom/evaluation/statistics.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/drawing/map_picture.hpp"
 

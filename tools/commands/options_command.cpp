@@ -3,7 +3,7 @@
 #include <iostream>
 #include <memory>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"

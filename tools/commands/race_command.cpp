@@ -3,10 +3,10 @@
 #include <optional>
 #include <utility>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/race.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/race_picture.hpp"

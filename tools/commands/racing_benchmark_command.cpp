@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/racing_benchmark.hpp"

@@ -6,13 +6,12 @@
 #include <cstdio>
 #include <optional>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/statistics.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "slalom/vehicle/localisation/localiser.hpp"
-#include "src/evaluation/json.hpp"
-#include "src/evaluation/lap_setup.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/drawing/course_pictures.hpp"
 #include "tools/recording/driven_recording.hpp"

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "json/json.hpp"
 #include "slalom/vehicle/course/track_generator.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_pictures.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/command_line/words.hpp"
 
 namespace slalom::tools {

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/command_line/words.hpp"
 
 namespace slalom::tools {

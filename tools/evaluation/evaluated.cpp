@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "json/json.hpp"
 #include "slalom/core/version.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/comparison.hpp"

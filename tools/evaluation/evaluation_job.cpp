@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <thread>
 
+#include "json/json.hpp"
 #include "slalom/core/instruction_set.hpp"
 #include "slalom/core/version.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/evaluation/build_id.hpp"

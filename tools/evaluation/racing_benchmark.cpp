@@ -5,12 +5,12 @@
 #include <numbers>
 #include <utility>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/drive.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/follow_the_gap.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
-#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 namespace {

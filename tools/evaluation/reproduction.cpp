@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/evaluation/paper_program.hpp"
 

@@ -1,8 +1,8 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 
 namespace slalom::tools {

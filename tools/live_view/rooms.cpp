@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "slalom/evaluation/rooms/room_world.hpp"
 #include "slalom/navigation/navigation_problem.hpp"
 #include "slalom/view/serve.hpp"
-#include "src/evaluation/rooms/room_world.hpp"
 #include "tools/live_view/subjects.hpp"
 
 namespace slalom::tools {

@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <random>
 
+#include "json/json.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 
 namespace slalom::tools {

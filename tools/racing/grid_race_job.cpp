@@ -5,10 +5,10 @@
 #include <mutex>
 #include <optional>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/racing/grid_race_result.hpp"
 #include "tools/scenario/lap_json.hpp"
 #include "tools/terminal/interrupt.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/command_line/words.hpp"
 
 namespace slalom::tools {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <numeric>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/read_file.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 
 namespace slalom::tools {

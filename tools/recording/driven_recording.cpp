@@ -7,11 +7,11 @@
 #include <limits>
 #include <string_view>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/sim/lidar.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "view/recording/mcap_reader.hpp"
 

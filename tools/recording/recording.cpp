@@ -1,9 +1,9 @@
 #include "tools/recording/recording.hpp"
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/core/version.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/live_view/view_setup.hpp"
 
 namespace slalom::tools {

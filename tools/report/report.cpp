@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/core/version.hpp"
-#include "src/evaluation/json.hpp"
 #include "view/recording/encodings.hpp"
 
 namespace slalom::tools {

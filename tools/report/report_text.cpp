@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/report/report.hpp"
 

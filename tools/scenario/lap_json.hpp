@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "json/json.hpp"
 #include "slalom/evaluation/lap.hpp"
-#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <system_error>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/version.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/vehicle/course/course_check.hpp"
-#include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
 
 namespace slalom::tools {

@@ -2,8 +2,8 @@
 
 #include <iostream>
 
+#include "json/json.hpp"
 #include "slalom/core/files/write_file.hpp"
-#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
-#include "src/evaluation/json.hpp"
 #include "view/protocol/frame_reader.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/replay.hpp"

@@ -1,6 +1,6 @@
 #include <utility>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "view/problem/problem_session.hpp"
 
 namespace slalom::view {

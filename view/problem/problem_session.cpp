@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "json/json.hpp"
 #include "slalom/solvers/registry.hpp"
-#include "src/evaluation/json.hpp"
 
 namespace slalom::view {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "json/json.hpp"
 #include "slalom/solvers/symptom.hpp"
-#include "src/evaluation/json.hpp"
 
 namespace slalom::view {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "json/json.hpp"
 #include "slalom/maps/pose.hpp"
-#include "src/evaluation/json.hpp"
 
 /// Foxglove messages. Lengths are rounded to 0.1 mm, and angles to 1e-6 rad; what is not finite is 0.
 namespace slalom::view::foxglove {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "view/embedded.hpp"
 #include "view/protocol/car_frame.hpp"
 #include "view/recording/small_frame.hpp"

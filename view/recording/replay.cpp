@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
-#include "src/evaluation/json.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/mcap_reader.hpp"
 #include "view/recording/small_frame.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 
 namespace slalom::view {
 namespace {

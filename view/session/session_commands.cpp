@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "view/session/session.hpp"
 
 namespace slalom::view {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "src/evaluation/json.hpp"
+#include "json/json.hpp"
 #include "view/embedded.hpp"
 #include "view/protocol/frame_writer.hpp"
 #include "view/recording/encodings.hpp"

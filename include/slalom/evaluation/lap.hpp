@@ -101,6 +101,9 @@ struct LapSetup {
   double length() const;
 };
 
+/// Makes the planner that `setup.driver` describes. Throws std::invalid_argument as LapSetup::validate does.
+vehicle::Planner make_planner(const LapSetup& setup);
+
 /// Drives cars on a course in closed loop and measures the first one. The caller may change the world and the
 /// driver between steps; the same changes at the same steps give the same drive.
 class LapDrive {

@@ -1,4 +1,4 @@
-#include "evaluation/rooms/mover_watch.hpp"
+#include "slalom/evaluation/rooms/mover_watch.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -5,10 +5,10 @@
 #include <limits>
 #include <span>
 
-#include "evaluation/rooms/room_world.hpp"
 #include "slalom/core/math.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/evaluation/drive.hpp"
+#include "slalom/evaluation/rooms/room_world.hpp"
 #include "slalom/evaluation/statistics.hpp"
 
 namespace slalom::evaluation {

@@ -1,4 +1,4 @@
-#include "evaluation/rooms/room_world.hpp"
+#include "slalom/evaluation/rooms/room_world.hpp"
 
 #include <algorithm>
 #include <chrono>

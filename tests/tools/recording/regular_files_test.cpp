@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/network/mlp.hpp"
 #include "slalom/evaluation/lap_log.hpp"
@@ -12,7 +13,6 @@
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
-#include "src/evaluation/json.hpp"
 #include "support/temporary_folder.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/racing/race_result.hpp"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "mover_watch.hpp"
 #include "slalom/core/random.hpp"
+#include "slalom/evaluation/rooms/mover_watch.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "slalom/navigation/scan_map.hpp"
@@ -25,13 +25,15 @@ SolverOptions with_seed(SolverOptions solver, std::uint64_t seed);
 /// A robot in a room, among people. Each control period has `parts` steps.
 class RoomWorld {
  public:
-  static constexpr int parts = 5;
+  static constexpr int parts = 5;  ///< steps of a control period
 
+  /// Puts the robot at its start, and the walkers where the seed has them.
   RoomWorld(const RoomScenario& scenario, std::uint64_t seed, const maps::Pose& start);
 
   /// Moves robot and people. The robot has the velocity that the only command was a while ago.
   void step(std::span<const navigation::Velocity> commands);
 
+  /// The walls, obstacles and people now.
   const sim::Room& room() const { return room_; }
   /// Puts an obstacle elsewhere: a box, or a post.
   void move_obstacle(std::size_t index, const maps::Point& to);
@@ -40,10 +42,10 @@ class RoomWorld {
   /// The middle of the first obstacle, or else of the first walker; far away if there is neither.
   maps::Point counted() const;
 
-  maps::Pose pose;
-  navigation::Velocity velocity;
-  bool collided = false;
-  double time = 0;  ///< s, at the start of the control period
+  maps::Pose pose;                ///< that of the robot
+  navigation::Velocity velocity;  ///< that of the robot, in its own frame
+  bool collided = false;          ///< whether the robot has overlapped something
+  double time = 0;                ///< s, at the start of the control period
 
  private:
   sim::Room room_;
@@ -56,25 +58,31 @@ class RoomWorld {
 /// The robot's scanner, its map of what the scans have shown, and its navigator.
 class RoomNavigator {
  public:
+  /// Throws std::invalid_argument if an option is out of range.
   RoomNavigator(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                 const RandomStream& random);
 
   /// Follows the scenario's path, or one that it plans from a pose; false if the map shows none.
   bool set_path(const maps::Pose& from);
+  /// A path to the goal from a pose; empty if the map shows none.
   std::vector<maps::Pose> path_from(const maps::Pose& pose) const {
     return plan_path(costmap_, body_, pose, goal_);
   }
 
   /// Follows a path that it plans to another goal; false, and nothing changes, if the map shows none.
   bool set_goal(const maps::Pose& goal, const maps::Pose& from);
+  /// Where the robot is to go.
   const maps::Pose& goal() const { return goal_; }
   /// Drives on with another navigator.
   void replace(const navigation::NavigatorOptions& options, const SolverOptions& solver);
+  /// The navigator that decides.
   const navigation::Navigator& navigator() const { return navigator_; }
 
   /// Takes a scan, and decides; `elapsed` s after the last decision.
   navigation::NavigationResult decide(const RoomWorld& world, double elapsed = room_period);
+  /// The command of the last decision.
   navigation::Velocity command(const RoomWorld&) const { return command_; }
+  /// Nothing: the map follows the scans alone.
   void moved(const RoomWorld&) const {}
 
   std::vector<double> update_times;  ///< s of wall clock, of the navigator's updates
