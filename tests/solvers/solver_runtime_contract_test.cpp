@@ -124,6 +124,25 @@ TEST_P(SolverRuntimeContract, SolvingAllocatesNothing) {
   }
 }
 
+TEST(Controller, SolvingAllocatesNothing) {
+  for (const char* method : solver_names()) {
+    SolverOptions options = solver_options(method);
+    small(options);
+    Controller controller{problems::Quadrotor{}, options};
+    problems::Quadrotor::State<double> lost{};
+    lost.x = std::nan("");
+    const long before = testing::allocations();
+    for (int i = 0; i < 3; ++i) {
+      controller.prepare();
+      controller.solve({}, {.elapsed = 0.03});
+      controller.solve(lost, {.elapsed = 0.03, .deadline = 1});
+      controller.set_previous_input({});
+      controller.reset(static_cast<std::uint64_t>(i));
+    }
+    EXPECT_EQ(testing::allocations(), before) << method;
+  }
+}
+
 TEST_P(SolverRuntimeContract, DeadlineReturnsTheBestSoFar) {
   const auto solver = make(1, [](SolverOptions& o) {
     set(o, "horizon", 10);
