@@ -14,7 +14,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::evaluation {
+namespace slalom::evaluation::rooms_test {
 namespace {
 
 /// The options of a method that nobody registered: it has no option `seed`.
@@ -252,4 +252,4 @@ TEST(BarnScenarios, RefuseFilesOfAnotherFormat) {
 }
 
 }  // namespace
-}  // namespace slalom::evaluation
+}  // namespace slalom::evaluation::rooms_test

@@ -18,7 +18,7 @@
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::navigation {
+namespace slalom::navigation::navigator_test {
 namespace {
 
 const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
@@ -340,4 +340,4 @@ TEST(AllocationFailure, ANavigatorIsMadeAndTakesAPathOrThrows) {
 }
 
 }  // namespace
-}  // namespace slalom::navigation
+}  // namespace slalom::navigation::navigator_test
