@@ -74,14 +74,6 @@ TEST(RoomDrive, GoesRoundAPalletAndRepeatsExactly) {
   EXPECT_NE(first.trace.front().x, other.trace.front().x);
 }
 
-TEST(RoomDrive, SaysWithinHalfASecondThatThereIsNoWay) {
-  const RoomDrive drive = drive_room(room_scenario("no-way"), quick_driver(), 1);
-  EXPECT_EQ(drive.outcome, RoomOutcome::blocked);
-  EXPECT_TRUE(drive.success);
-  EXPECT_GE(drive.answer_time, 0);
-  EXPECT_LE(drive.answer_time, 0.5);
-}
-
 /// Each row of the table of manoeuvres, with its limits.
 TEST(RoomDrive, EveryManoeuvreEndsAsItShould) {
   for (const RoomScenario& scenario : manoeuvre_scenarios()) {

@@ -39,8 +39,12 @@ TEST_F(RaceCommand, TellsFlyingLapsFromStandingStarts) {
     EXPECT_NEAR(sectors, lap["time_s"].get<double>(), 1e-9);
     EXPECT_NEAR(lap["samples"]["time_s"].back().get<double>(), lap["time_s"].get<double>(), 1e-6);
     EXPECT_GT(lap["grip_p99_mps2"].get<double>(), lap["grip_p50_mps2"].get<double>());
+    EXPECT_NEAR(lap["samples"]["distance_m"].back().get<double>(), r["length_m"].get<double>(), 1e-4);
     if (lap["start"] == "flying") best = std::min(best, lap["time_s"].get<double>());
   }
+  const json &standing = r["laps"][0]["samples"]["speed_mps"], &flying = r["laps"][1]["samples"]["speed_mps"];
+  EXPECT_EQ(standing[0], 0);
+  EXPECT_EQ(flying[0], standing.back()) << "the car goes on";
   EXPECT_EQ(r["flying"]["completed"], 1);
   EXPECT_EQ(r["flying"]["best_s"], best);
   EXPECT_LE(r["flying"]["ideal_s"].get<double>(), best);
@@ -105,7 +109,12 @@ TEST_F(RaceCommand, LapsThatAreNotCompletedCount) {
   EXPECT_EQ(r["standing"]["laps"], 2);
   EXPECT_EQ(r["standing"]["completed"], 0);
   EXPECT_TRUE(r["standing"]["mean_s"].is_null());
-  EXPECT_TRUE(r["laps"][0]["time_s"].is_null());
+  for (const json& lap : r["laps"]) {
+    EXPECT_EQ(lap["end"], "collision");
+    EXPECT_EQ(lap["start"], "standing");
+    EXPECT_TRUE(lap["time_s"].is_null());
+  }
+  EXPECT_NE(r["laps"][0]["seed"], r["laps"][1]["seed"]);
   EXPECT_TRUE(r["along"].is_null());
   expect_refused("race --course wren --compare r.json", {"r.json: has no completed lap"});
 }
