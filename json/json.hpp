@@ -45,6 +45,14 @@ inline std::string json_text(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+/// The figures that `visit_figures` declares, each under its name.
+template <class Figures>
+Json figures_json(const Figures& figures) {
+  Json json = Json::object();
+  visit_figures(figures, [&](const auto& value, const auto& figure) { json[figure.name] = value; });
+  return json;
+}
+
 /// The member of an object. Throws std::invalid_argument, which names the key, if there is none.
 inline const Json& member(const Json& object, const char* key) {
   const auto found = object.find(key);

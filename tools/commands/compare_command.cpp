@@ -16,6 +16,7 @@
 #include "tools/evaluation/comparison.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/terminal/json_output.hpp"
+#include "tools/terminal/text_table.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -97,29 +98,23 @@ Json differing_settings(const Json& a, const Json& b) {
 
 /// Prints a match: the figures of both sides, and the p values of their differences.
 void print(const Match& m, const std::array<std::string, 2>& names, std::FILE* out) {
-  const auto row = [&](const char* figure, const std::string& first, const std::string& second,
-                       const std::optional<double>& p) {
-    std::fprintf(out, "  %-16s %28s %28s   %s\n", figure, first.c_str(), second.c_str(), p_text(p).c_str());
-  };
   const auto& [a, b] = m.results;
-  const auto rate = [](const ExperimentResult& r) {
-    return formatted("%.1f (%.1f-%.1f)", 100 * r.success_rate, 100 * r.success_rate_ci.low,
-                     100 * r.success_rate_ci.high);
-  };
   const auto end_of = [](const std::string& name) {
     return name.size() > 26 ? name.substr(name.size() - 26) : name;
   };
-  std::fprintf(out, "\n%s%s, %s, %s\n  %-16s %28s %28s   %s\n",
-               m.place.empty() ? "" : (m.place + ": ").c_str(), m.name().c_str(),
-               m.experiments[0].scenario.c_str(), m.is_paired ? "paired by lap" : "unpaired", "",
-               end_of(names[0]).c_str(), end_of(names[1]).c_str(), "p");
+  std::fprintf(out, "\n%s%s, %s, %s\n", m.place.empty() ? "" : (m.place + ": ").c_str(), m.name().c_str(),
+               m.experiments[0].scenario.c_str(), m.is_paired ? "paired by lap" : "unpaired");
   const Comparison& c = m.comparison;
-  std::fprintf(out, "  %-16s %28d %28d\n", "laps", a.laps, b.laps);
-  row("success, %", rate(a), rate(b), c.success_p);
-  row("collisions", std::to_string(a.collisions), std::to_string(b.collisions), c.collisions_p);
-  row("lap time, s", mean_text(a.time_mean, a.time_ci, a.finished),
-      mean_text(b.time_mean, b.time_ci, b.finished), c.time_p);
-  row("MS", mean_text(a.ms_mean, a.ms_ci, a.laps), mean_text(b.ms_mean, b.ms_ci, b.laps), c.ms_p);
+  TextTable table({"<", end_of(names[0]), end_of(names[1]), "<p"});
+  const auto row = [&](const char* figure, const std::optional<double>& p, auto cell) {
+    table.add({figure, cell(a), cell(b), p_text(p)});
+  };
+  table.add({"laps", std::to_string(a.laps), std::to_string(b.laps), ""});
+  row("success, %", c.success_p, [](const auto& r) { return rate_cell(r.success_rate, r.success_rate_ci); });
+  row("collisions", c.collisions_p, [](const auto& r) { return std::to_string(r.collisions); });
+  row("lap time, s", c.time_p, [](const auto& r) { return mean_cell(r.time_mean, r.time_ci, r.finished); });
+  row("MS", c.ms_p, [](const auto& r) { return mean_cell(r.ms_mean, r.ms_ci, r.laps); });
+  table.print(out);
 }
 
 /// The match of an experiment of each evaluation. Throws IoError if one has no laps.

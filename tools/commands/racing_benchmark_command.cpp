@@ -41,7 +41,7 @@ int drive_benchmark(const BenchmarkArguments& arguments) {
     const auto laps = drive_benchmark_laps(map, driver, arguments.quick ? 1 : racing_laps);
     const Json results = racing_results(laps);
     summary["maps"][name] = results;
-    const Json& mean = results["mean_s"];
+    const Json& mean = results["mean"];
     std::fprintf(words, "%-4s %10s %4d of %2zu %10.2f %%\n", name,
                  mean.is_null() ? "-" : short_number(mean.get<double>()).c_str(),
                  results["completed"].get<int>(), laps.size(), 100 * results["beyond_grip"].get<double>());

@@ -8,6 +8,7 @@
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
+#include "tools/terminal/text_table.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -28,12 +29,9 @@ struct ReproduceArguments {
 /// Prints the rows of a table beside the authors' results.
 void print_table(const PaperTable& table, const Evaluated& evaluated,
                  const std::vector<Reference>& references, std::FILE* out) {
-  std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-9s %-22s %-22s %s\n", table.title, "", "", "laps",
-               "MS (95 %)", "published MS", "released", "collision rate, %", "published", "verdict");
-  const auto cell = [](double value, const evaluation::Interval& i, double scale, int digits) {
-    return formatted("%.*f (%.*f - %.*f)", digits, scale * value, digits, scale * i.low, digits,
-                     scale * i.high);
-  };
+  std::fprintf(out, "\n%s\n", table.title);
+  TextTable shown({"<row", "<scenario", "laps", "MS (95 %)", "published MS", "released", "collision rate, %",
+                   "published", "<verdict"});
   for (const char* scenario : {"pt", "oa"}) {
     for (const PaperRow& row : paper_rows()) {
       if (row.table != table.name) continue;
@@ -42,20 +40,16 @@ void print_table(const PaperTable& table, const Evaluated& evaluated,
         const auto& e = evaluated.evaluation.experiments[index];
         if (e.scenario != scenario || !drives(e, row)) continue;
         const auto &theirs = references[index].published, &released = references[index].released;
-        std::fprintf(out, "%-32s %-2s %5d  %-26s %-26s %-9s %-22s %-22s %s\n", row.name.c_str(), scenario,
-                     r.laps,
-                     r.laps < evaluation::fewest_laps ? formatted("%.3f", r.ms_mean).c_str()
-                                                      : cell(r.ms_mean, r.ms_ci, 1, 3).c_str(),
-                     theirs ? cell(theirs->ms_mean, theirs->ms_ci, 1, 3).c_str() : "-",
-                     released ? formatted("%.3g", released->ms_mean).c_str() : "-",
-                     r.collision_rate ? cell(*r.collision_rate, *r.collision_rate_ci, 100, 1).c_str() : "-",
-                     theirs && theirs->collision_rate
-                         ? cell(*theirs->collision_rate, *theirs->collision_rate_ci, 100, 1).c_str()
-                         : "-",
-                     references[index].verdict.c_str());
+        shown.add({row.name, scenario, std::to_string(r.laps), mean_cell(r.ms_mean, r.ms_ci, r.laps),
+                   theirs ? mean_cell(theirs->ms_mean, theirs->ms_ci, evaluation::fewest_laps) : "-",
+                   released ? formatted("%.3g", released->ms_mean) : "-",
+                   rate_cell(r.collision_rate, r.collision_rate_ci),
+                   theirs ? rate_cell(theirs->collision_rate, theirs->collision_rate_ci) : "-",
+                   references[index].verdict});
       }
     }
   }
+  shown.print(out);
 }
 
 void add_report_rows(const std::string& table, Report& report) {

@@ -5,6 +5,7 @@
 
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"
+#include "tools/terminal/text_table.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -129,15 +130,13 @@ Json claims_json(const std::filesystem::path& logs, const std::vector<Experiment
 
 void print_claims(const Json& claims, std::FILE* out) {
   std::fprintf(out,
-               "\nClaims: MS or collision rate (%%) of the better and the worse row, p value, verdict\n%-58s "
-               "%-44s %s\n",
-               "", "authors' logs", "Slalom");
+               "\nClaims: MS or collision rate (%%) of the better and the worse row, p value, verdict\n");
+  TextTable table({"<claim", "<authors' logs", "<Slalom"});
   for (const Json& claim : claims) {
     const bool collisions = claim["figure"] == "collision rate";
-    std::fprintf(out, "%-58s %-44s %s\n", claim["claim"].get<std::string>().c_str(),
-                 test_text(claim["logs"], collisions).c_str(),
-                 test_text(claim["slalom"], collisions).c_str());
+    table.add({claim["claim"], test_text(claim["logs"], collisions), test_text(claim["slalom"], collisions)});
   }
+  table.print(out);
 }
 
 }  // namespace slalom::tools

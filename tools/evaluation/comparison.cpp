@@ -52,12 +52,6 @@ std::string p_text(const std::optional<double>& p) {
   return *p < 0.001 ? "< 0.001 *" : formatted("%.3f%s", *p, *p < level ? " *" : "");
 }
 
-std::string mean_text(double mean, const Interval& interval, int laps, int digits) {
-  if (!std::isfinite(mean)) return "-";
-  if (laps < fewest_laps) return formatted("%.*f", digits, mean);
-  return formatted("%.*f (%.*f-%.*f)", digits, mean, digits, interval.low, digits, interval.high);
-}
-
 Json interval_json(const std::optional<Interval>& i) {
   return i ? Json{i->low, i->high} : Json(nullptr);
 }

@@ -18,8 +18,6 @@ bool same_weights(const nlohmann::ordered_json& settings_a, const evaluation::Ex
 
 /// A p value, with a star below 0.05; "-" for none.
 std::string p_text(const std::optional<double>& p);
-/// "0.412 (0.398-0.427)"; without the interval below fewest_laps, "-" for what is not a number.
-std::string mean_text(double mean, const evaluation::Interval& interval, int laps, int digits = 3);
 
 /// An interval as [low, high], or null.
 nlohmann::ordered_json interval_json(const std::optional<evaluation::Interval>& interval);

@@ -9,6 +9,7 @@
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/comparison.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
+#include "tools/terminal/text_table.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -25,7 +26,7 @@ Json tracking_json(const TrackingFigures& t, int laps) {
   Json json{{"detection_rate", share_json(t.detected, t.in_view)},
             {"long_detection_rate", share_json(t.long_detected, t.long_in_view)},
             {"false_objects_per_lap", share_json(t.false_objects, laps)}};
-  visit_figures(t, [&](const auto& value, const Figure& figure) { json[figure.name] = value; });
+  json.update(figures_json(t));
   return json;
 }
 Json overtaking_json(const OvertakingFigures& o) {
@@ -34,7 +35,7 @@ Json overtaking_json(const OvertakingFigures& o) {
       {"overtaken_rate", share_json(o.overtaken, decided)},
       {"overtaken_rate_ci",
        interval_json(decided > 0 ? std::optional(wilson_interval(o.overtaken, decided)) : std::nullopt)}};
-  visit_figures(o, [&](const auto& value, const Figure& figure) { json[figure.name] = value; });
+  json.update(figures_json(o));
   return json;
 }
 
@@ -53,20 +54,17 @@ std::string listed(const std::vector<int>& laps) {
   return text;
 }
 
-void print_table(const Evaluated& evaluated, int width, std::FILE* out) {
-  std::fprintf(out, "%-*s  %-3s %5s %9s %10s %19s %24s %25s %9s\n", width, "method", "", "laps", "success",
-               "collisions", "collision rate", "lap time, s", "MS", "solve, ms");
+void print_table(const Evaluated& evaluated, std::FILE* out) {
+  TextTable table({"<method", "<scenario", "laps", "success, %", "collisions", "collision rate, %",
+                   "lap time, s", "MS", "solve, ms"});
   for (const ExperimentResult& r : evaluated.results) {
     const Experiment& e = evaluated.experiment(r.experiment);
-    const std::string rate = r.collision_rate
-                                 ? formatted("%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,
-                                             100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high)
-                                 : "-";
-    std::fprintf(out, "%-*s  %-3s %5d %7.1f %% %10d %19s %24s %25s %9.3f\n", width, e.label().c_str(),
-                 e.scenario.c_str(), r.laps, 100 * r.success_rate, r.collisions, rate.c_str(),
-                 mean_text(r.time_mean, r.time_ci, r.finished).c_str(),
-                 mean_text(r.ms_mean, r.ms_ci, r.laps).c_str(), r.solve_p50);
+    table.add({e.label(), e.scenario, std::to_string(r.laps), number_cell(100 * r.success_rate, 1),
+               std::to_string(r.collisions), rate_cell(r.collision_rate, r.collision_rate_ci),
+               mean_cell(r.time_mean, r.time_ci, r.finished), mean_cell(r.ms_mean, r.ms_ci, r.laps),
+               number_cell(r.solve_p50)});
   }
+  table.print(out);
   std::fprintf(
       out,
       "lap time: of finished laps. MS: mean cost of the control sequences sent in a lap, lower is better. In "
@@ -74,20 +72,20 @@ void print_table(const Evaluated& evaluated, int width, std::FILE* out) {
       fewest_laps);
 }
 
-void print_comparisons(const Evaluated& evaluated, int width, std::FILE* out) {
+void print_comparisons(const Evaluated& evaluated, std::FILE* out) {
   const auto pairs = evaluated.against_reference();
   if (pairs.empty()) return;
-  std::fprintf(out, "\n%-*s  %-3s %5s %18s %-9s %-10s %12s %-9s %10s %-9s  %s\n", width, "paired by lap", "",
-               "laps", "only one succeeds", "p", "collisions", "lap time, s", "p", "MS", "p",
-               "compared with");
+  std::fprintf(out, "\n");
+  TextTable table({"<paired by lap", "<scenario", "laps", "only one succeeds", "<p", "<collisions, p",
+                   "lap time, s", "<p", "MS", "<p", "<compared with"});
   for (const PairedComparison& c : pairs) {
     const Experiment &e = evaluated.experiment(c.a), &reference = evaluated.experiment(c.b);
-    std::fprintf(
-        out, "%-*s  %-3s %5d %18s %-9s %-10s %+12.3f %-9s %+10.3f %-9s  %s\n", width, e.label().c_str(),
-        e.scenario.c_str(), c.laps, formatted("%d : %d", c.only_a_succeeds, c.only_b_succeeds).c_str(),
-        p_text(c.success_p).c_str(), p_text(c.collisions_p).c_str(), c.time_difference,
-        p_text(c.time_p).c_str(), c.ms_difference, p_text(c.ms_p).c_str(), reference.label().c_str());
+    table.add({e.label(), e.scenario, std::to_string(c.laps),
+               formatted("%d : %d", c.only_a_succeeds, c.only_b_succeeds), p_text(c.success_p),
+               p_text(c.collisions_p), formatted("%+.3f", c.time_difference), p_text(c.time_p),
+               formatted("%+.3f", c.ms_difference), p_text(c.ms_p), reference.label()});
   }
+  table.print(out);
   if (std::any_of(pairs.begin(), pairs.end(), [](const auto& c) { return !c.ms_p; }))
     std::fprintf(out, "MS is not tested where the weights of the two differ.\n");
 }
@@ -192,11 +190,8 @@ Json Evaluated::summary() const {
 }
 
 void print_results(const Evaluated& evaluated, std::FILE* out) {
-  std::size_t longest = 13;
-  for (const Experiment& e : evaluated.evaluation.experiments) longest = std::max(longest, e.label().size());
-  const int width = static_cast<int>(longest);
-  print_table(evaluated, width, out);
-  print_comparisons(evaluated, width, out);
+  print_table(evaluated, out);
+  print_comparisons(evaluated, out);
   for (const ExperimentResult& r : evaluated.results)
     if (r.tracking) print_tracking(evaluated.experiment(r.experiment).label(), *r.tracking, r.laps, out);
   for (const ExperimentResult& r : evaluated.results) {

@@ -211,12 +211,12 @@ Json racing_results(const std::vector<BenchmarkLap>& laps) {
     ++completed;
     at_limit += lap.time > sim::RacingBenchmark::max_time;
   }
-  return {{"mean_s", completed > 0 ? Json(sum / completed) : Json(nullptr)},
+  return {{"mean", completed > 0 ? Json(sum / completed) : Json(nullptr)},
           {"completed", completed},
           {"at_time_limit", at_limit},
           {"laps", static_cast<int>(laps.size())},
           {"beyond_grip", steps > 0 ? static_cast<double>(beyond) / static_cast<double>(steps) : 0.0},
-          {"lap_times_s", times}};
+          {"lap_times", times}};
 }
 
 }  // namespace slalom::tools

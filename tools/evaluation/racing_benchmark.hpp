@@ -64,8 +64,8 @@ struct BenchmarkLap {
 /// Drives the laps of a map.
 std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, const RacingDriver& driver, int laps);
 
-/// `mean_s` (of completed laps, null without any), `completed`, `at_time_limit` (of the completed), `laps`,
-/// `beyond_grip` (share of all steps), `lap_times_s` (null for a collision).
+/// `mean` (of completed laps, null without any), `completed`, `at_time_limit` (of the completed), `laps`,
+/// `beyond_grip` (share of all steps), `lap_times` (null for a collision).
 nlohmann::ordered_json racing_results(const std::vector<BenchmarkLap>& laps);
 
 }  // namespace slalom::tools

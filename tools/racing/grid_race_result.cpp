@@ -6,6 +6,7 @@
 
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"
+#include "tools/terminal/text_table.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -22,6 +23,20 @@ struct CarSummary {
   double best_lap = std::numeric_limits<double>::quiet_NaN();
   ContactRate contacts;
 };
+template <class Visit>
+void visit_figures(const CarSummary& car, Visit&& visit) {
+  using evaluation::Figure;
+  visit(car.races, Figure{"races", "", "races that were not interrupted"});
+  visit(car.wins, Figure{"wins", "", "races that it won"});
+  visit(static_cast<double>(car.places) / car.races, Figure{"mean_place", "", "mean place, from 1"});
+  visit(car.finished, Figure{"finished", "", "races that it finished"});
+  visit(car.walls, Figure{"walls", "", "races that a wall ended"});
+  visit(car.timeouts, Figure{"timeouts", "", "races that it did not finish in time"});
+  visit(car.best_lap, Figure{"best_lap", "s", "time of the best whole lap"});
+  visit(car.overtakes, Figure{"overtakes", "", "cars that it overtook"});
+  visit(car.overtaken, Figure{"overtaken", "", "times that it was overtaken"});
+  evaluation::visit_figures(car.contacts, visit);
+}
 
 CarSummary car_summary(const GridRaces& races, int entry) {
   CarSummary summary;
@@ -42,21 +57,10 @@ CarSummary car_summary(const GridRaces& races, int entry) {
   return summary;
 }
 
-/// A number with so many decimals; "-" if it is not finite.
-std::string number_text(double value, int digits) {
-  return std::isfinite(value) ? formatted("%.*f", digits, value) : "-";
-}
-
 /// Describes how a race ended for a car.
 std::string end_text(const CarResult& car) {
   if (car.end == CarEnd::wall) return car.contact_before ? "out: wall, after a contact" : "out: wall";
   return car.end == CarEnd::finished ? "" : std::string(evaluation::name(car.end));
-}
-
-int widest(const std::vector<std::string>& names) {
-  std::size_t width = 8;
-  for (const std::string& name : names) width = std::max(width, name.size());
-  return static_cast<int>(width);
 }
 
 std::string contacts_text(const ContactRate& rate) {
@@ -65,29 +69,14 @@ std::string contacts_text(const ContactRate& rate) {
 }
 
 Json rate_json(const ContactRate& rate) {
-  return {{"contacts", rate.contacts},
-          {"contacts_caused", rate.caused},
-          {"distance_km", rate.kilometres},
-          {"caused_per_100_km", rate.per_100_km},
-          {"caused_per_100_km_ci", {rate.interval.low, rate.interval.high}}};
+  Json json = figures_json(rate);
+  json["caused_per_100_km_ci"] = {rate.interval.low, rate.interval.high};
+  return json;
 }
 
 Json standing_json(const CarResult& car, const std::string& name) {
-  Json json{{"place", car.place + 1},
-            {"car", name},
-            {"grid_place", car.grid_place + 1},
-            {"end", std::string(evaluation::name(car.end))},
-            {"laps", static_cast<int>(car.lap_times.size())},
-            {"time_s", car.time},
-            {"gap_s", car.gap},
-            {"best_lap_s", car.best_lap()},
-            {"lap_times_s", car.lap_times},
-            {"progress_m", car.progress},
-            {"distance_m", car.distance},
-            {"overtakes", car.overtakes},
-            {"overtaken", car.overtaken},
-            {"contacts", car.contacts},
-            {"contacts_caused", car.caused}};
+  Json json{{"car", name}, {"end", std::string(evaluation::name(car.end))}};
+  json.update(figures_json(car));
   if (car.end == CarEnd::wall)
     json["wall"] = {{"pose", {car.last.x, car.last.y, car.last.yaw}}, {"contact_before", car.contact_before}};
   return json;
@@ -98,19 +87,19 @@ Json one_race_json(const GridRaceResult& race, const std::vector<std::string>& n
   Json json{{"race", number},
             {"seed", race.seed},
             {"interrupted", race.cancelled},
-            {"time_s", race.time},
+            {"time", race.time},
             {"standings", Json::array()},
             {"contacts", Json::array()},
             {"overtakes", Json::array()}};
   for (const int car : race.standings)
     json["standings"].push_back(standing_json(race.cars[static_cast<std::size_t>(car)], name_of(car)));
   for (const evaluation::CarContact& contact : race.contacts)
-    json["contacts"].push_back({{"time_s", contact.time},
+    json["contacts"].push_back({{"time", contact.time},
                                 {"cars", Json::array({name_of(contact.cars[0]), name_of(contact.cars[1])})},
                                 {"at_fault", name_of(contact.at_fault)},
                                 {"pose", {contact.pose.x, contact.pose.y, contact.pose.yaw}}});
   for (const evaluation::Overtake& overtake : race.overtakes)
-    json["overtakes"].push_back({{"time_s", overtake.time},
+    json["overtakes"].push_back({{"time", overtake.time},
                                  {"car", name_of(overtake.car)},
                                  {"overtaken", name_of(overtake.overtaken)}});
   return json;
@@ -118,37 +107,26 @@ Json one_race_json(const GridRaceResult& race, const std::vector<std::string>& n
 
 Json summary_json(const CarSummary& summary, const std::string& name) {
   const evaluation::Interval wins = evaluation::wilson_interval(summary.wins, summary.races);
-  Json json{{"car", name},
-            {"races", summary.races},
-            {"wins", summary.wins},
-            {"win_rate_ci", {wins.low, wins.high}},
-            {"mean_place", static_cast<double>(summary.places) / summary.races},
-            {"finished", summary.finished},
-            {"walls", summary.walls},
-            {"timeouts", summary.timeouts},
-            {"best_lap_s", summary.best_lap},
-            {"overtakes", summary.overtakes},
-            {"overtaken", summary.overtaken}};
-  json.update(rate_json(summary.contacts));
+  Json json{{"car", name}, {"win_rate_ci", {wins.low, wins.high}}};
+  json.update(figures_json(summary));
+  json["caused_per_100_km_ci"] = {summary.contacts.interval.low, summary.contacts.interval.high};
   return json;
 }
 
 }  // namespace
 
 void print_standings(std::FILE* out, const std::vector<std::string>& names, const GridRaceResult& race) {
-  const int width = widest(names);
-  std::fprintf(out, "\n%5s  %-*s %5s %5s %10s %9s %12s %9s %9s %9s %7s %10s\n", "place", width, "car", "grid",
-               "laps", "time, s", "gap, s", "best lap, s", "overtook", "overtaken", "contacts", "caused",
-               "driven, m");
+  std::fprintf(out, "\n");
+  std::vector<std::string> heads = figure_heads({"<car"}, CarResult{});
+  heads.emplace_back("<");
+  TextTable table(std::move(heads));
   for (const int entry : race.standings) {
     const CarResult& car = race.cars[static_cast<std::size_t>(entry)];
-    std::fprintf(out, "%5d  %-*s %5d %5zu %10.3f %9s %12s %9d %9d %9d %7d %10.1f   %s\n", car.place + 1,
-                 width, names[static_cast<std::size_t>(entry)].c_str(), car.grid_place + 1,
-                 car.lap_times.size(), car.time,
-                 (std::isfinite(car.gap) ? formatted("%+.3f", car.gap) : "-").c_str(),
-                 number_text(car.best_lap(), 3).c_str(), car.overtakes, car.overtaken, car.contacts,
-                 car.caused, car.distance, end_text(car).c_str());
+    std::vector<std::string> row = figure_cells({names[static_cast<std::size_t>(entry)]}, car);
+    row.push_back(end_text(car));
+    table.add(std::move(row));
   }
+  table.print(out);
   for (const evaluation::CarContact& contact : race.contacts)
     std::fprintf(out, "contact after %.2f s: %s and %s; %s at fault\n", contact.time,
                  names[static_cast<std::size_t>(contact.cars[0])].c_str(),
@@ -171,21 +149,19 @@ void print_race_line(std::FILE* out, const std::vector<std::string>& names, cons
 }
 
 void print_race_summary(std::FILE* out, const GridRaces& races) {
-  const int width = widest(races.names);
-  std::fprintf(out, "\n%-*s %24s %10s %8s %4s %7s %11s %8s %8s %6s %7s  %s\n", width, "", "wins (95 %)",
-               "mean place", "finished", "wall", "timeout", "best lap, s", "overtook", "contacts", "caused",
-               "km", "caused per 100 km (95 %)");
+  std::fprintf(out, "\n");
+  std::vector<std::string> heads = figure_heads({"<car"}, CarSummary{});
+  heads.insert(heads.end(), {"<wins, % (95 %)", "<caused per 100 km (95 %)"});
+  TextTable table(std::move(heads));
   for (std::size_t entry = 0; entry < races.names.size(); ++entry) {
     const CarSummary car = car_summary(races, static_cast<int>(entry));
-    const evaluation::Interval rate = evaluation::wilson_interval(car.wins, car.races);
-    const std::string wins =
-        formatted("%d of %d (%.0f to %.0f %%)", car.wins, car.races, 100 * rate.low, 100 * rate.high);
-    std::fprintf(out, "%-*s %24s %10s %8d %4d %7d %11s %8d %8d %6d %7.2f  %s\n", width,
-                 races.names[entry].c_str(), wins.c_str(),
-                 number_text(static_cast<double>(car.places) / car.races, 2).c_str(), car.finished, car.walls,
-                 car.timeouts, number_text(car.best_lap, 3).c_str(), car.overtakes, car.contacts.contacts,
-                 car.contacts.caused, car.contacts.kilometres, contacts_text(car.contacts).c_str());
+    std::vector<std::string> row = figure_cells({races.names[entry]}, car);
+    const std::optional share = static_cast<double>(car.wins) / car.races;
+    row.insert(row.end(), {rate_cell(share, evaluation::wilson_interval(car.wins, car.races)),
+                           contacts_text(car.contacts)});
+    table.add(std::move(row));
   }
+  table.print(out);
   const ContactRate all = evaluation::contact_rate(races.results);
   std::fprintf(out, "all cars: %d contacts in %.2f km, %s per 100 km\n", all.contacts, all.kilometres,
                contacts_text(all).c_str());

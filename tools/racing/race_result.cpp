@@ -10,6 +10,7 @@
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/read_file.hpp"
 #include "tools/command_line/words.hpp"
+#include "tools/terminal/text_table.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -41,12 +42,6 @@ double top_speed(const RacingLap& lap) {
   return fastest;
 }
 
-void add_grip(Json& json, const evaluation::GripUse& grip) {
-  json["grip_p50_mps2"] = grip.p50;
-  json["grip_p99_mps2"] = grip.p99;
-  json["beyond_grip"] = grip.beyond;
-}
-
 Json samples_json(const std::vector<RacingSample>& samples) {
   Json json = Json::object();
   for (const SampleColumn& column : sample_columns) {
@@ -58,32 +53,28 @@ Json samples_json(const std::vector<RacingSample>& samples) {
   return json;
 }
 
-Json timed_json(const RacingLap& lap, double grip) {
-  Json json{{"time_s", lap.end == RacingEnd::completed ? Json(lap.time()) : Json(nullptr)},
-            {"sectors_s", lap.sector},
-            {"top_speed_mps", top_speed(lap)}};
-  add_grip(json, evaluation::grip_use(lap.samples, grip));
-  return json;
+/// The figures of a lap.
+template <class Visit>
+void visit_lap(const RacingLap& lap, double grip, Visit&& visit) {
+  using evaluation::Figure;
+  visit(lap.end == RacingEnd::completed ? lap.time() : RaceStatistics::none,
+        Figure{"time", "s", "of a completed lap"});
+  visit(lap.sector, Figure{"sectors", "s", "times of the sectors"});
+  visit(top_speed(lap), Figure{"top_speed", "m/s", "largest speed"});
+  evaluation::visit_figures(evaluation::grip_use(lap.samples, grip), visit);
 }
 
-Json statistics_json(const RaceStatistics& statistics) {
-  const bool any = statistics.completed > 0;
-  const auto if_any = [&](const Json& value) { return any ? value : Json(nullptr); };
-  Json json{{"laps", statistics.laps},
-            {"completed", statistics.completed},
-            {"mean_s", if_any(statistics.mean)},
-            {"best_s", if_any(statistics.best)},
-            {"best_lap", if_any(statistics.best_lap + 1)},
-            {"best_sectors_s", if_any(statistics.best_sector)},
-            {"ideal_s", if_any(statistics.ideal())}};
-  add_grip(json, statistics.grip);
+Json timed_json(const RacingLap& lap, double grip) {
+  Json json = Json::object();
+  visit_lap(lap, grip,
+            [&](const auto& value, const evaluation::Figure& figure) { json[figure.name] = value; });
   return json;
 }
 
 /// The lap that `best_lap` of the statistics `key` names; none if the run has no such lap.
 std::optional<RacingLap> best_of(const Json& run, const char* key) {
-  if (member(member(run, key), "best_lap").is_null()) return std::nullopt;
   const int which = member<int>(member(run, key), "best_lap");
+  if (which == 0) return std::nullopt;
   const Json& laps = member(run, "laps");
   if (which < 1 || which > static_cast<int>(laps.size()))
     throw std::invalid_argument("best_lap: " + std::to_string(which) + " must be the number of a lap");
@@ -112,23 +103,6 @@ std::optional<RacingLap> best_of(const Json& run, const char* key) {
 
 constexpr int parts = 10;  // parts of the way in the table of a lap
 
-std::string seconds(double time) {
-  return std::isfinite(time) ? formatted("%.3f", time) : "-";
-}
-
-void print_group(std::FILE* out, const char* label, const RaceStatistics& group, const RacingLap& profile) {
-  if (group.laps == 0) return;
-  const std::string completed = std::to_string(group.completed) + " of " + std::to_string(group.laps);
-  std::fprintf(out, "%-18s %9s", label, completed.c_str());
-  const double share = group.best / profile.time() - 1;
-  if (group.completed > 0)
-    std::fprintf(out, " %9.3f %9.3f %9s %13.3f %13s %18.2f %9.2f %9.2f %%", group.mean, group.best,
-                 ("(lap " + std::to_string(group.best_lap + 1) + ")").c_str(), group.ideal(),
-                 profile.time() > 0 ? formatted("%+.1f %%", 100 * share).c_str() : "-", group.grip.p50,
-                 group.grip.p99, 100 * group.grip.beyond);
-  std::fprintf(out, "\n");
-}
-
 }  // namespace
 
 double RaceStatistics::ideal() const noexcept {
@@ -144,7 +118,7 @@ RaceStatistics race_statistics(const RaceResult& race, bool standing) {
     ++statistics.laps;
     if (lap.end != RacingEnd::completed) continue;
     const bool first = statistics.completed++ == 0;
-    statistics.mean += lap.time();
+    statistics.mean = (first ? 0 : statistics.mean) + lap.time();
     for (std::size_t k = 0; k < lap.sector.size(); ++k)
       statistics.best_sector[k] = first ? lap.sector[k] : std::min(statistics.best_sector[k], lap.sector[k]);
     samples.insert(samples.end(), lap.samples.begin(), lap.samples.end());
@@ -173,8 +147,8 @@ Json race_json(const RaceResult& race) {
             {"friction_circle_mps2", race.grip},
             {"profile", timed_json(race.profile, race.grip)},
             {"profile_from_rest", timed_json(race.profile_from_rest, race.grip)},
-            {"flying", statistics_json(race_statistics(race, false))},
-            {"standing", statistics_json(race_statistics(race, true))},
+            {"flying", figures_json(race_statistics(race, false))},
+            {"standing", figures_json(race_statistics(race, true))},
             {"laps", Json::array()}};
   for (std::size_t i = 0; i < race.laps.size(); ++i) {
     const RacingLap& lap = race.laps[i];
@@ -182,7 +156,7 @@ Json race_json(const RaceResult& race) {
              {"start", lap.standing ? "standing" : "flying"},
              {"seed", lap.seed},
              {"end", std::string(evaluation::name(lap.end))},
-             {"distance_m", lap.samples.back().distance}};
+             {"distance", lap.samples.back().distance}};
     row.update(timed_json(lap, race.grip));
     row["samples"] = samples_json(lap.samples);
     json["laps"].push_back(row);
@@ -238,8 +212,8 @@ void print_lap_header(std::FILE* out, double grip) {
 
 void print_lap(std::FILE* out, const std::string& label, const RacingLap& lap, double grip) {
   const bool completed = lap.end == RacingEnd::completed;
-  std::fprintf(out, "%-18s %9s", label.c_str(), completed ? seconds(lap.time()).c_str() : "-");
-  for (const double time : lap.sector) std::fprintf(out, " %9s", seconds(time).c_str());
+  std::fprintf(out, "%-18s %9s", label.c_str(), completed ? number_cell(lap.time()).c_str() : "-");
+  for (const double time : lap.sector) std::fprintf(out, " %9s", number_cell(time).c_str());
   const auto use = evaluation::grip_use(lap.samples, grip);
   std::fprintf(out, " %9.2f %18.2f %9.2f %9.2f %%", top_speed(lap), use.p50, use.p99, 100 * use.beyond);
   if (!completed)
@@ -250,10 +224,19 @@ void print_lap(std::FILE* out, const std::string& label, const RacingLap& lap, d
 }
 
 void print_statistics(std::FILE* out, const RaceResult& race) {
-  std::fprintf(out, "\n%-18s %9s %9s %9s %9s %13s %13s %18s %9s   beyond %.2f m/s^2\n", "", "completed",
-               "mean, s", "best, s", "", "best sectors", "to profile", "grip p50, m/s^2", "p99", race.grip);
-  print_group(out, "flying laps", race_statistics(race, false), race.profile);
-  print_group(out, "standing starts", race_statistics(race, true), race.profile_from_rest);
+  std::fprintf(out, "\n");
+  std::vector<std::string> heads = figure_heads({"<"}, RaceStatistics{});
+  heads.emplace_back("to profile, %");
+  TextTable table(std::move(heads));
+  for (const bool standing : {false, true}) {
+    const RaceStatistics group = race_statistics(race, standing);
+    if (group.laps == 0) continue;
+    const double profile = (standing ? race.profile_from_rest : race.profile).time();
+    std::vector<std::string> row = figure_cells({standing ? "standing starts" : "flying laps"}, group);
+    row.push_back(number_cell(100 * (group.best / profile - 1), 1));
+    table.add(std::move(row));
+  }
+  table.print(out);
 }
 
 void print_along(std::FILE* out, const RaceResult& race, const RacingLap& lap, const RacingLap* other,

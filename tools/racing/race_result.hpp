@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -21,14 +22,28 @@ struct RaceResult {
 
 /// The flying laps or the standing starts of a race. Times and grip are those of the completed laps.
 struct RaceStatistics {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();  ///< without completed laps
+
   int laps = 0, completed = 0;
-  double mean = 0, best = 0;  ///< s; 0 without completed laps
-  int best_lap = -1;          ///< index in RaceResult::laps; -1 without completed laps
-  std::array<double, evaluation::racing_sectors> best_sector{};  ///< s, each the best of all completed laps
+  double mean = none, best = none;  ///< s
+  int best_lap = -1;                ///< index in RaceResult::laps; -1 without completed laps
+  std::array<double, evaluation::racing_sectors> best_sector{none, none, none};  ///< s, of all completed laps
   evaluation::GripUse grip;
 
   double ideal() const noexcept;  ///< s, sum of the best sectors
 };
+/// Calls `visit(value, Figure)` for every figure of the statistics in the order of tables.
+template <class Visit>
+void visit_figures(const RaceStatistics& statistics, Visit&& visit) {
+  visit(statistics.laps, evaluation::Figure{"laps", "", "laps, completed or not"});
+  visit(statistics.completed, evaluation::Figure{"completed", "", "completed laps"});
+  visit(statistics.mean, evaluation::Figure{"mean", "s", "mean time of the completed laps"});
+  visit(statistics.best, evaluation::Figure{"best", "s", "time of the best lap"});
+  visit(statistics.best_lap + 1, evaluation::Figure{"best_lap", "", "number of the best lap; 0: none"});
+  visit(statistics.best_sector, evaluation::Figure{"best_sectors", "s", "best times of the sectors"});
+  visit(statistics.ideal(), evaluation::Figure{"ideal", "s", "sum of the best sectors"});
+  visit_figures(statistics.grip, visit);
+}
 RaceStatistics race_statistics(const RaceResult& race, bool standing);
 
 /// The lap of the profile with the start of `lap`.

@@ -83,7 +83,7 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
                           {"body", collision.body < 0 ? Json("wall") : Json(collision.body)}});
   for (const auto& obstacle : lap.obstacles) obstacles.push_back(pose_json(obstacle));
   Json json{{"lap", number}};
-  visit_figures(lap, [&](const auto& value, const evaluation::Figure& figure) { json[figure.name] = value; });
+  json.update(figures_json(lap));
   json.update({{"mean_sequence_cost", lap.mean_sequence_cost()},
                {"interrupted", lap.cancelled},
                {"planner_status", status},

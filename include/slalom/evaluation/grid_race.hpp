@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "slalom/evaluation/lap.hpp"
+#include "slalom/evaluation/lap_figures.hpp"
 #include "slalom/evaluation/statistics.hpp"
 
 namespace slalom::evaluation {
@@ -65,6 +66,24 @@ struct CarResult {
 
   double best_lap() const noexcept;  ///< s; NaN without a whole lap
 };
+
+/// Calls `visit(value, Figure)` for every figure of a car in the order of tables.
+template <class Visit>
+void visit_figures(const CarResult& car, Visit&& visit) {
+  visit(car.place + 1, Figure{"place", "", "in the standings, from 1"});
+  visit(car.grid_place + 1, Figure{"grid_place", "", "at the start, from 1"});
+  visit(static_cast<int>(car.lap_times.size()), Figure{"laps", "", "whole laps"});
+  visit(car.time, Figure{"time", "s", "from the start until the race ended for the car"});
+  visit(car.gap, Figure{"gap", "s", "behind the winner, of a car that finished"});
+  visit(car.best_lap(), Figure{"best_lap", "s", "time of the best whole lap"});
+  visit(car.lap_times, Figure{"lap_times", "s", "times of the whole laps; the first begins with the start"});
+  visit(car.progress, Figure{"progress", "m", "along the course beyond the finish line"});
+  visit(car.distance, Figure{"distance", "m", "distance driven"});
+  visit(car.overtakes, Figure{"overtakes", "", "cars that it overtook"});
+  visit(car.overtaken, Figure{"overtaken", "", "times that it was overtaken"});
+  visit(car.contacts, Figure{"contacts", "", "contacts with other cars"});
+  visit(car.caused, Figure{"contacts_caused", "", "those of them at which it is at fault"});
+}
 
 /// A race that has ended.
 struct GridRaceResult {
@@ -141,6 +160,14 @@ struct ContactRate {
   double per_100_km = 0;  ///< caused; NaN without a distance
   Interval interval;      ///< 95 % interval of the rate (poisson_interval)
 };
+/// Calls `visit(value, Figure)` for every figure of a rate in the order of tables.
+template <class Visit>
+void visit_figures(const ContactRate& rate, Visit&& visit) {
+  visit(rate.contacts, Figure{"contacts", "", "contacts with other cars"});
+  visit(rate.caused, Figure{"contacts_caused", "", "those of them at which the car is at fault"});
+  visit(rate.kilometres, Figure{"driven", "km", "distance driven in all races"});
+  visit(rate.per_100_km, Figure{"caused_per_100_km", "", "contacts caused in 100 km"});
+}
 /// Returns the rate of the car of one entry, or of all cars together for -1, over several races.
 ContactRate contact_rate(std::span<const GridRaceResult> races, int entry = -1);
 

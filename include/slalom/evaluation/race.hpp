@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "slalom/evaluation/lap.hpp"
+#include "slalom/evaluation/lap_figures.hpp"
 
 namespace slalom::evaluation {
 
@@ -64,6 +65,13 @@ struct GripUse {
   double p99 = 0;     ///< m/s^2, 99th percentile
   double beyond = 0;  ///< share of the time in which it is above `limit`
 };
+/// Calls `visit(value, Figure)` for every figure of a use of grip in the order of tables.
+template <class Visit>
+void visit_figures(const GripUse& grip, Visit&& visit) {
+  visit(grip.p50, Figure{"grip_p50", "m/s^2", "median over time of the acceleration"});
+  visit(grip.p99, Figure{"grip_p99", "m/s^2", "99th percentile over time of the acceleration"});
+  visit(grip.beyond, Figure{"beyond_grip", "", "share of the time outside the friction circle"});
+}
 /// Returns the grip used in one lap, or in several whose samples follow each other. `limit` in m/s^2.
 GripUse grip_use(std::span<const RacingSample> samples, double limit);
 
