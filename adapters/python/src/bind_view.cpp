@@ -177,7 +177,7 @@ std::unique_ptr<view::View> make_view(const py::object& controller, Drawing draw
 }  // namespace
 
 void bind_view(py::module_& module) {
-  py::class_<view::View>(module, "_View", "A page that shows a controller; slalom.show makes it.")
+  py::class_<view::View>(module, "_View", "A page that shows a controller; slalom.show makes it.", guarded())
       .def(py::init([](const py::object& controller, std::vector<double> start, int x, int y,
                        std::optional<int> heading, py::object pose, double length, double width,
                        py::object figure, py::object shapes, py::object move,
