@@ -8,7 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
-#include "view/protocol/car_frame.hpp"
+#include "view/car/car_frame.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
@@ -40,7 +40,7 @@ std::string record(bool wall_clock, int ticks = 12, bool ghost = false, bool eve
   recorder.add_course(encode_scene(*facts));
   for (int i = 0; i < ticks; ++i)
     loop.step([&](const evaluation::ControlStep& tick) {
-      const std::string frame = encode_car(*facts, tick, 0.025, 0.1, 0);
+      const std::string frame = encode_car(facts, tick, 0.025, 0.1, 0);
       recorder.add_frame(ghost ? frame + encode_ghost_frame(frame) : frame);
     });
   recorder.finish();
@@ -75,7 +75,7 @@ TEST(CarFrame, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
     int shown = 0;
     for (int i = 0; i < 60; ++i)
       loop.step([&](const evaluation::ControlStep& tick) {
-        shown += shows_the_opponent(tick, encode_car(*facts, tick, 0.025, 0.1, 0));
+        shown += shows_the_opponent(tick, encode_car(facts, tick, 0.025, 0.1, 0));
       });
     if (mode == evaluation::TrackingMode::off)
       EXPECT_EQ(shown, 0);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "slalom/core/version.hpp"
 #include "slalom/view/serve.hpp"
@@ -8,7 +9,10 @@
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
+#include "view/car/car_frame.hpp"
+#include "view/car/car_subject.hpp"
 #include "view/embedded.hpp"
+#include "view/recording/drive_files.hpp"
 #include "view/server/server.hpp"
 #include "view/session/session.hpp"
 
@@ -45,32 +49,36 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
                       .seed = arguments.seed,
                       .obstacles = arguments.scenario.obstacles,
                       .opponents = arguments.scenario.opponents};
-  options.load = [given = arguments.scenario](const view::ScenarioNames& names) {
+  options.load = [given = arguments.scenario](view::ScenarioNames& names) {
     ScenarioArguments a = given;
     a.course = names.course;
     a.config = names.config;
     a.obstacles = names.obstacles;
     a.obstacle.resize(std::min(a.obstacle.size(), static_cast<std::size_t>(names.obstacles)));
     a.opponents = names.opponents;
-    Scenario scenario = load_scenario(a, names.method);
-    return view::LoadedScenario{scenario.environment, scenario.configuration, scenario.lap};
+    const Scenario scenario = load_scenario(a, names.method);
+    names = view::with_course(names, *scenario.environment);
+    return view::car_subject({scenario.environment, {scenario.configuration, names.method}, scenario.lap},
+                             names.seed);
   };
   options.choices = choices();
   options.against = arguments.against;
   options.introduction = arguments.introduction;
-  options.record_all = arguments.record_all;
-  options.record_times = arguments.record_times;
-  options.program = std::string("slalom ") + version();
   options.further_arguments = further_arguments(arguments.scenario);
+  view::add_files(options, {.program = std::string("slalom ") + version(),
+                            .everything = arguments.record_all,
+                            .times = arguments.record_times});
   return options;
 }
 
 int view(const ViewArguments& arguments) {
-  const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
-  view::Server server(options, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
-  view::Session session(session_options(arguments), server);
+  const view::ServerOptions address = server_options(arguments.host, arguments.port, arguments.token);
+  view::Server server(address, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
+  view::SessionOptions options = session_options(arguments);
+  std::unique_ptr<view::Subject> car = options.load(options.scenario);
+  view::Session session(std::move(car), server, std::move(options));
   const InterruptFlag interrupt;
-  print_address(view::address_of(server, options));
+  print_address(view::address_of(server, address));
   while (!interrupt.raised()) session.turn(std::chrono::milliseconds(50));
   return 0;
 }

@@ -1,8 +1,9 @@
-#include "view/protocol/car_frame.hpp"
+#include "view/car/car_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "slalom/core/gravity.hpp"
 #include "slalom/sim/shapes.hpp"
@@ -86,120 +87,133 @@ void put_others(FrameWriter& to, const ControlStep& step) {
   to.end();
 }
 
-/// The car of a control step. Its states are x, y, yaw, speed and steering.
-class CarSource final : public FrameSource {
- public:
-  CarSource(const SubjectFacts& facts, const ControlStep& step)
-      : facts_(facts), step_(step), inputs_(step.output.inputs.begin(), step.output.inputs.end()) {}
-
-  const SubjectFacts& facts() const override { return facts_; }
-  int status(const SolveResult&) const override { return static_cast<int>(step_.output.status); }
-  std::span<const double> inputs() const override { return inputs_; }
-  std::size_t inputs_per_step() const override {
-    return static_cast<std::size_t>(step_.planner.solver().inputs());
-  }
-
-  Trajectories roll_out(std::span<const double>, std::span<const float> sequences) override {
-    Trajectories all;
-    const auto length = static_cast<std::size_t>(step_.planner.solver().horizon()) * inputs_per_step();
-    std::vector<PredictedState> states(length / inputs_per_step() + 1);
-    for (std::size_t at = 0; at + length <= sequences.size(); at += length) {
-      step_.planner.predict(sequences.subspan(at, length), states);
-      vehicle::PredictedCost before;
-      all.collisions.push_back(-1);
-      for (std::size_t k = 0; k < states.size(); ++k) {
-        const PredictedState& state = states[k];
-        const vehicle::PredictedCost& sum = state.cost;
-        const double distance = sum.distance - before.distance;
-        all.states.insert(all.states.end(),
-                          {state.pose.x, state.pose.y, state.pose.yaw, state.speed, state.steer});
-        all.costs.insert(all.costs.end(),
-                         {distance, sum.state - before.state - distance, sum.collision - before.collision});
-        if (sum.collided && all.collisions.back() < 0) all.collisions.back() = static_cast<int>(k);
-        before = sum;
-      }
-    }
-    return all;
-  }
-  std::vector<maps::Pose> poses(std::span<const double> states) override {
-    std::vector<maps::Pose> all;
-    for (std::size_t at = 0; at < states.size(); at += state_size)
-      all.push_back({states[at], states[at + 1], states[at + 2]});
-    return all;
-  }
-  std::vector<Line> figure(std::span<const double>) override { return {}; }
-
-  std::vector<Shape> shapes() override {
-    std::vector<Shape> all;
-    const sim::World& world = step_.world;
-    const sim::CarParameters& car = world.options().car;
-    const auto& hit = step_.seen.colliding;
-    for (std::size_t i = 1; i < world.bodies(); ++i) {
-      const sim::Box body = world.outline(i);
-      Shape shape = box(body.pose, body.length, body.width);
-      shape.is_disc = world.disc(i).has_value();
-      const bool is_car = body.length == car.length && body.width == car.width;
-      if (i < world.cars())
-        shape.kind = ShapeKind::opponent;
-      else if (is_car && !shape.is_disc)
-        shape.kind = ShapeKind::parked_car;
-      shape.touched = std::find(hit.begin(), hit.end(), static_cast<int>(i)) != hit.end();
-      all.push_back(std::move(shape));
-    }
-    return all;
-  }
-
-  std::vector<double> figures() override {
-    const sim::World& world = step_.world;
-    const sim::CarState& car = world.state(0);
-    const vehicle::PlannerOutput& out = step_.output;
-    const StageTimes times = out.solve ? out.solve->times : StageTimes{};
-    const sim::LapTimer& laps = *world.laps(0);
-    const int lap = laps.laps();
-    std::vector<double> all{car.speed,         car.steer,         car.yaw_rate,      car.slip,
-                            out.command.steer, out.command.speed, out.steer_estimate};
-    for (const double time : {times.draw, times.evaluate, times.guide, times.update, times.total})
-      all.push_back(1e3 * time);
-    all.insert(all.end(), {static_cast<double>(lap), step_.time - laps.lap_start_time(),
-                           laps.progress() / world.track().lap_path()->length() - lap, laps.offset(),
-                           clearance_of(world), step_.cost.total()});
-    const vehicle::ParameterEstimate& estimate = out.parameters;
-    if (estimate.friction > 0) {
-      const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
-      all.insert(all.end(), {out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction,
-                             estimate.cautious_friction, estimate.steering_gain, estimate.steering_offset,
-                             estimate.delay});
-    } else {
-      all.insert(all.end(), 7, none);  // the tyres do not slip
-    }
-    const maps::Pose& rear = step_.odometry.pose;
-    all.insert(all.end(), {rear.x, rear.y, rear.yaw, step_.odometry.speed});
-    return all;
-  }
-  std::string blocks() override {
-    FrameWriter to;
-    put_scan(to, step_);
-    put_cost_map(to, step_);
-    put_others(to, step_);
-    return to.take_blocks();
-  }
-  std::optional<StepMeasures> measures() const override {
-    return StepMeasures{step_.time, step_.output.tick_time, step_.seen.collides(), step_.collisions};
-  }
-
- private:
-  const SubjectFacts& facts_;
-  const ControlStep& step_;
-  std::vector<double> inputs_;
-};
-
 }  // namespace
+
+void CarSource::observe(const ControlStep& step, double prediction_step) {
+  step_ = &step;
+  prediction_step_ = prediction_step;
+  inputs_.assign(step.output.inputs.begin(), step.output.inputs.end());
+}
+
+int CarSource::status(const SolveResult&) const {
+  return static_cast<int>(step_->output.status);
+}
+
+std::size_t CarSource::inputs_per_step() const {
+  return static_cast<std::size_t>(step_->planner.solver().inputs());
+}
+
+Trajectories CarSource::roll_out(std::span<const double>, std::span<const float> sequences) {
+  Trajectories all;
+  const auto length = static_cast<std::size_t>(step_->planner.solver().horizon()) * inputs_per_step();
+  std::vector<PredictedState> states(length / inputs_per_step() + 1);
+  for (std::size_t at = 0; at + length <= sequences.size(); at += length) {
+    step_->planner.predict(sequences.subspan(at, length), states);
+    vehicle::PredictedCost before;
+    all.collisions.push_back(-1);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const PredictedState& state = states[k];
+      const vehicle::PredictedCost& sum = state.cost;
+      const double distance = sum.distance - before.distance;
+      all.states.insert(all.states.end(),
+                        {state.pose.x, state.pose.y, state.pose.yaw, state.speed, state.steer});
+      all.costs.insert(all.costs.end(),
+                       {distance, sum.state - before.state - distance, sum.collision - before.collision});
+      if (sum.collided && all.collisions.back() < 0) all.collisions.back() = static_cast<int>(k);
+      before = sum;
+    }
+  }
+  return all;
+}
+
+std::vector<maps::Pose> CarSource::poses(std::span<const double> states) {
+  std::vector<maps::Pose> all;
+  for (std::size_t at = 0; at < states.size(); at += state_size)
+    all.push_back({states[at], states[at + 1], states[at + 2]});
+  return all;
+}
+
+std::vector<double> CarSource::figures() {
+  const sim::World& world = step_->world;
+  const sim::CarState& car = world.state(0);
+  const vehicle::PlannerOutput& out = step_->output;
+  const StageTimes times = out.solve ? out.solve->times : StageTimes{};
+  const sim::LapTimer& laps = *world.laps(0);
+  const int lap = laps.laps();
+  std::vector<double> all{car.speed,         car.steer,         car.yaw_rate,      car.slip,
+                          out.command.steer, out.command.speed, out.steer_estimate};
+  for (const double time : {times.draw, times.evaluate, times.guide, times.update, times.total})
+    all.push_back(1e3 * time);
+  all.insert(all.end(), {static_cast<double>(lap), step_->time - laps.lap_start_time(),
+                         laps.progress() / world.track().lap_path()->length() - lap, laps.offset(),
+                         clearance_of(world), step_->cost.total()});
+  const vehicle::ParameterEstimate& estimate = out.parameters;
+  if (estimate.friction > 0) {
+    const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
+    all.insert(all.end(), {out.slip_estimate, turning / (estimate.friction * gravity), estimate.friction,
+                           estimate.cautious_friction, estimate.steering_gain, estimate.steering_offset,
+                           estimate.delay});
+  } else {
+    all.insert(all.end(), 7, none);  // the tyres do not slip
+  }
+  const maps::Pose& rear = step_->odometry.pose;
+  all.insert(all.end(), {rear.x, rear.y, rear.yaw, step_->odometry.speed});
+  return all;
+}
+
+std::string CarSource::blocks() {
+  FrameWriter to;
+  put_scan(to, *step_);
+  put_cost_map(to, *step_);
+  put_others(to, *step_);
+  return to.take_blocks();
+}
+
+std::optional<StepMeasures> CarSource::measures() const {
+  return StepMeasures{step_->time, step_->output.tick_time, step_->seen.collides(), step_->collisions,
+                      prediction_step_};
+}
+
+SolveResult CarSource::solve() const {
+  SolveResult solve = step_->output.solve ? *step_->output.solve : SolveResult{};
+  if (!step_->output.inputs.empty()) solve.inputs = step_->output.inputs;
+  return solve;
+}
+
+std::vector<Shape> CarSource::shapes() {
+  return shapes_of(step_->world);
+}
+
+std::vector<Shape> shapes_of(const sim::World& world) {
+  std::vector<Shape> all;
+  const sim::CarParameters& car = world.options().car;
+  const auto hit = world.observe(0).colliding;
+  for (std::size_t i = 1; i < world.bodies(); ++i) {
+    const sim::Box body = world.outline(i);
+    Shape shape = box(body.pose, body.length, body.width);
+    shape.is_disc = world.disc(i).has_value();
+    const bool is_car = body.length == car.length && body.width == car.width;
+    if (i < world.cars())
+      shape.kind = ShapeKind::opponent;
+    else if (is_car && !shape.is_disc)
+      shape.kind = ShapeKind::parked_car;
+    shape.touched = std::find(hit.begin(), hit.end(), static_cast<int>(i)) != hit.end();
+    all.push_back(std::move(shape));
+  }
+  return all;
+}
+
+std::vector<double> state_of(const sim::World& world) {
+  const sim::CarState& car = world.state(0);
+  return {car.x, car.y, car.yaw, car.speed, car.steer};
+}
 
 std::shared_ptr<const SubjectFacts> car_facts(const evaluation::Environment* environment) {
   SubjectFacts facts;
   facts.inputs = {"steering, rad", "acceleration, m/s^2"};
   facts.terms = {"distance", "yaw", "collision"};
-  facts.can_place = facts.can_move = true;
+  facts.can_place = facts.can_move = facts.can_add = facts.can_delay = true;
+  facts.fixes_seed = facts.scans_ahead = true;
   for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)
     facts.statuses.emplace_back(name(static_cast<vehicle::PlannerStatus>(i)));
   facts.figures = words_of(figure_labels);
@@ -241,19 +255,16 @@ std::vector<OptionSection> sections_of(const vehicle::Configuration& configurati
   return sections;
 }
 
-std::string encode_car(const SubjectFacts& facts, const ControlStep& step, double period,
+std::string encode_car(std::shared_ptr<const SubjectFacts> facts, const ControlStep& step, double period,
                        double prediction_step, int method) {
-  CarSource source(facts, step);
-  SolveResult solve = step.output.solve ? *step.output.solve : SolveResult{};
-  if (!step.output.inputs.empty()) solve.inputs = step.output.inputs;
-  const sim::CarState& car = step.world.state(0);
-  return encode_frame(source, solve,
+  CarSource source(std::move(facts));
+  source.observe(step, prediction_step);
+  return encode_frame(source, source.solve(),
                       {.tick = step.step,
                        .measures = *source.measures(),
                        .period = period,
-                       .prediction_step = prediction_step,
                        .method = method,
-                       .state = {car.x, car.y, car.yaw, car.speed, car.steer}})
+                       .state = state_of(step.world)})
       .message;
 }
 
