@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "view/car/car_frame.hpp"
 #include "view/car/car_subject.hpp"
 #include "view/recording/drive_files.hpp"
 #include "view/web_client.hpp"

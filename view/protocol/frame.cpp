@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "view/protocol/blocks.hpp"
 #include "view/protocol/frame_writer.hpp"
-#include "view/protocol/scene_blocks.hpp"
-#include "view/protocol/solve_blocks.hpp"
 
 namespace slalom::view {
 namespace {

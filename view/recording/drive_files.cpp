@@ -9,7 +9,6 @@
 #include "view/embedded.hpp"
 #include "view/protocol/frame_writer.hpp"
 #include "view/recording/encodings.hpp"
-#include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
 
 namespace slalom::view {
@@ -36,7 +35,7 @@ void write(const StoredDrive& drive, Writer& to) {
   to.finish();
 }
 
-Message make_replay(const StoredDrive& drive, const DriveFileOptions& files) {
+Message make_replay(const StoredDrive& drive, const RecorderOptions& files) {
   std::vector<std::string> segments;
   ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); },
                         files.everything);
@@ -44,23 +43,20 @@ Message make_replay(const StoredDrive& drive, const DriveFileOptions& files) {
   return file_message(drive.name + ".html", replay_page(gunzip(page_gzip()), segments));
 }
 
-Message make_recording(const StoredDrive& drive, const DriveFileOptions& files) {
+Message make_recording(const StoredDrive& drive, RecorderOptions files) {
   const Scanner scanner = drive.scanner.value_or(Scanner{});
-  const Json settings = {{"command_line", drive.command_line}};
+  files.settings = {{"settings", json_text({{"command_line", drive.command_line}})}};
+  files.lidar_angle_min = scanner.angle_min;
+  files.lidar_angle_increment = scanner.angle_increment;
   std::ostringstream stream;
-  Recorder recorder(stream, {.program = files.program,
-                             .settings = {{"settings", json_text(settings)}},
-                             .lidar_angle_min = scanner.angle_min,
-                             .lidar_angle_increment = scanner.angle_increment,
-                             .everything = files.everything,
-                             .wall_clock = files.times});
+  Recorder recorder(stream, files);
   write(drive, recorder);
   return file_message(drive.name + ".mcap", std::move(stream).str());
 }
 
 }  // namespace
 
-void add_files(SessionOptions& options, const DriveFileOptions& files) {
+void add_files(SessionOptions& options, const RecorderOptions& files) {
   options.packing = {pack, unpack};
   options.save = [files, writing = std::make_shared<std::future<void>>()](
                      const std::string& what, StoredDrive drive, std::function<void(Message)> send) {

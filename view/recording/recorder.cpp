@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "json/json.hpp"
-#include "view/car/car_frame.hpp"
+#include "view/car/car_subject.hpp"
 #include "view/embedded.hpp"
 #include "view/recording/small_frame.hpp"
 

@@ -74,11 +74,6 @@ void Session::begin(Drives drives) {
   if (paused_) tick();
 }
 
-/// Drives again from the start, with the present options of what is driven and of the ghost.
-void Session::restart() {
-  begin(drives_->restarted());
-}
-
 void Session::tick() {
   pace_.step(control_period(), rate_);
   timeline_.checkpoint(*drives_);

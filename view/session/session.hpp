@@ -72,7 +72,6 @@ class Session {
   // Driving.
   void install(std::unique_ptr<Subject> subject);
   void begin(Drives drives);
-  void restart();
   void tick();
   DrivenTick drive(Drives& drives, int solves);
   Frame drive(Run& run, StepRecord& record, double& update_time);
@@ -128,7 +127,7 @@ class Session {
   std::optional<Drives> drives_;
   Timeline timeline_;
   std::optional<Drives> held_;  ///< while nothing moves: what a change last applied to, with the change
-  std::shared_ptr<const Settings> settings_;  ///< of what is driven
+  std::shared_ptr<const Settings> settings_;  ///< present method and options
   OptionTexts loaded_;                        ///< values of all options without changes
   std::shared_ptr<const std::string> scene_;  ///< message with map and course; empty if there is neither
   Bounds bounds_;                             ///< around all that was drawn

@@ -45,7 +45,7 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
     pace_.due = Clock::now();
   } else if (what == "restart") {
     paused_ = false;
-    restart();
+    begin(drives_->restarted());
   } else {
     return false;
   }

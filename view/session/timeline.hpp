@@ -32,7 +32,7 @@ struct Packing {
 /// A tick that was driven.
 struct DrivenTick {
   int tick = 0;
-  std::array<StepRecord, 2> records{};         ///< of what is driven, and of the ghost
+  std::array<StepRecord, 2> records{};         ///< facts about what is driven and the ghost
   std::shared_ptr<const Settings> settings{};  ///< method and options that drove
   std::shared_ptr<const std::string> frame{};  ///< message to the page, or what it is packed to
   Bounds bounds{};                             ///< around all that it draws

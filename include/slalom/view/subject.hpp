@@ -96,7 +96,7 @@ struct DrivenLap {
   bool ghost = false;  ///< whether the ghost has driven it
 };
 
-/// What a step begins with.
+/// Facts with which a step begins.
 struct DriveRequest {
   double elapsed = 0;  ///< s since the last solve
   double delay = 0;    ///< s by which the command takes effect later than the settings say
