@@ -27,9 +27,10 @@ void require_shape(Subject& subject, int shape) {
   field::require(shape >= 0 && shape < std::ssize(subject.shapes()), "body", "a shape of the scene");
 }
 
-void apply(Subject& subject) {
-  if (const SolverOptions* options = subject.options()) field::check_samples(*options);
-  subject.apply();
+void apply(Run& run) {
+  if (const SolverOptions* options = run.subject->options()) field::check_samples(*options);
+  run.subject->apply();
+  run.settings = std::make_shared<const Settings>(settings_of(*run.subject));
 }
 
 void set_texts(Subject& subject, const OptionTexts& texts) {
@@ -68,6 +69,7 @@ std::vector<double> SolverSubject::drive(std::span<const double> state, const Dr
 
 Run::Run(Polymorphic<Subject> made)
     : subject(std::move(made)),
+      settings(std::make_shared<const Settings>(settings_of(*subject))),
       state(subject->start()),
       period(subject->time_step() > 0 ? subject->time_step() : usual_period) {}
 
@@ -194,7 +196,7 @@ Action set_options(OptionTexts texts) {
   return [texts = std::move(texts)](Drives& drives) {
     drives.edited = true;
     set_texts(*drives.driven.subject, texts);
-    apply(*drives.driven.subject);
+    apply(drives.driven);
   };
 }
 
@@ -202,7 +204,7 @@ Action change_method(SolverOptions options) {
   return [options = std::move(options)](Drives& drives) {
     drives.edited = true;
     drives.driven.subject->set_options(options);
-    apply(*drives.driven.subject);
+    apply(drives.driven);
   };
 }
 
@@ -214,7 +216,7 @@ Action restore(Settings settings) {
     if (subject.options() && subject.options()->method() != settings.method)
       subject.set_options(method_options(subject, settings.method, wanted, settings.method));
     set_texts(subject, changed_texts(settings_of(subject), wanted));
-    apply(subject);
+    apply(drives.driven);
   };
 }
 
@@ -225,7 +227,7 @@ Action start_ghost(std::string label, std::optional<SolverOptions> method) {
     drives.ghost_start = drives.ticks();
     if (!method) return;
     drives.ghost->subject->set_options(*method);
-    apply(*drives.ghost->subject);
+    apply(*drives.ghost);
   };
 }
 

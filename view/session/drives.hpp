@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,12 +21,21 @@ struct StepRecord {
   bool collides = false;  ///< whether the body collided
 };
 
+/// The method of a subject and all options.
+struct Settings {
+  std::string method{};                   ///< empty with a solver of the user's own
+  std::vector<OptionSection> sections{};  ///< that of the method first
+
+  OptionTexts texts() const;  ///< values of all options
+};
+Settings settings_of(const Subject& subject);
 /// A subject and where its state is. A copy continues bit for bit like the original.
 struct Run {
   /// Begins a drive.
   explicit Run(Polymorphic<Subject> subject);
 
   Polymorphic<Subject> subject;
+  std::shared_ptr<const Settings> settings;  ///< method and options
   std::vector<double> state;
   double period;       ///< s of a control step
   int steps = 0;       ///< control steps until now
@@ -52,14 +62,6 @@ struct Drives {
   std::vector<DrivenLap> laps() const;  ///< laps of both, in the order of their ends
 };
 
-/// The method of a subject and all options.
-struct Settings {
-  std::string method{};                   ///< empty with a solver of the user's own
-  std::vector<OptionSection> sections{};  ///< that of the method first
-
-  OptionTexts texts() const;  ///< values of all options
-};
-Settings settings_of(const Subject& subject);
 /// Returns the values of `wanted` that differ from the settings, but none that they do not have.
 OptionTexts changed_texts(const Settings& settings, const OptionTexts& wanted);
 /// Returns the options with which a method begins: the subject's own, else its defaults with those that all

@@ -45,7 +45,7 @@ void Session::install(std::unique_ptr<Subject> subject) {
   Drives drives{Run(std::move(subject))};
   std::string scene = encode_scene(drives.driven.subject->facts());
   scene_ = scene.empty() ? nullptr : shared(std::move(scene));
-  loaded_ = settings_of(*drives.driven.subject).texts();
+  loaded_ = drives.driven.settings->texts();
   undo_.clear();
   redo_.clear();
   if (scene_) server_.send(0, {scene_, true});
@@ -55,7 +55,6 @@ void Session::install(std::unique_ptr<Subject> subject) {
 /// Begins with other drives, without a past.
 void Session::begin(Drives drives) {
   drives_ = std::move(drives);
-  settings_ = std::make_shared<const Settings>(settings_of(*drives_->driven.subject));
   timeline_ = Timeline(control_period(), options_.packing);
   held_.reset();
   if (!facts().course.empty()) bounds_ = bounds_of(facts().course);
@@ -83,7 +82,7 @@ void Session::tick() {
 
 /// Drives one step. `solves`: DriveRequest::solves.
 DrivenTick Session::drive(Drives& drives, int solves) {
-  DrivenTick driven{.tick = drives.ticks(), .settings = settings_};
+  DrivenTick driven{.tick = drives.ticks(), .settings = drives.driven.settings};
   for (std::size_t i = 0; i < 2; ++i)
     driven.records[i] = {.delay = is_real_time_ ? last_updates_[i] : 0, .solves = solves};
   std::string ghost;
@@ -162,21 +161,14 @@ void Session::perform(const Action& action, int lead) {
     acted_ = 0;
     return begin(drives.restarted());
   }
-  auto settings = std::make_shared<const Settings>(settings_of(*drives.driven.subject));
   const int acted = drives.ticks();
-  std::swap(settings_, settings);
   std::optional<Drives> before;
   std::vector<DrivenTick> ticks;
   if (is_driven_again) {
     before = drives;
-    try {
-      while (drives.ticks() <= shown) {
-        if (!ticks.empty()) timeline_.act(drives);
-        ticks.push_back(drive(drives, solves_of_change));
-      }
-    } catch (...) {
-      settings_ = std::move(settings);
-      throw;
+    while (drives.ticks() <= shown) {
+      if (!ticks.empty()) timeline_.act(drives);
+      ticks.push_back(drive(drives, solves_of_change));
     }
     forget_after(acted - 1, shown);
   }

@@ -119,7 +119,9 @@ class Session {
   const SubjectFacts& facts() const { return drives_->driven.subject->facts(); }
   double control_period() const { return drives_->driven.period; }
   /// The method and options of the step that is shown.
-  const Settings& settings() const { return viewed_ >= 0 ? *timeline_.at(viewed_).settings : *settings_; }
+  const Settings& settings() const {
+    return viewed_ >= 0 ? *timeline_.at(viewed_).settings : *drives_->driven.settings;
+  }
 
   Server& server_;
   Audience audience_;
@@ -127,8 +129,7 @@ class Session {
   std::optional<Drives> drives_;
   Timeline timeline_;
   std::optional<Drives> held_;  ///< while nothing moves: what a change last applied to, with the change
-  std::shared_ptr<const Settings> settings_;  ///< present method and options
-  OptionTexts loaded_;                        ///< values of all options without changes
+  OptionTexts loaded_;          ///< values of all options without changes
   std::shared_ptr<const std::string> scene_;  ///< message with map and course; empty if there is neither
   Bounds bounds_;                             ///< around all that was drawn
   std::vector<Change> undo_, redo_;           ///< changes to undo and to do again, newest last

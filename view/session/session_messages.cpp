@@ -33,7 +33,7 @@ std::string Session::hello() const {
   if (options_.load) can.emplace_back("scenario");
   if (facts.can_delay) can.emplace_back("real_time");
   if (options_.save) can.emplace_back("save");
-  if (!settings_->method.empty()) can.emplace_back("ghost");
+  if (!settings().method.empty()) can.emplace_back("ghost");
   return hello_message(facts, options_.choices, stored_seconds, control_period(), can);
 }
 
@@ -52,7 +52,7 @@ std::string Session::state() const {
   now.newest = timeline_.newest();
   now.oldest = timeline_.oldest();
   now.edited = drives_->edited;
-  if (drives_->ghost) now.ghost = settings_of(*drives_->ghost->subject).method;
+  if (drives_->ghost) now.ghost = drives_->ghost->settings->method;
   now.ghost_label = drives_->ghost_label;
   now.control_period = control_period();
   return state_message(now);

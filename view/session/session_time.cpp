@@ -89,7 +89,6 @@ void Session::continue_from_shown() {
   if (viewed_ < 0) return;
   present();
   drives_ = std::move(*std::exchange(held_, std::nullopt));
-  settings_ = timeline_.at(viewed_).settings;
   drives_->tick(timeline_.at(viewed_).records);
   forget_after(viewed_, viewed_);
   pace_.due = Clock::now();
