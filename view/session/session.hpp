@@ -105,7 +105,6 @@ class Session {
   void obey(std::uint64_t client, const std::string& what, const Json& command);
   bool obey_transport(const std::string& what, const Json& command);
   bool obey_edit(const std::string& what, const Json& command);
-  bool obey_scenario(const std::string& what, const Json& command);
   bool obey_options(const std::string& what, const Json& command);
   void save(std::uint64_t client, const std::string& what);
 

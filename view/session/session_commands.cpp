@@ -96,8 +96,7 @@ void Session::obey(std::uint64_t client, const std::string& what, const Json& co
   if (what == "save" && options_.save) return save(client, field::text(command, "what"));
   audience_.require_driver(client);
   is_state_changed_ = true;
-  if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_scenario(what, command) &&
-      !obey_options(what, command))
+  if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_options(what, command))
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command of this page");
   // Another scenario or another rate ends the introduction.
   const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);
@@ -129,7 +128,7 @@ bool Session::obey_edit(const std::string& what, const Json& command) {
   return true;
 }
 
-bool Session::obey_scenario(const std::string& what, const Json& command) {
+bool Session::obey_options(const std::string& what, const Json& command) {
   if (what == "real_time" && facts().can_delay) {
     is_real_time_ = field::flag(command, "on");
     if (is_real_time_) rate_ = 1;
@@ -141,14 +140,7 @@ bool Session::obey_scenario(const std::string& what, const Json& command) {
     options_.scenario = std::move(names);
     paused_ = false;
     install(std::move(subject));
-  } else {
-    return false;
-  }
-  return true;
-}
-
-bool Session::obey_options(const std::string& what, const Json& command) {
-  if (what == "set") {
+  } else if (what == "set") {
     change_options(set_options({{field::text(command, "key"), field::text(command, "value")}}));
   } else if (what == "reset_options") {
     change_options(set_options(changed_texts(settings(), loaded_)));
@@ -205,8 +197,7 @@ void Session::undo(bool again) {
 void Session::fork(const Json& command) {
   const std::string method = field::text(command, "method"), before = settings().method;
   std::optional<SolverOptions> other;
-  const SolverOptions wanted = options_for(method);
-  if (method != before) other = wanted;
+  if (method != before) other = options_for(method);
   const Action ghost = start_ghost(before == method ? before + " as before" : before);
   change_options([=, texts = settings_in(command)](Drives& drives) {
     ghost(drives);
@@ -222,8 +213,7 @@ void Session::fork(const Json& command) {
 void Session::set_ghost(const std::string& method) {
   if (method.empty()) return perform(end_ghost);
   std::optional<SolverOptions> other;
-  const SolverOptions wanted = options_for(method);
-  if (method != settings().method) other = wanted;
+  if (method != settings().method) other = options_for(method);
   perform(start_ghost(method, std::move(other)));
 }
 

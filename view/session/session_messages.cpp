@@ -27,13 +27,14 @@ void Session::tell() {
 std::string Session::hello() const {
   const SubjectFacts& facts = this->facts();
   std::vector<std::string> can;
-  if (facts.can_place) can.emplace_back("place");
-  if (facts.can_move) can.emplace_back("move");
-  if (facts.can_add) can.emplace_back("add");
-  if (options_.load) can.emplace_back("scenario");
-  if (facts.can_delay) can.emplace_back("real_time");
-  if (options_.save) can.emplace_back("save");
-  if (!settings().method.empty()) can.emplace_back("ghost");
+  for (const auto& [word, holds] : {std::pair("place", facts.can_place),
+                                    {"move", facts.can_move},
+                                    {"add", facts.can_add},
+                                    {"scenario", bool(options_.load)},
+                                    {"real_time", facts.can_delay},
+                                    {"save", bool(options_.save)},
+                                    {"ghost", !settings().method.empty()}})
+    if (holds) can.emplace_back(word);
   return hello_message(facts, options_.choices, stored_seconds, control_period(), can);
 }
 
