@@ -9,7 +9,7 @@
 #include "logic/planner_core.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::nodes {
+namespace slalom::nodes::cores_test {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -154,4 +154,4 @@ TEST(FollowerOptions, AreRefusedWithTheirRuleAndThenNothingChanges) {
 }
 
 }  // namespace
-}  // namespace slalom::nodes
+}  // namespace slalom::nodes::cores_test

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace slalom::nodes {
+namespace slalom::nodes::follower_plan_test {
 namespace {
 
 /// A plan along the x axis of its frame, with a pose every 0.1 m.
@@ -99,4 +99,4 @@ TEST(FollowerPlan, WithoutPosesOrWithOneThatIsNotFiniteChangesNothing) {
 }
 
 }  // namespace
-}  // namespace slalom::nodes
+}  // namespace slalom::nodes::follower_plan_test

@@ -10,7 +10,7 @@
 #include "logic/pose_trust.hpp"
 #include "logic/reports.hpp"
 
-namespace slalom::nodes {
+namespace slalom::nodes::input_watch_test {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -173,4 +173,4 @@ TEST(ThrottledLog, WritesAtMostOneMessagePerSecondAndTheLastOneThatWaits) {
 }
 
 }  // namespace
-}  // namespace slalom::nodes
+}  // namespace slalom::nodes::input_watch_test

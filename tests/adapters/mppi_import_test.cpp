@@ -8,7 +8,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::nodes {
+namespace slalom::nodes::mppi_import_test {
 namespace {
 
 /// Imports a file with these lines in the section of the controller, from line 6 on.
@@ -190,4 +190,4 @@ TEST(MppiImport, RefusesBadInputWithFileLineKeyAndRule) {
 }
 
 }  // namespace
-}  // namespace slalom::nodes
+}  // namespace slalom::nodes::mppi_import_test

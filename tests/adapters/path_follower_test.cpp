@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace slalom::nodes {
+namespace slalom::nodes::path_follower_test {
 namespace {
 
 using Problem = FollowerAnswer::Problem;
@@ -301,4 +301,4 @@ TEST(PathFollower, DrivesEveryBaseWithOtherMethods) {
 }
 
 }  // namespace
-}  // namespace slalom::nodes
+}  // namespace slalom::nodes::path_follower_test

@@ -9,7 +9,7 @@
 #include "logic/known_pose.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace slalom::nodes {
+namespace slalom::nodes::transforms_test {
 namespace {
 
 constexpr double quarter = std::numbers::pi / 2;  // rad
@@ -69,4 +69,4 @@ TEST(KnownPoseTest, IsReadFromAFileWhileItIsYoung) {
 }
 
 }  // namespace
-}  // namespace slalom::nodes
+}  // namespace slalom::nodes::transforms_test

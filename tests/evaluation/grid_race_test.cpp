@@ -132,18 +132,6 @@ std::vector<Driver> equals(std::size_t cars) {
   return std::vector<Driver>(cars, entry());
 }
 
-void expect_same(const GridRaceResult& a, const GridRaceResult& b) {
-  EXPECT_EQ(a.standings, b.standings);
-  EXPECT_EQ(a.contacts.size(), b.contacts.size());
-  EXPECT_EQ(a.overtakes.size(), b.overtakes.size());
-  for (std::size_t i = 0; i < a.cars.size(); ++i) {
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(a.cars[i].time), std::bit_cast<std::uint64_t>(b.cars[i].time));
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(a.cars[i].distance),
-              std::bit_cast<std::uint64_t>(b.cars[i].distance));
-    EXPECT_EQ(a.cars[i].last.x, b.cars[i].last.x);
-  }
-}
-
 TEST(GridRace, FourEqualCarsRace) {
   const GridRace race = race_of(equals(4));
   ASSERT_EQ(race.grid().size(), 4U);
@@ -183,26 +171,6 @@ TEST(GridRace, FourEqualCarsRace) {
   }
   EXPECT_EQ(contacts, 2 * static_cast<int>(first.contacts.size()));
   EXPECT_EQ(caused, static_cast<int>(first.contacts.size()));
-}
-
-TEST(GridRace, RepeatsWithAnyThreads) {
-  // Two races at once, the second with more threads in each solver.
-  const auto begin_of = [](const GridRace& race) {
-    std::atomic<bool> cancel = false;
-    int steps = 0;
-    return race.run(
-        3, 1, [&](const GridRaceStep&) { cancel = ++steps == 100; }, &cancel);
-  };
-  const GridRace race = race_of(equals(3)),
-                 with_threads = race_of(equals(3), 1, {.threads = 2, .tracking = TrackingMode::exact});
-  const GridRaceResult first = begin_of(race);
-  GridRaceResult again;
-  std::thread beside([&] { again = begin_of(race); });
-  const GridRaceResult other = begin_of(with_threads);
-  beside.join();
-  EXPECT_GT(first.cars[0].distance, 2);
-  expect_same(first, again);
-  expect_same(first, other);
 }
 
 TEST(GridRace, TheFasterCarOvertakesOrFollowsAndEveryDriverHasItsOwnOptions) {

@@ -14,46 +14,6 @@ LapSetup lap(const std::string& method, const LapSettings& settings = {.obstacle
   return {environment, {quick_configuration(), method}, settings};
 }
 
-TEST(LapDrive, FirstLapEqualsTheLapAlone) {
-  std::vector<double> steering, times;
-  run_lap(lap("mppi"), 3, [&](const ControlStep& tick) {
-    steering.push_back(tick.output.command.steer);
-    times.push_back(tick.time);
-  });
-  LapDrive drive(lap("mppi"), 3);
-  ASSERT_GT(steering.size(), 100u);
-  for (std::size_t i = 0; i < steering.size(); ++i) {
-    drive.step([&](const ControlStep& tick) {
-      ASSERT_EQ(tick.output.command.steer, steering[i]) << i;
-      ASSERT_EQ(tick.time, times[i]) << i;
-    });
-  }
-  EXPECT_GE(drive.world().laps(0)->laps(), 1);
-  const double there = drive.world().state(0).x;
-  for (int i = 0; i < 20; ++i) drive.step();
-  EXPECT_NE(drive.world().state(0).x, there) << "the car drives on";
-}
-
-/// A drive with an obstacle, another method and a late command on the way.
-sim::CarState with_interventions() {
-  LapDrive drive(lap("mppi"), 5);
-  for (int i = 0; i < 60; ++i) {
-    if (i == 20) drive.world().add_disc({{drive.world().state(0).x + 1, drive.world().state(0).y}, 0.1});
-    if (i == 40) drive.change_driver(lap("svg_mppi").driver);
-    drive.step({}, i == 30 ? 0.02 : 0);
-  }
-  EXPECT_EQ(drive.steps(), 60);
-  return drive.world().state(0);
-}
-
-TEST(LapDrive, SameInterventionsGiveTheSameDrive) {
-  const sim::CarState once = with_interventions();
-  EXPECT_TRUE(once == with_interventions());
-  LapDrive untouched(lap("mppi"), 5);
-  for (int i = 0; i < 60; ++i) untouched.step();
-  EXPECT_FALSE(once == untouched.world().state(0));
-}
-
 TEST(LapDrive, AnOpponentKeepsItsPlannerWhenTheControllerOfTheCarChanges) {
   // Half the course ahead, where neither car sees the other.
   const LapSettings settings{.opponents = 1, .planning_opponents = 1};

@@ -17,7 +17,7 @@ LapResult lap(const char* name, const LapSettings& settings, const char* place =
 }
 
 TEST(LocalisedLap, ThePlannerGetsAnEstimateOfThePose) {
-  const LapResult with = lap("default", {.localised = true}), without = lap("default", {});
+  const LapResult with = lap("default", {.localised = true}, "wren"), without = lap("default", {}, "wren");
   EXPECT_TRUE(with.finished);
   EXPECT_EQ(with.collisions, 0);
   EXPECT_TRUE(without.localisation.error.empty());
@@ -50,13 +50,13 @@ TEST(LocalisedLap, ParkedCarsThatHideWallsDoNotMoveTheEstimateElsewhere) {
 }
 
 TEST(LocalisedLap, ItsSensorsAreThoseOfTheWorld) {
-  const LapResult usual = lap("default", {.localised = true}, "wren", 2);
-  const LapResult noisy = lap("default", {.range_noise = 0.05, .localised = true}, "wren", 2);
+  const LapResult usual = lap("default", {.localised = true}, "wren", 1);
+  const LapResult noisy = lap("default", {.range_noise = 0.05, .localised = true}, "wren", 1);
   EXPECT_NE(noisy.localisation.error, usual.localisation.error);
   const HardwareConditions real;
   LapSettings both{.hardware = real, .localised = true};
-  EXPECT_EQ(lap("default", both, "wren", 2).mean_speed,
-            lap("default", {.hardware = real}, "wren", 2).mean_speed);
+  EXPECT_EQ(lap("default", both, "wren", 1).mean_speed,
+            lap("default", {.hardware = real}, "wren", 1).mean_speed);
 }
 
 TEST(TrackedLap, AnEstimatedPoseIsAsGoodAsTheTrueOne) {

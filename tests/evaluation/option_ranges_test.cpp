@@ -19,7 +19,7 @@
 #include "slalom/vehicle/model/vehicle_model.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom {
+namespace slalom::option_ranges_test {
 namespace {
 
 /// Values beside a range, which has no bound beyond 1e9.
@@ -90,4 +90,4 @@ TEST(OptionRanges, OfTrackerLocaliserAndVehicleAreKept) {
 }
 
 }  // namespace
-}  // namespace slalom
+}  // namespace slalom::option_ranges_test

@@ -152,32 +152,6 @@ TEST(Overtaking, OpponentsOfEveryKindAreInALapAndItRepeats) {
   EXPECT_EQ(row.overtaking.caused, first.overtaking.caused);
 }
 
-void expect_same(const LapResult& a, const LapResult& b) {
-  EXPECT_EQ(std::bit_cast<std::uint64_t>(a.state_cost), std::bit_cast<std::uint64_t>(b.state_cost));
-  EXPECT_EQ(a.time, b.time);
-  ASSERT_EQ(a.overtaking.encounters.size(), b.overtaking.encounters.size());
-  for (std::size_t i = 0; i < a.overtaking.encounters.size(); ++i)
-    EXPECT_EQ(a.overtaking.encounters[i].duration, b.overtaking.encounters[i].duration);
-}
-
-TEST(Overtaking, OpponentsWithPlannersAreInALapAndItRepeatsWithAnyThreads) {
-  LapSettings settings{.opponents = 3,
-                       .opponent_speed = PerInput{0.6, 0.7, 0.8},
-                       .blocking_opponents = 1,
-                       .planning_opponents = 2,
-                       .opponent_gap = 3,
-                       .tracking = TrackingMode::exact};
-  EXPECT_FALSE(has_planner(settings, 0));
-  EXPECT_TRUE(has_planner(settings, 1));
-  EXPECT_TRUE(has_planner(settings, 2));
-  const LapResult first = lap_with(settings);
-  ASSERT_FALSE(first.overtaking.encounters.empty());
-  EXPECT_LT(first.overtaking.encounters[0].time, 0.1) << "the first opponent starts 3 m ahead";
-  settings.threads = 2;
-  expect_same(first, lap_with(settings));
-  EXPECT_NE(first.state_cost, lap_with(settings, 2).state_cost);
-}
-
 /// m along the course that the opponent of a lap has driven after `time` (s). It starts half the course
 /// ahead: for the first seconds, neither car sees the other.
 double way_of_opponent(const LapSettings& settings, double time, const std::string& method = "mppi") {

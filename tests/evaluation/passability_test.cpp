@@ -7,7 +7,7 @@
 
 #include "evaluation/courses.hpp"
 
-namespace slalom::evaluation {
+namespace slalom::evaluation::passability_test {
 namespace {
 
 class Passability : public ::testing::Test {
@@ -57,4 +57,4 @@ TEST_F(Passability, NeverReportsAPassableObstacle) {
 }
 
 }  // namespace
-}  // namespace slalom::evaluation
+}  // namespace slalom::evaluation::passability_test

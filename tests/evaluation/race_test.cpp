@@ -80,38 +80,6 @@ TEST(RacingLap, GripIsWeightedByTime) {
   EXPECT_EQ(grip_use({}, 4).beyond, 0);
 }
 
-TEST(Race, StandingStartsAreToldFromFlyingLaps) {
-  const auto driver = setup(course("stag"));
-  int steps = 0;
-  const auto laps = drive_race(driver, {.laps = 3, .seed = 3},
-                               {.on_step =
-                                    [&](int lap, const ControlStep& step) {
-                                      ++steps;
-                                      EXPECT_LE(step.progress, 1);
-                                      EXPECT_LT(step.time, 60) << lap;
-                                    },
-                                .on_lap = {}});
-  ASSERT_EQ(laps.size(), 3u);
-  for (std::size_t i = 0; i < laps.size(); ++i) {
-    const RacingLap& lap = laps[i];
-    EXPECT_EQ(lap.end, RacingEnd::completed);
-    EXPECT_EQ(lap.standing, i == 0);
-    EXPECT_EQ(lap.seed, 3u);
-    EXPECT_EQ(lap.samples.front().time, 0);
-    EXPECT_EQ(lap.samples.front().distance, 0);
-    EXPECT_NEAR(lap.samples.back().distance, driver.length(), 1e-9);
-    EXPECT_NEAR(total(lap.sector), lap.time(), 1e-9);
-  }
-  EXPECT_EQ(laps[0].samples.front().speed, 0);
-  EXPECT_GT(laps[1].samples.front().speed, 2);
-  EXPECT_EQ(laps[1].samples.front().speed, laps[0].samples.back().speed) << "the car goes on";
-  EXPECT_LT(laps[1].time(), laps[0].time());
-  // A lap alone with this seed ends within a time step of the simulation.
-  const LapResult single = run_lap(driver, 3);
-  EXPECT_NEAR(laps[0].time(), single.time, 1e-3);
-  EXPECT_GT(steps, 3 * single.steps / 2);
-}
-
 TEST(Race, TheSimulatedCarMayBeAPassengerCar) {
   LapSettings settings;
   EXPECT_TRUE(set_world_option(settings, "world.car", "passenger_car"));
@@ -147,21 +115,6 @@ TEST(Race, EveryLapCanBeginWithAStandingStart) {
     EXPECT_TRUE(lap.standing);
     EXPECT_EQ(lap.samples.front().speed, 0);
   }
-}
-
-TEST(Race, ACollisionEndsTheLapAndTheNextOneStands) {
-  LapSettings settings;
-  settings.latency = 0.5;  // s
-  const auto driver = setup(course("stag"), settings);
-  const auto laps = drive_race(driver, {.laps = 2});
-  ASSERT_EQ(laps.size(), 2u);
-  for (const RacingLap& lap : laps) {
-    EXPECT_EQ(lap.end, RacingEnd::collision);
-    EXPECT_TRUE(lap.standing);
-    EXPECT_TRUE(std::isnan(lap.sector[2]));
-    EXPECT_LT(lap.samples.back().distance, driver.length());
-  }
-  EXPECT_NE(laps[0].seed, laps[1].seed);
 }
 
 TEST(Race, ALapEndsAfterItsTimeout) {

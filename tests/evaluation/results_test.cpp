@@ -8,7 +8,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::evaluation {
+namespace slalom::evaluation::results_test {
 namespace {
 
 LapRow row(int experiment, int lap, double state, double collision_cost, int contacts, bool finished) {
@@ -237,4 +237,4 @@ TEST_F(LapLogFile, AgreementDependsOnDifferenceAndNumberOfLaps) {
 }
 
 }  // namespace
-}  // namespace slalom::evaluation
+}  // namespace slalom::evaluation::results_test

@@ -14,7 +14,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::evaluation {
+namespace slalom::evaluation::rooms_test {
 namespace {
 
 /// The options of a method that nobody registered: it has no option `seed`.
@@ -72,14 +72,6 @@ TEST(RoomDrive, GoesRoundAPalletAndRepeatsExactly) {
   EXPECT_EQ(first.trace.back().yaw, second.trace.back().yaw);
   const RoomDrive other = drive_room(scenario, quick_driver(), 4);
   EXPECT_NE(first.trace.front().x, other.trace.front().x);
-}
-
-TEST(RoomDrive, SaysWithinHalfASecondThatThereIsNoWay) {
-  const RoomDrive drive = drive_room(room_scenario("no-way"), quick_driver(), 1);
-  EXPECT_EQ(drive.outcome, RoomOutcome::blocked);
-  EXPECT_TRUE(drive.success);
-  EXPECT_GE(drive.answer_time, 0);
-  EXPECT_LE(drive.answer_time, 0.5);
 }
 
 /// Each row of the table of manoeuvres, with its limits.
@@ -252,4 +244,4 @@ TEST(BarnScenarios, RefuseFilesOfAnotherFormat) {
 }
 
 }  // namespace
-}  // namespace slalom::evaluation
+}  // namespace slalom::evaluation::rooms_test

@@ -7,7 +7,7 @@
 
 #include "slalom/core/random.hpp"
 
-namespace slalom::evaluation {
+namespace slalom::evaluation::statistics_test {
 namespace {
 
 TEST(Wilson, KnownValues) {
@@ -125,4 +125,4 @@ TEST(RateDifferenceInterval, MatchesTheExampleOfNewcombe) {
 }
 
 }  // namespace
-}  // namespace slalom::evaluation
+}  // namespace slalom::evaluation::statistics_test

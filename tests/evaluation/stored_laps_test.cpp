@@ -10,7 +10,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::evaluation {
+namespace slalom::evaluation::stored_laps_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -277,4 +277,4 @@ TEST_F(StoredLaps, AFolderHasOneStoreAtATime) {
 }
 
 }  // namespace
-}  // namespace slalom::evaluation
+}  // namespace slalom::evaluation::stored_laps_test

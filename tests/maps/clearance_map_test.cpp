@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace slalom::maps {
+namespace slalom::maps::clearance_map_test {
 namespace {
 
 /// The kernel of a point is written in packs, and cell by cell where it reaches over the edge.
@@ -51,4 +51,4 @@ TEST(ClearanceMap, IsNegativeOutsideAndIgnoresNonFinitePoints) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::clearance_map_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace slalom::maps {
+namespace slalom::maps::closed_discs_test {
 namespace {
 
 TEST(ClosedDiscs, KeepsTheLastFourOfManyDeadEnds) {
@@ -30,4 +30,4 @@ TEST(ClosedDiscs, AMeetingIsClosedWhileItLasts) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::closed_discs_test

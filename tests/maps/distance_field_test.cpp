@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace slalom::maps {
+namespace slalom::maps::distance_field_test {
 namespace {
 
 OccupancyGrid random_grid(std::mt19937& random, int width, int height, double density) {
@@ -69,4 +69,4 @@ TEST(DistanceField, RejectsAGridWithInconsistentSizes) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::distance_field_test

@@ -13,7 +13,7 @@
 #include "support/rollouts.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::maps {
+namespace slalom::maps::field_test {
 namespace {
 
 constexpr FieldGeometry turned{23, 17, 0.25, {3, -2, 0.7}};
@@ -274,4 +274,4 @@ TEST(SignedDistance, KnowsUnknownCellsAndWhatLiesOutside) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::field_test

@@ -8,7 +8,7 @@
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace slalom::maps {
+namespace slalom::maps::image_test {
 namespace {
 
 using slalom::testing::TemporaryFolder;
@@ -77,4 +77,4 @@ TEST_F(Image, RejectsImagesThatCannotBeSaved) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::image_test

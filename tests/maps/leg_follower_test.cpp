@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace slalom::maps {
+namespace slalom::maps::leg_follower_test {
 namespace {
 
 constexpr double period = 0.025;
@@ -130,4 +130,4 @@ TEST(LegFollower, ATurnOnTheSpotEndsNearItsYaw) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::leg_follower_test

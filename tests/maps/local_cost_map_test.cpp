@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace slalom::maps {
+namespace slalom::maps::local_cost_map_test {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -174,4 +174,4 @@ TEST(LocalCostMap, ReadsThePointsOfAScanWithoutMarkingThem) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::local_cost_map_test

@@ -10,7 +10,7 @@
 
 #include "support/allocations.hpp"
 
-namespace slalom::maps {
+namespace slalom::maps::manoeuvre_search_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -156,4 +156,4 @@ TEST(ManoeuvreSearch, ALargeCarTurnsRoundOnItsOwnLengths) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::manoeuvre_search_test

@@ -13,7 +13,7 @@
 #include "support/predicted.hpp"
 #include "support/rollouts.hpp"
 
-namespace slalom::maps {
+namespace slalom::maps::moving_obstacles_test {
 namespace {
 
 /// With five poses of each hypothesis, 0.25 s apart.
@@ -283,4 +283,4 @@ TEST(MovingReadings, StayWhereBeamsRunClockwiseOrTheObstacleHasNoPoses) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::moving_obstacles_test

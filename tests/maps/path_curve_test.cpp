@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace slalom::maps {
+namespace slalom::maps::path_curve_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -75,4 +75,4 @@ TEST(PathCurve, APathOfOnePoseIsATurn) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::path_curve_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace slalom::maps {
+namespace slalom::maps::recovery_test {
 namespace {
 
 constexpr double period = 0.025, length = 100;
@@ -196,4 +196,4 @@ TEST(Recovery, NoStateStandsForEver) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::recovery_test

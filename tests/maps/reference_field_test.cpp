@@ -10,7 +10,7 @@
 #include "slalom/maps/local_cost_map.hpp"
 #include "support/allocations.hpp"
 
-namespace slalom::maps {
+namespace slalom::maps::reference_field_test {
 namespace {
 
 std::vector<ReferencePoint> circle(int count, double radius) {
@@ -238,4 +238,4 @@ TEST(ReferenceField, RejectsInvalidPaths) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::reference_field_test

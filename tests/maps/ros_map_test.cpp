@@ -14,7 +14,7 @@
 #include "slalom/maps/yaml_text.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace slalom::maps {
+namespace slalom::maps::ros_map_test {
 namespace {
 
 using slalom::testing::TemporaryFolder;
@@ -284,4 +284,4 @@ TEST(FiniteNumber, IsAWholeDecimalText) {
 }
 
 }  // namespace
-}  // namespace slalom::maps
+}  // namespace slalom::maps::ros_map_test

@@ -5,7 +5,7 @@
 #include "navigation/drive.hpp"
 
 /// Limits of acceleration and braking, dead bands, and cost terms of the user's.
-namespace slalom::navigation {
+namespace slalom::navigation::base_limits_test {
 namespace {
 
 /// The largest rises and falls of the magnitude of a speed between two commands, per second.
@@ -114,6 +114,7 @@ Velocity on_the_way(Drive& drive) {
 TEST(StateCost, ARobotKeepsToTheSideAndToTheSpeedThatItsUserWants) {
   for (const BaseKind kind : {BaseKind::differential, BaseKind::omnidirectional, BaseKind::ackermann}) {
     Drive drive(kind);
+    drive.restart_fast();
     const Velocity without = on_the_way(drive);
     EXPECT_LT(without.left, 0.05);
     EXPECT_GT(without.forward, 0.45);
@@ -137,4 +138,4 @@ TEST(StateCost, ARobotKeepsToTheSideAndToTheSpeedThatItsUserWants) {
 }
 
 }  // namespace
-}  // namespace slalom::navigation
+}  // namespace slalom::navigation::base_limits_test

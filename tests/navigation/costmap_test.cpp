@@ -15,7 +15,7 @@
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::navigation {
+namespace slalom::navigation::costmap_test {
 namespace {
 
 using maps::Pose;
@@ -307,4 +307,4 @@ TEST(ScanMap, DropsInvalidBeamsAndAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace slalom::navigation
+}  // namespace slalom::navigation::costmap_test

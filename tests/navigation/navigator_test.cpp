@@ -18,7 +18,7 @@
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::navigation {
+namespace slalom::navigation::navigator_test {
 namespace {
 
 const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
@@ -55,23 +55,6 @@ struct CheckedDrive : Drive {
 };
 
 const maps::Pose straight[] = {{1, 0, 0}, {6, 0, 0}};
-
-TEST(Navigator, ReachesTheGoalInItsHeadingWithEveryBase) {
-  for (const BaseKind kind : {BaseKind::differential, BaseKind::omnidirectional, BaseKind::ackermann}) {
-    NavigatorOptions options;
-    options.base.kind = kind;
-    CheckedDrive drive(options);
-    const double heading = kind == BaseKind::ackermann ? 0 : 1.2;
-    const maps::Pose path[] = {{1, 0, 0}, {5, 0.5, heading}};
-    drive.navigator->set_path(path);
-    EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached) << static_cast<int>(kind);
-    EXPECT_LE(std::hypot(drive.pose.x - 5, drive.pose.y - 0.5), options.goal_distance + 1e-9);
-    EXPECT_LE(std::abs(maps::wrap_angle(drive.pose.yaw - heading)), options.goal_angle + 1e-9);
-    EXPECT_FALSE(drive.collided);
-    for (int i = 0; i < 10; ++i) drive.step();
-    EXPECT_LT(std::abs(drive.velocity.forward) + std::abs(drive.velocity.turn), 1e-9);
-  }
-}
 
 TEST(Navigator, AnAckermannBaseKeepsItsTurningRadius) {
   NavigatorOptions options;
@@ -145,21 +128,6 @@ TEST(Navigator, IsBlockedByAWallThatIsLongerThanTheCostmapShows) {
   CheckedDrive drive;
   EXPECT_EQ(drive_with_a_moving_costmap(drive, 4.5, -20, 5.5, 20), NavigationStatus::blocked);
   EXPECT_LT(drive.pose.x, 4.5 - 0.35);
-}
-
-TEST(Navigator, SaysWithinHalfASecondThatThereIsNoWay) {
-  CheckedDrive drive;
-  drive.navigator->set_path(straight);
-  ASSERT_EQ(drive.drive(2), NavigationStatus::following);
-  drive.block(4, -2, 4.3, 2);
-  EXPECT_EQ(drive.drive(10), NavigationStatus::blocked);
-  EXPECT_LE(drive.time, 0.5);
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(drive.step().status, NavigationStatus::blocked);
-  EXPECT_EQ(drive.velocity.forward, 0);
-  fill(drive.grid, 4, 0.5, 4.3, 2, maps::Occupancy::free);  // a way opens
-  drive.costmap.update(drive.grid);
-  EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached);
-  EXPECT_FALSE(drive.collided);
 }
 
 TEST(Navigator, WithoutDetoursItReportsNone) {
@@ -340,4 +308,4 @@ TEST(AllocationFailure, ANavigatorIsMadeAndTakesAPathOrThrows) {
 }
 
 }  // namespace
-}  // namespace slalom::navigation
+}  // namespace slalom::navigation::navigator_test

@@ -10,7 +10,7 @@
 #include "support/allocations.hpp"
 #include "support/predicted.hpp"
 
-namespace slalom::navigation {
+namespace slalom::navigation::others_test {
 namespace {
 
 constexpr double size = 0.5;  // m, of the other
@@ -119,4 +119,4 @@ TEST(NavigatorOthers, AllocateNothingInAnUpdate) {
 }
 
 }  // namespace
-}  // namespace slalom::navigation
+}  // namespace slalom::navigation::others_test

@@ -8,7 +8,7 @@
 
 #include "navigation/grids.hpp"
 
-namespace slalom::navigation {
+namespace slalom::navigation::path_planner_test {
 namespace {
 
 const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
@@ -73,4 +73,4 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
 }
 
 }  // namespace
-}  // namespace slalom::navigation
+}  // namespace slalom::navigation::path_planner_test

@@ -10,7 +10,7 @@
 #include "slalom/sim/racing_opponent.hpp"
 #include "slalom/sim/world.hpp"
 
-namespace slalom::sim {
+namespace slalom::sim::drivers_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -243,4 +243,4 @@ TEST(RacingOpponent, RejectsInvalidInput) {
 }
 
 }  // namespace
-}  // namespace slalom::sim
+}  // namespace slalom::sim::drivers_test

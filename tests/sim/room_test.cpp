@@ -9,7 +9,7 @@
 
 #include "slalom/sim/room/crowd.hpp"
 
-namespace slalom::sim {
+namespace slalom::sim::room_test {
 namespace {
 
 /// 6 x 4 m with a wall at x = 3 from y = 0 to 2, and a pallet.
@@ -160,4 +160,4 @@ TEST(Room, PeopleAreSeenAndHit) {
 }
 
 }  // namespace
-}  // namespace slalom::sim
+}  // namespace slalom::sim::room_test

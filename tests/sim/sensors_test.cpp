@@ -8,7 +8,7 @@
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 
-namespace slalom::sim {
+namespace slalom::sim::sensors_test {
 namespace {
 
 constexpr double time_step = 0.005;  // s
@@ -149,4 +149,4 @@ TEST(WheelOdometry, IgnoresInvalidStates) {
 }
 
 }  // namespace
-}  // namespace slalom::sim
+}  // namespace slalom::sim::sensors_test

@@ -10,7 +10,7 @@
 #include "sim/rooms.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 
-namespace slalom::sim {
+namespace slalom::sim::world_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -284,4 +284,4 @@ TEST(Track, RejectsInvalidMaps) {
 }
 
 }  // namespace
-}  // namespace slalom::sim
+}  // namespace slalom::sim::world_test

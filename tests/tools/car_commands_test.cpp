@@ -30,7 +30,7 @@ class IdentifyCommand : public testing::ProgramTest {};
 
 TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
   succeed(
-      "drive --course eel --config default_kinematic --method mppi --set samples=256 --hardware --laps 3 "
+      "drive --course eel --config default_kinematic --method mppi --set samples=128 --hardware "
       "--record lap.mcap");
   succeed("identify lap.mcap --wheelbase 0.3302 --json found.json");
   const json found = result("found.json");
@@ -52,8 +52,8 @@ TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
 
 TEST_F(IdentifyCommand, FindsTheFrictionOfASimulatedCarWhoseTyresSlip) {
   succeed(
-      "drive --course fox --set samples=1000 --set world.saturating_tyres=true --set world.friction=0.6 "
-      "--laps 4 --record lap.mcap");
+      "drive --course fox --set samples=256 --set world.saturating_tyres=true --set world.friction=0.6 "
+      "--laps 2 --record lap.mcap");
   const std::string said = succeed("identify lap.mcap --tyres --config default --json found.json");
   const json found = result("found.json");
   EXPECT_NEAR(found["friction"]["value"], 0.6, 0.06);

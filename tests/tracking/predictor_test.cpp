@@ -13,7 +13,7 @@
 #include "tracking/course_line.hpp"
 #include "tracking/manoeuvres.hpp"
 
-namespace slalom::tracking {
+namespace slalom::tracking::predictor_test {
 namespace {
 
 constexpr double pi = 3.141592653589793, radius = 6, period = 0.025;
@@ -257,4 +257,4 @@ TEST(Predictor, RefusesCoursesThatAreTooShortOrTooLong) {
 }
 
 }  // namespace
-}  // namespace slalom::tracking
+}  // namespace slalom::tracking::predictor_test

@@ -15,7 +15,7 @@
 #include "tracking/tracked.hpp"
 #include "tracking/tracker_calls.hpp"
 
-namespace slalom::tracking {
+namespace slalom::tracking::tracking_parts_test {
 namespace {
 
 constexpr double pi = 3.141592653589793;
@@ -244,4 +244,4 @@ TEST(AllocationFailure, ATrackerAndAPredictorAreMadeOrThrow) {
 }
 
 }  // namespace
-}  // namespace slalom::tracking
+}  // namespace slalom::tracking::tracking_parts_test

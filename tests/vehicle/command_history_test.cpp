@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::command_history_test {
 namespace {
 
 constexpr double period = 0.025, lag = 0.1, wheelbase = 0.33;
@@ -48,4 +48,4 @@ TEST(CommandHistory, ResetForgets) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::command_history_test

@@ -8,7 +8,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::configuration_test {
 namespace {
 
 class ConfigurationFile : public testing::TemporaryFolder {
@@ -178,4 +178,4 @@ TEST(PublishedConfiguration, HasThePublishedVehicleAndPlanner) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::configuration_test

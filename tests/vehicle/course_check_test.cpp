@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::course_check_test {
 namespace {
 
 constexpr double pi = 3.141592653589793;
@@ -154,4 +154,4 @@ TEST(CourseCheck, AnOpenPathNeedsNoSpeedForItsMissingStretch) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::course_check_test

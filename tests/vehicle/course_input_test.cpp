@@ -8,7 +8,7 @@
 #include "support/thrown_words.hpp"
 #include "vehicle/course_folder.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::course_input_test {
 namespace {
 
 using testing::CourseFolder;
@@ -143,4 +143,4 @@ TEST(KnownCourse, RejectsACorruptTable) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::course_input_test

@@ -11,7 +11,7 @@
 #include "support/thrown_words.hpp"
 #include "vehicle/course_folder.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::course_test {
 namespace {
 
 using testing::CourseFolder;
@@ -203,4 +203,4 @@ TEST(Course, AGapOfAClosedCourseIsFilled) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::course_test

@@ -9,7 +9,7 @@
 
 #include "slalom/core/random.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::identification_test {
 namespace {
 
 struct Truth {
@@ -107,4 +107,4 @@ TEST(Identification, RejectsTooLittleData) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::identification_test

@@ -10,7 +10,7 @@
 #include "support/promise.hpp"
 
 /// The output of a localiser is finite, whatever enters it.
-namespace slalom::vehicle {
+namespace slalom::vehicle::localiser_check_test {
 namespace {
 
 maps::OccupancyGrid room() {
@@ -76,4 +76,4 @@ TEST(LocaliserCheck, EstimatesAreFiniteForAnyInput) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::localiser_check_test

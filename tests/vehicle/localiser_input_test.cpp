@@ -7,14 +7,14 @@
 
 #include "vehicle/localiser_drive.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::localiser_input_test {
 namespace {
 
 using test::Drive;
 using test::error_of;
 using test::wren;
 
-class InvalidLocaliserInput : public testing::Test {
+class InvalidLocaliserInput : public ::testing::Test {
  protected:
   InvalidLocaliserInput() {
     localiser.start_at(drive.truth());
@@ -97,4 +97,4 @@ TEST_F(InvalidLocaliserInput, IgnoresOldScansUntilTheClockIsReset) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::localiser_input_test

@@ -10,7 +10,7 @@
 #include "support/thrown_words.hpp"
 #include "vehicle/localiser_drive.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::localiser_test {
 namespace {
 
 using test::Drive;
@@ -153,4 +153,4 @@ TEST(Localiser, TakesFewerParticlesOnceItIsSure) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::localiser_test

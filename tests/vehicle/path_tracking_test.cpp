@@ -8,7 +8,7 @@
 #include "slalom/vehicle/model/kinematic.hpp"
 #include "slalom/vehicle/published/path_tracking.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::path_tracking_test {
 namespace {
 
 /// Maps of 8 x 8 cells of 1 m round the origin: 2 m off a path along +x at 3 m/s, free of obstacles.
@@ -212,4 +212,4 @@ TEST(PathTracking, SmallClearanceCostsBeforeACollision) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::path_tracking_test

@@ -12,7 +12,7 @@
 #include "support/thrown_words.hpp"
 #include "vehicle/planner/lane_scan.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::planner_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -265,4 +265,4 @@ TEST(Planner, RejectsInvalidArguments) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::planner_test

@@ -8,7 +8,7 @@
 #include "slalom/vehicle/planner/planner.hpp"
 #include "support/lane.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::published_planner_test {
 namespace {
 
 /// Returns the same sequence in every solve, whatever the bounds.
@@ -76,4 +76,4 @@ TEST(WrapSteer, KeepsTheCommandWithinTheLimitForAnyAngle) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::published_planner_test

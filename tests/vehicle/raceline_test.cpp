@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::raceline_test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -69,4 +69,4 @@ TEST(Raceline, RejectsTooFewPointsAndInvalidBounds) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::raceline_test

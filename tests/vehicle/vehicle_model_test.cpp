@@ -19,7 +19,7 @@
 #include "support/lane.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::vehicle_model_test {
 namespace {
 
 std::vector<std::string> model_names() {
@@ -211,4 +211,4 @@ TEST(ProblemModel, LetsThePlannerDriveAnyVehicleProblem) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::vehicle_model_test

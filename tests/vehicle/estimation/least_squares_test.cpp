@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::least_squares_test {
 namespace {
 
 /// y = 2 exp(-0.5 x) at x = 0, 0.1, ..., 4.9.
@@ -56,4 +56,4 @@ TEST(LeastSquares, WhatTheResidualsDoNotDetermineHasAnInfiniteDeviation) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::least_squares_test

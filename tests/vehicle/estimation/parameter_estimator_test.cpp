@@ -13,7 +13,7 @@
 #include "slalom/vehicle/model/single_track.hpp"
 #include "support/allocations.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::parameter_estimator_test {
 namespace {
 
 constexpr double period = 0.025, time_step = 0.005;  // s
@@ -141,4 +141,4 @@ TEST(ParameterEstimator, TheLowerTheQuantileTheMoreCautious) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::parameter_estimator_test

@@ -13,7 +13,7 @@
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::state_observer_test {
 namespace {
 
 constexpr double period = 0.025, time_step = 0.005;  // s
@@ -204,4 +204,4 @@ TEST(StateObserver, BeginsAnewAfterAJumpAndAtAStandstill) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::state_observer_test

@@ -12,7 +12,7 @@
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::tyre_identification_test {
 namespace {
 
 constexpr double period = 0.025, time_step = 0.005;  // s
@@ -90,7 +90,7 @@ TEST(TyreIdentification, FindsOtherGroundsAndTyres) {
 }
 
 TEST(TyreIdentification, FarFromTheLimitOnlyTheProductsAreFoundAndTheDeviationsSaySo) {
-  const Truth truth{.speed = 2.5, .swing = 0.08, .duration = 30};
+  const Truth truth{.speed = 2.5, .swing = 0.08, .duration = 20};
   const TyreIdentification slow = identify_tyres(drive(truth), {}, {});
   const TyreIdentification fast = identify_tyres(drive({.duration = truth.duration}), {}, {});
   EXPECT_GT(slow.friction.deviation, 5 * fast.friction.deviation);
@@ -120,4 +120,4 @@ TEST(TyreIdentification, RejectsTooLittleDataAndBadOptions) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::tyre_identification_test

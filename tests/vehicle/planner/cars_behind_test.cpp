@@ -10,7 +10,7 @@
 #include "support/allocations.hpp"
 #include "support/predicted.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::cars_behind_test {
 namespace {
 
 constexpr double wheelbase = 0.33;   // m
@@ -102,4 +102,4 @@ TEST(CarsBehind, WhatCannotBeUsedStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::cars_behind_test

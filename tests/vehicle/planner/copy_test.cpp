@@ -10,7 +10,7 @@
 #include "support/allocations.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::copy_test {
 namespace {
 
 Planner planner_of(const std::string& model, Objective objective) {
@@ -103,4 +103,4 @@ INSTANTIATE_TEST_SUITE_P(Models, CopiedPlanner,
                          [](const auto& model) { return std::string(model.param); });
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::copy_test

@@ -13,7 +13,7 @@
 #include "support/allocations.hpp"
 #include "support/lane.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::detour_test {
 namespace {
 
 constexpr double period = 0.025;
@@ -155,4 +155,4 @@ TEST(Detour, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::detour_test

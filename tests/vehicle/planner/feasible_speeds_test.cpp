@@ -9,7 +9,7 @@
 
 #include "vehicle/planner/map_options.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::feasible_speeds_test {
 namespace {
 
 constexpr double grip = 8, radius = 1, straight = 10;
@@ -142,4 +142,4 @@ TEST(LimitedPath, AnOpenPathEndsWithAStop) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::feasible_speeds_test

@@ -10,7 +10,7 @@
 #include "support/allocations.hpp"
 #include "support/lane.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::manoeuvre_test {
 namespace {
 
 const BodyOptions body{.margin = 0.05};
@@ -118,4 +118,4 @@ TEST(Manoeuvre, FindsNoWayWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::manoeuvre_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::obstacle_memory_test {
 namespace {
 
 TEST(ObstacleMemory, KnowsWhatTheCarHasPassed) {
@@ -53,4 +53,4 @@ TEST(ObstacleMemory, KnowsTheDirectionsThatAScanDoesNotCover) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::obstacle_memory_test

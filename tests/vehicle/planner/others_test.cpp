@@ -15,7 +15,7 @@
 #include "vehicle/planner/lane_scan.hpp"
 #include "vehicle/planner/obstacles/obstacles.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::others_test {
 namespace {
 
 constexpr double speed = 3;                            // m/s, of the path
@@ -182,4 +182,4 @@ TEST(PlannerAmongOthers, CarsFarAwayChangeNoBit) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::others_test

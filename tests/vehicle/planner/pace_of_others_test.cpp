@@ -7,7 +7,7 @@
 
 #include "support/predicted.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::pace_of_others_test {
 namespace {
 
 constexpr double path_speed = 4;         // m/s
@@ -117,4 +117,4 @@ TEST(PaceOfOthers, TheCarSeenLongestAgoGivesItsPlaceToANewOne) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::pace_of_others_test

@@ -8,7 +8,7 @@
 #include "support/allocations.hpp"
 #include "support/lane.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::passage_test {
 namespace {
 
 constexpr maps::Pose car{10, 0, 0};  // on the course
@@ -63,4 +63,4 @@ TEST(Passage, WithNarrowMarginsTheMapEndsBeforeTheUsualRoom) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::passage_test

@@ -8,7 +8,7 @@
 #include "vehicle/planner/planner_calls.hpp"
 
 /// Every command of a planner is one that a car may take, whatever its inputs.
-namespace slalom::vehicle {
+namespace slalom::vehicle::planner_check_test {
 namespace {
 
 Planner make_planner(double max_speed) {
@@ -168,4 +168,4 @@ TEST(PlannerPrediction, CostsNothingBeforeAPlanAndAfterAReset) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::planner_check_test

@@ -15,7 +15,7 @@
 #include "support/lane.hpp"
 #include "support/predicted.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::sequence_choice_test {
 namespace {
 
 constexpr int horizon = 20;
@@ -207,4 +207,4 @@ TEST_F(PlanNearAWall, ContinuesWhereBrakingComesTooLate) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::sequence_choice_test

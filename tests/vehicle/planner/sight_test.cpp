@@ -11,7 +11,7 @@
 
 #include "vehicle/planner/lane_scan.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::sight_test {
 namespace {
 
 constexpr double laser_x = 0.275, front = 0.46, corner = 5;  // m
@@ -136,4 +136,4 @@ TEST(Sight, ALongerCarKeepsLongerGaps) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::sight_test

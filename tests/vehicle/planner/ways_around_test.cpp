@@ -14,7 +14,7 @@
 #include "slalom/vehicle/model/vehicle_model.hpp"
 #include "support/lane.hpp"
 
-namespace slalom::vehicle::detail {
+namespace slalom::vehicle::detail::ways_around_test {
 namespace {
 
 constexpr int horizon = 28;
@@ -156,4 +156,4 @@ TEST(SingleTrackModel, PredictsFromTheYawRateAndTheSlipOfTheStart) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle::detail
+}  // namespace slalom::vehicle::detail::ways_around_test

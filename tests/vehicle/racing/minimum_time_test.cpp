@@ -12,7 +12,7 @@
 #include "vehicle/course/curve.hpp"
 #include "vehicle/racing/rooms.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::minimum_time_test {
 namespace {
 
 using testing::circle;
@@ -181,4 +181,4 @@ TEST(MinimumTime, RejectsNarrowCorridorsAndInvalidCars) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::minimum_time_test

@@ -14,7 +14,7 @@
 #include "support/thrown_words.hpp"
 #include "vehicle/racing/rooms.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::race_course_test {
 namespace {
 
 using maps::Occupancy;
@@ -334,4 +334,4 @@ TEST_F(RaceCourseFile, SaysWhatIsWrongInACentreLine) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::race_course_test

@@ -9,7 +9,7 @@
 
 #include "support/thrown_words.hpp"
 
-namespace slalom::vehicle {
+namespace slalom::vehicle::racing_car_test {
 namespace {
 
 TEST(RacingSpeeds, AreInsideTheEllipseThroughoutAndNearFeasibleSpeeds) {
@@ -134,4 +134,4 @@ TEST(RacingCar, OfAConfigurationHasItsSizesAndTheGripOfItsPlans) {
 }
 
 }  // namespace
-}  // namespace slalom::vehicle
+}  // namespace slalom::vehicle::racing_car_test
