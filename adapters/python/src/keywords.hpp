@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "collected.hpp"
+#include "objects.hpp"
 #include "slalom/core/final_check.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose.hpp"
