@@ -119,6 +119,8 @@ TEST_F(OwnProblem, OnlyTheLastStepOfADragIsPlannedFor) {
 
 TEST_F(OwnProblem, ResetsWhatWasChangedAlsoWithAnotherMethod) {
   tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})"});
+  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "-5"})"});
+  EXPECT_EQ(last("error")["message"], "svg_mppi.samples: '-5' must be in [1, 4194304]");
   tell({R"({"do": "set", "key": "problem.goal_x", "value": "6"})"});
   tell({R"({"do": "method", "method": "mppi"})"});
   tell({R"({"do": "reset_options"})"});

@@ -70,7 +70,8 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
 }
 
 int view(const ViewArguments& arguments) {
-  const view::ServerOptions address = server_options(arguments.host, arguments.port, arguments.token);
+  view::ServerOptions address = server_options(arguments.host, arguments.port, arguments.token);
+  if (!arguments.room.empty() || !arguments.problem.empty()) address.framed_by = view::notebooks;
   view::Server server(address, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
   view::SessionOptions options;
   std::unique_ptr<view::Subject> subject;

@@ -41,8 +41,14 @@ void set_texts(Subject& subject, const OptionTexts& texts) {
     const auto dot = key.find('.');
     const std::string section = key.substr(0, dot), name = key.substr(dot + 1);
     const bool is_own = own && (dot == std::string::npos || section == own->method());
-    if (!(is_own ? set_option(*own, name, text) : subject.set_parameter(section, name, text)))
-      throw std::invalid_argument(key.substr(0, 80) + ": is not an option");
+    bool is_known = false;
+    try {
+      is_known = is_own ? set_option(*own, name, text) : subject.set_parameter(section, name, text);
+    } catch (const std::invalid_argument& error) {
+      const bool is_named = std::string_view(error.what()).find(name) != std::string_view::npos;
+      throw std::invalid_argument((is_named ? "" : key + ": ") + error.what());
+    }
+    if (!is_known) throw std::invalid_argument(key.substr(0, 80) + ": is not an option");
     is_own_changed = is_own_changed || is_own;
   }
   if (is_own_changed) subject.set_options(*own);

@@ -33,6 +33,8 @@ bool has_obstacle_near(Run& run) {
 
 Session::Session(std::unique_ptr<Subject> subject, Server& server, SessionOptions options)
     : server_(server), audience_(server), options_(std::move(options)) {
+  state_.names = options_.scenario;
+  state_.introduction = options_.introduction;
   if (options_.choices.methods.empty())
     for (const char* name : solver_names()) options_.choices.methods.emplace_back(name);
   install(std::move(subject));
@@ -57,11 +59,11 @@ void Session::begin(Drives drives) {
   drives_ = std::move(drives);
   timeline_ = Timeline(control_period(), options_.packing);
   held_.reset();
-  if (!facts().course.empty()) bounds_ = bounds_of(facts().course);
+  if (!facts().course.empty()) state_.bounds = bounds_of(facts().course);
   laps_ = 0;
   viewed_ = passing_ticks_ = -1;
   steps_left_ = 0;
-  ++generation_;
+  ++state_.generation;
   pace_ = {};
   is_state_changed_ = true;
   // Options can still be set back; the shapes of another scene cannot.
@@ -70,11 +72,11 @@ void Session::begin(Drives drives) {
     for (Change& each : *changes) each.ticks = 0;
   }
   slow_down();
-  if (paused_) tick();
+  if (state_.paused) tick();
 }
 
 void Session::tick() {
-  pace_.step(control_period(), rate_);
+  pace_.step(control_period(), state_.rate);
   timeline_.checkpoint(*drives_);
   keep(drive(*drives_, 1));
   offer_newest();
@@ -84,7 +86,7 @@ void Session::tick() {
 DrivenTick Session::drive(Drives& drives, int solves) {
   DrivenTick driven{.tick = drives.ticks(), .settings = drives.driven.settings};
   for (std::size_t i = 0; i < 2; ++i)
-    driven.records[i] = {.delay = is_real_time_ ? last_updates_[i] : 0, .solves = solves};
+    driven.records[i] = {.delay = state_.real_time ? last_updates_[i] : 0, .solves = solves};
   std::string ghost;
   if (drives.ghost)
     ghost = encode_ghost_frame(drive(*drives.ghost, driven.records[1], last_updates_[1]).message);
@@ -121,9 +123,9 @@ Frame Session::drive(Run& run, StepRecord& record, double& update_time) {
 /// Keeps a step that was driven.
 void Session::keep(DrivenTick tick) {
   const Bounds& b = tick.bounds;
-  if (tick.tick == 0) bounds_ = b;
-  bounds_.include(b.x0, b.y0);
-  bounds_.include(b.x1, b.y1);
+  if (tick.tick == 0) state_.bounds = b;
+  state_.bounds.include(b.x0, b.y0);
+  state_.bounds.include(b.x1, b.y1);
   timeline_.keep(std::move(tick));
   const std::size_t laps = drives_->laps().size();
   is_state_changed_ = is_state_changed_ || laps != std::exchange(laps_, laps);
@@ -132,7 +134,7 @@ void Session::keep(DrivenTick tick) {
 
 /// Keeps the introduction in slow motion until both have passed the obstacle.
 void Session::slow_down() {
-  if (!options_.introduction || passing_ticks_ > max_passing_ticks) return;
+  if (!state_.introduction || passing_ticks_ > max_passing_ticks) return;
   const bool is_near =
       has_obstacle_near(drives_->driven) || (drives_->ghost && has_obstacle_near(*drives_->ghost));
   if (is_near)
@@ -141,8 +143,8 @@ void Session::slow_down() {
     passing_ticks_ = max_passing_ticks + 1;
   const bool is_over = passing_ticks_ > max_passing_ticks;
   const double rate = is_over ? 1 : passing_ticks_ >= 0 ? passing_rate : approaching_rate;
-  is_state_changed_ = is_state_changed_ || rate != rate_;
-  rate_ = rate;
+  is_state_changed_ = is_state_changed_ || rate != state_.rate;
+  state_.rate = rate;
 }
 
 /// Applies an action to the drives, from the tick that is shown on. While nothing moves, this tick is driven

@@ -125,26 +125,24 @@ class Session {
   Server& server_;
   Audience audience_;
   SessionOptions options_;
+  DriveState state_;  ///< `state` fills in what follows from drives and timeline
   std::optional<Drives> drives_;
   Timeline timeline_;
   std::optional<Drives> held_;  ///< while nothing moves: what a change last applied to, with the change
   OptionTexts loaded_;          ///< values of all options without changes
   std::shared_ptr<const std::string> scene_;  ///< message with map and course; empty if there is neither
-  Bounds bounds_;                             ///< around all that was drawn
   std::vector<Change> undo_, redo_;           ///< changes to undo and to do again, newest last
   int acted_ = 0;                             ///< ticks before the last change
   int drag_ = 0;                              ///< the drag of the last change
   std::string told_options_;                  ///< message with the options that the pages have
 
   Pace pace_;
-  double rate_ = 1, measured_rate_ = 0;  ///< simulated to real time; 0: as fast as possible, not known
-  bool paused_ = false, is_state_changed_ = true, is_real_time_ = false;
+  bool is_state_changed_ = true;
   bool waiting_ = true;                   ///< for the first page to be opened
   bool is_prepared_ = true;               ///< whether a change after a pause need not wait
   bool is_newest_sent_ = true;            ///< false if the newest step came too early for a frame
   int viewed_ = -1;                       ///< step that is shown while it is not the newest
   int steps_left_ = 0;                    ///< steps of a command "step" that are still to come
-  int generation_ = 0;                    ///< number of drives that have begun
   std::size_t laps_ = 0;                  ///< number of laps that have ended
   int passing_ticks_ = -1;                ///< ticks of the introduction since an obstacle was near; -1 before
   std::array<double, 2> last_updates_{};  ///< s of wall clock, of what is driven and of the ghost

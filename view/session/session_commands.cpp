@@ -100,9 +100,9 @@ void Session::obey(std::uint64_t client, const std::string& what, const Json& co
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command of this page");
   // Another scenario or another rate ends the introduction.
   const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);
-  if (!options_.introduction || !(is_other || is_among({"rate", "real_time"}, what))) return;
-  options_.introduction = false;
-  if (is_other) rate_ = 1;
+  if (!state_.introduction || !(is_other || is_among({"rate", "real_time"}, what))) return;
+  state_.introduction = false;
+  if (is_other) state_.rate = 1;
 }
 
 bool Session::obey_edit(const std::string& what, const Json& command) {
@@ -130,15 +130,15 @@ bool Session::obey_edit(const std::string& what, const Json& command) {
 
 bool Session::obey_options(const std::string& what, const Json& command) {
   if (what == "real_time" && facts().can_delay) {
-    is_real_time_ = field::flag(command, "on");
-    if (is_real_time_) rate_ = 1;
+    state_.real_time = field::flag(command, "on");
+    if (state_.real_time) state_.rate = 1;
   } else if (what == "scenario" && options_.load) {
-    ScenarioNames names = options_.scenario;
+    ScenarioNames names = state_.names;
     names.method = settings().method;
     names = chosen_scenario(std::move(names), command, options_.choices);
     std::unique_ptr<Subject> subject = options_.load(names);
-    options_.scenario = std::move(names);
-    paused_ = false;
+    state_.names = std::move(names);
+    state_.paused = false;
     install(std::move(subject));
   } else if (what == "set") {
     change_options(set_options({{field::text(command, "key"), field::text(command, "value")}}));

@@ -25,29 +25,22 @@ void Session::tell() {
 }
 
 std::string Session::hello() const {
-  const SubjectFacts& facts = this->facts();
   std::vector<std::string> can;
-  for (const auto& [word, holds] : {std::pair("place", facts.can_place),
-                                    {"move", facts.can_move},
-                                    {"add", facts.can_add},
+  for (const auto& [word, holds] : {std::pair("place", facts().can_place),
+                                    {"move", facts().can_move},
+                                    {"add", facts().can_add},
                                     {"scenario", bool(options_.load)},
-                                    {"real_time", facts.can_delay},
+                                    {"real_time", facts().can_delay},
                                     {"save", bool(options_.save)},
                                     {"ghost", !settings().method.empty()}})
     if (holds) can.emplace_back(word);
-  return hello_message(facts, options_.choices, stored_seconds, control_period(), can);
+  return hello_message(facts(), options_.choices, stored_seconds, control_period(), can);
 }
 
 std::string Session::state() const {
-  DriveState now{.names = options_.scenario, .laps = drives_->laps()};
+  DriveState now = state_;
+  now.laps = drives_->laps();
   now.names.method = settings().method;
-  now.real_time = is_real_time_;
-  now.introduction = options_.introduction;
-  now.bounds = bounds_;
-  now.rate = rate_;
-  now.pace = measured_rate_;
-  now.paused = paused_;
-  now.generation = generation_;
   now.time = drives_->ticks() * control_period();
   now.tick = shown_tick();
   now.newest = timeline_.newest();
@@ -60,7 +53,7 @@ std::string Session::state() const {
 }
 
 OptionsFacts Session::options_facts() const {
-  ScenarioNames names = options_.scenario;
+  ScenarioNames names = state_.names;
   names.method = settings().method;
   return {.names = names,
           .sections = settings().sections,

@@ -15,36 +15,36 @@ void Session::turn(std::chrono::nanoseconds at_most) {
     if (steps_left_ > 0) --steps_left_;
     tick();
   }
-  is_prepared_ = !(paused_ && is_held()) || prepare_change();
+  is_prepared_ = !(state_.paused && is_held()) || prepare_change();
   const auto now = Clock::now();
   if (server_.clients() == 0 || !(is_state_changed_ || now - last_state_ > max_state_gap)) return;
   last_state_ = now;
   is_state_changed_ = false;
-  measured_rate_ = pace_.measure(measured_rate_, control_period(), paused_);
+  state_.pace = pace_.measure(state_.pace, control_period(), state_.paused);
   tell();
 }
 
 /// Executes the commands that concern time; false for others.
 bool Session::obey_transport(const std::string& what, const Json& command) {
   if (what == "pause") {
-    if (!paused_ && timeline_.is_action_due()) tick();
-    paused_ = true;
+    if (!state_.paused && timeline_.is_action_due()) tick();
+    state_.paused = true;
     steps_left_ = 0;
     publish_newest();
   } else if (what == "play" || what == "step") {
     const int steps = what == "step" ? field::steps(command) : 0;
     continue_from_shown();
     waiting_ = false;
-    paused_ = steps > 0;
-    steps_left_ = paused_ ? std::min(steps_left_ + steps, field::max_steps) : 0;
+    state_.paused = steps > 0;
+    steps_left_ = state_.paused ? std::min(steps_left_ + steps, field::max_steps) : 0;
     pace_ = {};
   } else if (what == "seek") {
     show_step(field::integer(command, "tick"));
   } else if (what == "rate") {
-    rate_ = field::rate(command);
+    state_.rate = field::rate(command);
     pace_.due = Clock::now();
   } else if (what == "restart") {
-    paused_ = false;
+    state_.paused = false;
     begin(drives_->restarted());
   } else {
     return false;
@@ -54,13 +54,14 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
 
 Session::Clock::duration Session::until_due() const {
   if (steps_left_ > 0) return Clock::duration::zero();
-  if (waiting_ || paused_) return std::chrono::hours(1);
-  return pace_.until_due(rate_);
+  if (waiting_ || state_.paused) return std::chrono::hours(1);
+  return pace_.until_due(state_.rate);
 }
 
 /// Whether a change is to be shown before the next step: the drive is paused, or in slow motion.
 bool Session::is_held() const {
-  return (paused_ || Pace::is_slow(control_period(), rate_)) && steps_left_ == 0 && !timeline_.empty();
+  return (state_.paused || Pace::is_slow(control_period(), state_.rate)) && steps_left_ == 0 &&
+         !timeline_.empty();
 }
 
 /// Returns the drives that a change applies to. While nothing moves these are the drives when the step that
@@ -109,14 +110,14 @@ void Session::show_step(int tick) {
   if (timeline_.empty()) return;
   tick = std::clamp(tick, timeline_.oldest(), timeline_.newest());
   viewed_ = tick == timeline_.newest() ? -1 : tick;
-  paused_ = is_newest_sent_ = is_state_changed_ = true;
+  state_.paused = is_newest_sent_ = is_state_changed_ = true;
   server_.publish(0, timeline_.frame(tick));
 }
 
 /// Sends the frame of a step that was just driven, unless the last one was sent a moment ago.
 void Session::offer_newest() {
   is_newest_sent_ = false;
-  if (paused_ || Clock::now() - last_frame_ >= min_frame_gap) publish_newest();
+  if (state_.paused || Clock::now() - last_frame_ >= min_frame_gap) publish_newest();
 }
 
 void Session::publish_newest() {

@@ -13,7 +13,7 @@ ServerOptions server_options(const ServeOptions& given) {
   options.host = given.host;
   options.port = given.port;
   options.token = given.token;
-  options.framed_by = "http://localhost:* http://127.0.0.1:* vscode-webview: vscode-file:";  // notebooks
+  options.framed_by = notebooks;
   return options;
 }
 
