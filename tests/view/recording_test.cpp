@@ -100,6 +100,15 @@ std::string refusal(const std::string& name) {
   return "";
 }
 
+TEST_F(McapRecording, TheSameDriveGivesTheSameBytes) {
+  const std::string first = record(false);
+  EXPECT_EQ(first, record(false));
+  EXPECT_EQ(first.find("/wall_clock"), std::string::npos);
+  EXPECT_NE(record(true).find("/wall_clock"), std::string::npos);
+  EXPECT_EQ(record(false, 12, true), record(false, 12, true))
+      << "with what the ghost's controller considered";
+}
+
 /// The frames of a recording whose replay has one segment, and its text messages.
 std::pair<std::vector<std::string>, std::string> frames_of(const std::string& name) {
   const auto segments = load_replay(name);
