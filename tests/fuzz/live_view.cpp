@@ -4,8 +4,9 @@
 #include <chrono>
 
 #include "fuzz/target.hpp"
+#include "view/car/car_subject.hpp"
+#include "view/recording/drive_files.hpp"
 #include "view/server/server.hpp"
-#include "view/session/session.hpp"
 #include "view/web_client.hpp"
 
 namespace slalom::fuzz {
@@ -20,14 +21,15 @@ view::SessionOptions session_options() {
   view::SessionOptions options;
   options.scenario = {.course = "wren", .method = "mppi", .config = "default", .obstacles = 1};
   options.load = [](const view::ScenarioNames& names) {
-    view::LoadedScenario loaded;
-    loaded.environment = environment;
+    vehicle::Configuration configuration;
     for (const char* method : {"mppi", "svg_mppi", "cem"})
-      vehicle::set_option(loaded.configuration, "samples", "16", method);
-    loaded.lap.obstacles = names.obstacles;
-    loaded.lap.opponents = names.opponents;
-    return loaded;
+      vehicle::set_option(configuration, "samples", "16", method);
+    return view::car_subject({environment,
+                              {configuration, names.method},
+                              {.obstacles = names.obstacles, .opponents = names.opponents}},
+                             names.seed);
   };
+  view::add_files(options, {});
   options.choices = {
       .courses = {"wren"}, .methods = {"mppi", "svg_mppi", "cem"}, .configurations = {"default"}};
   return options;
@@ -74,7 +76,8 @@ const Target commands_target(
     [](std::string_view bytes) {
       const auto until = Clock::now() + std::chrono::seconds(2);
       view::Server server({.messages_per_second = 1e6, .burst = 1e6}, {});
-      view::Session session(session_options(), server);
+      view::SessionOptions options = session_options();
+      view::Session session(options.load(options.scenario), server, options);
       testing::WebClient client(server.port());
       client.get("/ws", true);
       while (server.clients() == 0 && Clock::now() < until) server.wait(std::chrono::milliseconds(1));

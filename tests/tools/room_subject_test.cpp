@@ -12,7 +12,7 @@ namespace slalom::tools {
 namespace {
 
 using view::ShapeKind;
-using view::Subject;
+using view::SolverSubject;
 
 /// A drive of a subject.
 struct Drive {
@@ -39,7 +39,7 @@ struct Drive {
     return static_cast<int>(std::ranges::find_if(shapes, is_goal) - shapes.begin());
   }
 
-  std::unique_ptr<Subject> subject;
+  std::unique_ptr<SolverSubject> subject;
   std::vector<double> state = subject->start();
   double elapsed = 0;
   std::string status;
@@ -49,7 +49,7 @@ TEST(RoomSubject, ACopyContinuesBitForBit) {
   Drive one("crowd-crossing");
   one.drive(60);
   Drive other("crowd-crossing");
-  other.subject = one.subject->clone();
+  other.subject.reset(static_cast<SolverSubject*>(one.subject->clone().release()));
   other.state = one.state;
   other.elapsed = one.elapsed;
   one.drive(40);
@@ -63,7 +63,7 @@ TEST(RoomSubject, TheGoalIsDraggedAndReachedAndTheRoomBeginsAnew) {
   drive.drive(20);
   const maps::Pose goal = drive.subject->shapes()[static_cast<std::size_t>(drive.goal())].pose;
   const maps::Point to{goal.x - 1, goal.y + 0.5};
-  drive.subject->move(drive.goal(), to);
+  drive.subject->move(drive.goal(), {to.x, to.y, 0});
   ASSERT_TRUE(drive.drive(900, "goal_reached")) << drive.status;
   EXPECT_LT(std::hypot(drive.state[0] - to.x, drive.state[1] - to.y), 0.15);
   // Without a plan the robot stands, and its trajectories do.
@@ -78,17 +78,17 @@ TEST(RoomSubject, TheGoalIsDraggedAndReachedAndTheRoomBeginsAnew) {
 TEST(RoomSubject, AGoalInAWallIsRefusedAndPeopleAreNotDragged) {
   Drive drive("crowd-crossing");
   drive.drive(5);
-  EXPECT_THROW(drive.subject->move(drive.goal(), {-1, -1}), std::invalid_argument);
-  EXPECT_THROW(drive.subject->move(drive.goal() + 1, {2, 2}), std::invalid_argument);
+  EXPECT_THROW(drive.subject->move(drive.goal(), {-1, -1, 0}), std::invalid_argument);
+  EXPECT_THROW(drive.subject->move(drive.goal() + 1, {2, 2, 0}), std::invalid_argument);
   EXPECT_FALSE(drive.drive(20, "no_path"));
 }
 
 TEST(RoomSubject, AnObstacleThatIsDraggedIntoTheWayIsPassedOnADetour) {
   Drive drive("pallet-on-path");
   const maps::Pose pallet = drive.subject->shapes()[0].pose;
-  drive.subject->move(0, {pallet.x, pallet.y + 100});  // out of the room
+  drive.subject->move(0, {pallet.x, pallet.y + 100, 0});  // out of the room
   EXPECT_FALSE(drive.drive(40, "detour"));
-  drive.subject->move(0, {pallet.x, pallet.y});
+  drive.subject->move(0, {pallet.x, pallet.y, 0});
   EXPECT_TRUE(drive.drive(200, "detour")) << drive.status;
   EXPECT_TRUE(drive.drive(900, "goal_reached")) << drive.status;
 }
@@ -96,9 +96,9 @@ TEST(RoomSubject, AnObstacleThatIsDraggedIntoTheWayIsPassedOnADetour) {
 TEST(RoomSubject, OptionsOfMethodAndNavigatorChange) {
   Drive drive("heading");
   drive.drive(10);
-  EXPECT_TRUE(drive.subject->set_parameter("max_forward", "0.2"));
-  EXPECT_THROW(drive.subject->set_parameter("max_forward", "-1"), std::invalid_argument);
-  EXPECT_FALSE(drive.subject->set_parameter("base", "ackermann"));
+  EXPECT_TRUE(drive.subject->set_parameter("problem", "max_forward", "0.2"));
+  EXPECT_THROW(drive.subject->set_parameter("problem", "max_forward", "-1"), std::invalid_argument);
+  EXPECT_FALSE(drive.subject->set_parameter("problem", "base", "ackermann"));
   drive.subject->set_options(*drive.subject->options_of("mppi"));
   EXPECT_STREQ(drive.subject->options()->method(), "mppi");
   drive.drive(40);

@@ -1,105 +1,48 @@
 // Commands to the drive of an own problem: going back, changes that fail, other durations of steps.
-#include "view/problem/problem_session.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <limits>
-#include <nlohmann/json.hpp>
-#include <thread>
+#include <cmath>
 
 #include "slalom/problems/differential_drive.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/view/serve.hpp"
-#include "view/web_client.hpp"
+#include "view/paused_session.hpp"
 
 namespace slalom::view {
 namespace {
 
-using nlohmann::json;
 using problems::DifferentialDrive;
 using State = DifferentialDrive::State<double>;
 
-/// A robot among discs, paused at its first step. A disc that is moved beyond x = 50 m cannot be drawn.
-class OwnProblem : public ::testing::Test {
+int moves = 0;  // calls of the drawing's `move`
+
+/// A robot among discs. A disc that is moved beyond x = 50 m cannot be drawn.
+std::unique_ptr<Subject> robot() {
+  SolverOptions options = solver_options("svg_mppi");
+  *options.find<int>("samples") = 128;
+  *options.find<PerInput>("input_min") = {0, -2};
+  *options.find<PerInput>("input_max") = {1.5, 2};
+  Drawing<DifferentialDrive> drawing{.x = &State::x, .y = &State::y, .heading = &State::yaw};
+  drawing.shapes = [](const DifferentialDrive& p) {
+    if (p.discs[0].x > 50) throw std::runtime_error("the disc is too far away");
+    return std::vector{disc(p.discs[0].x, p.discs[0].y, p.discs[0].radius)};
+  };
+  drawing.move = [](DifferentialDrive& p, int, const maps::Point& to) {
+    ++moves;
+    p.discs[0].x = to.x, p.discs[0].y = to.y;
+  };
+  return std::make_unique<detail::ControllerSubject<DifferentialDrive>>(
+      Controller<DifferentialDrive>(DifferentialDrive{}, options), std::move(drawing));
+}
+
+class OwnProblem : public ::testing::Test, protected PausedSession {
  protected:
-  OwnProblem() {
-    session_.turn({});
-    tell({R"({"do": "pause"})"});
-  }
-
-  /// Sends commands, which arrive together, and turns the session `turns` times.
-  void tell(const std::vector<std::string>& commands, int turns = 1) {
-    const auto before = server_.counters().messages;
-    for (const std::string& command : commands) client_.send_message(command);
-    for (int i = 0; i < 5000 && server_.counters().messages < before + commands.size(); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    for (int i = 0; i < turns; ++i) session_.turn({});
-  }
-  /// A figure of a step; NaN if the step is not known.
-  double figure(const std::string& name, int tick) {
-    const std::string at = std::to_string(tick);
-    tell({R"({"do": "past", "from": )" + at + R"(, "to": )" + at + "}"});
-    for (;;) {
-      const std::string message = client_.next_message();
-      double value = std::numeric_limits<double>::quiet_NaN();
-      if (message.empty()) return value;
-      if (!message.starts_with("SLV1")) {
-        const json parsed = json::parse(message);
-        last_[parsed["type"]] = parsed;
-      } else if (message[4] == static_cast<char>(Block::past)) {
-        const std::vector<std::string> names = last_["hello"]["scalars"];
-        const auto i = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-        if (message.size() >= 20 + 8 * i) std::memcpy(&value, &message[12 + 8 * i], sizeof value);
-        return value;
-      }
-    }
-  }
-  /// The last message of a type, while the drive is paused.
-  json last(const char* type) {
-    tell({R"({"do": "pause"})"});
-    figure("tick", 0);
-    return last_[type];
-  }
-  /// The value of an option that the page has.
-  std::string option(const std::string& section, const std::string& name) {
-    const json options = last("options");
-    for (const json& each : options["sections"])
-      for (const json& one : each["options"])
-        if (each["name"] == section && one["name"] == name) return one["value"];
-    return "none";
-  }
-
-  std::unique_ptr<Subject> subject() {
-    SolverOptions options = solver_options("svg_mppi");
-    *options.find<int>("samples") = 128;
-    *options.find<PerInput>("input_min") = {0, -2};
-    *options.find<PerInput>("input_max") = {1.5, 2};
-    Drawing<DifferentialDrive> drawing{.x = &State::x, .y = &State::y, .heading = &State::yaw};
-    drawing.shapes = [](const DifferentialDrive& p) {
-      if (p.discs[0].x > 50) throw std::runtime_error("the disc is too far away");
-      return std::vector{disc(p.discs[0].x, p.discs[0].y, p.discs[0].radius)};
-    };
-    drawing.move = [this](DifferentialDrive& p, int, const maps::Point& to) {
-      ++moves_;
-      p.discs[0].x = to.x, p.discs[0].y = to.y;
-    };
-    return std::make_unique<detail::ControllerSubject<DifferentialDrive>>(
-        Controller<DifferentialDrive>(DifferentialDrive{}, options), std::move(drawing));
-  }
-
-  int moves_ = 0;  ///< calls of the drawing's `move`
-  Server server_{{.messages_per_second = 1e6, .burst = 1e6}, {}};
-  testing::PageClient client_{server_};
-  ProblemSession session_{subject(), server_};
-  std::map<std::string, json> last_;  ///< the last message of each type
+  OwnProblem() : PausedSession(robot()) { moves = 0; }
 };
 
 TEST_F(OwnProblem, ACommandWithAWrongValueChangesNothing) {
   tell({R"({"do": "rate", "rate": 1e9})"});
   EXPECT_EQ(last("error")["message"], "rate: must be 0 for the maximum speed, or in [0.001, 100]");
   EXPECT_EQ(last("state")["rate"], 1);
-  tell({R"({"do": "step", "ticks": 3})"}, 3);
+  step(3);
   tell({R"({"do": "seek", "tick": 1})", R"({"do": "step", "ticks": "many"})"});
   EXPECT_EQ(last("state")["newest"], 3);
   EXPECT_EQ(last("state")["tick"], 1);
@@ -113,9 +56,9 @@ TEST_F(OwnProblem, StepsAddUpAndAPauseEndsThem) {
 }
 
 TEST_F(OwnProblem, OptionsAreThoseOfTheStepThatIsShown) {
-  tell({R"({"do": "step", "ticks": 3})"}, 3);
+  step(3);
   tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})"});
-  tell({R"({"do": "step", "ticks": 3})"}, 3);
+  step(3);
   tell({R"({"do": "method", "method": "mppi"})"});
   EXPECT_EQ(option("mppi", "samples"), "64");
   tell({R"({"do": "seek", "tick": 4})"});
@@ -129,7 +72,7 @@ TEST_F(OwnProblem, OptionsAreThoseOfTheStepThatIsShown) {
 
 TEST_F(OwnProblem, TheNumberOfCollisionsIsThatOfTheStep) {
   tell({R"({"do": "place_car", "x": 2.5, "y": 0})"});
-  tell({R"({"do": "step", "ticks": 3})"}, 3);
+  step(3);
   EXPECT_EQ(figure("contacts", 0), 1);
   EXPECT_EQ(figure("contacts", 3), 4);
   tell({R"({"do": "seek", "tick": 2})"});
@@ -138,7 +81,7 @@ TEST_F(OwnProblem, TheNumberOfCollisionsIsThatOfTheStep) {
 }
 
 TEST_F(OwnProblem, AnotherDurationOfStepsBeginsAnew) {
-  tell({R"({"do": "step", "ticks": 5})"}, 5);
+  step(5);
   const json before = last("state");
   tell({R"({"do": "set", "key": "problem.dt", "value": "0.2"})"});
   const json state = last("state");
@@ -151,7 +94,7 @@ TEST_F(OwnProblem, AnotherDurationOfStepsBeginsAnew) {
 }
 
 TEST_F(OwnProblem, AChangeThatFailsChangesNothing) {
-  tell({R"({"do": "step", "ticks": 3})"}, 3);
+  step(3);
   const double cost = figure("minimum_cost", 3);
   tell({R"({"do": "move", "body": 1, "x": 99, "y": 0})"});
   EXPECT_EQ(last("error")["message"], "the disc is too far away");
@@ -167,7 +110,7 @@ TEST_F(OwnProblem, OnlyTheLastStepOfADragIsPlannedFor) {
   const std::string move = R"({"do": "move", "body": 1, "y": 1, "drag": 7, "x": )";
   tell({move + "3}", move + "3.5}", move + "4}"});
   EXPECT_EQ(last("state")["edited"], true);
-  EXPECT_EQ(moves_, 1);
+  EXPECT_EQ(moves, 1);
   const std::string place = R"({"do": "place_car", "y": 0, "x": )";
   tell({place + "-90}", place + "-1}"});
   EXPECT_EQ(figure("x", 0), -1);
@@ -176,6 +119,8 @@ TEST_F(OwnProblem, OnlyTheLastStepOfADragIsPlannedFor) {
 
 TEST_F(OwnProblem, ResetsWhatWasChangedAlsoWithAnotherMethod) {
   tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})"});
+  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "-5"})"});
+  EXPECT_EQ(last("error")["message"], "svg_mppi.samples: '-5' must be in [1, 4194304]");
   tell({R"({"do": "set", "key": "problem.goal_x", "value": "6"})"});
   tell({R"({"do": "method", "method": "mppi"})"});
   tell({R"({"do": "reset_options"})"});
@@ -183,6 +128,76 @@ TEST_F(OwnProblem, ResetsWhatWasChangedAlsoWithAnotherMethod) {
   EXPECT_EQ(option("problem", "goal_x"), "8");
   EXPECT_EQ(last("options")["changed"], json::array());
   EXPECT_EQ(figure("samples", 0), 128);
+}
+
+TEST_F(OwnProblem, AGhostDrivesBesideOnTheSameScene) {
+  const auto can = last("hello")["can"];
+  EXPECT_NE(std::ranges::find(can, "ghost"), can.end());
+  step(3);
+  tell({R"({"do": "ghost", "method": "mppi"})"});
+  EXPECT_EQ(last("state")["ghost"], "mppi");
+  EXPECT_EQ(ghost_figure("x", 3), figure("x", 3)) << "it starts where the robot is";
+  step(6);
+  const double x = figure("x", 9), ghost = ghost_figure("x", 9);
+  EXPECT_NE(ghost, x);
+  const json methods = last("hello")["methods"];
+  EXPECT_EQ(methods[static_cast<std::size_t>(ghost_figure("method", 9))], "mppi");
+  tell({R"({"do": "place_car", "x": -1, "y": 0})"});
+  EXPECT_EQ(figure("x", 9), -1);
+  EXPECT_EQ(ghost_figure("x", 9), ghost) << "only the robot is put elsewhere";
+  tell({R"({"do": "move", "body": 1, "x": 3, "y": 1})"});
+  EXPECT_EQ(moves, 2) << "the disc in both scenes";
+  tell({R"({"do": "seek", "tick": 6})"});
+  step(3);
+  EXPECT_EQ(figure("x", 9), x);
+  EXPECT_EQ(ghost_figure("x", 9), ghost) << "both are driven again exactly";
+  tell({R"({"do": "restart"})"}, 2);
+  EXPECT_EQ(last("state")["ghost"], "mppi");
+  EXPECT_EQ(ghost_figure("x", 0), figure("x", 0));
+  tell({R"({"do": "ghost", "method": ""})"});
+  EXPECT_TRUE(std::isnan(ghost_figure("x", 0)));
+}
+
+TEST_F(OwnProblem, AForkContinuesWithOtherOptionsBesideWhatDroveBefore) {
+  step(3);
+  const double x = (step(4), figure("x", 7));
+  tell({R"({"do": "seek", "tick": 3})",
+        R"({"do": "fork", "method": "svg_mppi", "set": ["samples=64", "problem.goal_x=-8"]})"});
+  EXPECT_EQ(last("state")["ghost_label"], "svg_mppi as before");
+  const double samples = figure("samples", 3);
+  EXPECT_EQ(option("problem", "goal_x"), "-8");
+  step(4);
+  EXPECT_EQ(ghost_figure("samples", 7), 2 * samples);
+  EXPECT_EQ(last("state")["newest"], 7);
+  EXPECT_NE(figure("x", 7), x);
+  tell({R"({"do": "fork", "method": "svg_mppi", "set": ["problem.dt=0.2"]})"});
+  EXPECT_EQ(last("error")["message"], "fork: the control period cannot change during a drive");
+  tell({R"({"do": "undo"})"});
+  EXPECT_EQ(option("problem", "goal_x"), "8");
+  EXPECT_EQ(option("svg_mppi", "samples"), "128");
+}
+
+TEST_F(OwnProblem, UndoesAndRedoesOptionsMethodsAndObstacles) {
+  const std::string move = R"({"do": "move", "body": 1, "y": 1, "drag": 7, "x": )";
+  const double before = figure("minimum_cost", 0);
+  tell({move + "3}"});
+  tell({move + "2}"});
+  const double moved = figure("minimum_cost", 0);
+  tell({R"({"do": "set", "key": "problem.goal_x", "value": "6"})"});
+  tell({R"({"do": "method", "method": "mppi"})"});
+  EXPECT_EQ(last("options")["undo"], 3) << "a drag is one change";
+  tell({R"({"do": "undo"})"});
+  EXPECT_EQ(last("state")["method"], "svg_mppi");
+  EXPECT_EQ(option("problem", "goal_x"), "6");
+  tell({R"({"do": "undo"})"});
+  EXPECT_EQ(option("problem", "goal_x"), "8");
+  tell({R"({"do": "undo"})"});
+  EXPECT_EQ(last("options")["undo"], 0);
+  tell({R"({"do": "redo"})", R"({"do": "redo"})"});
+  EXPECT_EQ(option("problem", "goal_x"), "6");
+  EXPECT_NE(moved, before);
+  tell({R"({"do": "undo"})", R"({"do": "undo"})", R"({"do": "undo"})"});
+  EXPECT_EQ(last("error")["message"], "nothing to undo");
 }
 
 }  // namespace

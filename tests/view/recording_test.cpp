@@ -8,7 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
-#include "view/protocol/car_frame.hpp"
+#include "view/car/car_subject.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
@@ -42,7 +42,7 @@ std::string record(bool wall_clock, int ticks = 12, bool ghost = false, bool eve
   recorder.add_course(encode_scene(*facts));
   for (int i = 0; i < ticks; ++i)
     loop.step([&](const evaluation::ControlStep& tick) {
-      const std::string frame = encode_car(*facts, tick, 0.025, 0.1, 0);
+      const std::string frame = encode_car(facts, tick, 0.025, 0.1, 0);
       for (int k = 0; k < times; ++k) recorder.add_frame(ghost ? frame + encode_ghost_frame(frame) : frame);
     });
   recorder.finish();
@@ -77,7 +77,7 @@ TEST(CarFrame, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
     int shown = 0;
     for (int i = 0; i < 60; ++i)
       loop.step([&](const evaluation::ControlStep& tick) {
-        shown += shows_the_opponent(tick, encode_car(*facts, tick, 0.025, 0.1, 0));
+        shown += shows_the_opponent(tick, encode_car(facts, tick, 0.025, 0.1, 0));
       });
     if (mode == evaluation::TrackingMode::off)
       EXPECT_EQ(shown, 0);
@@ -98,6 +98,15 @@ std::string refusal(const std::string& name) {
     return error.what();
   }
   return "";
+}
+
+TEST_F(McapRecording, TheSameDriveGivesTheSameBytes) {
+  const std::string first = record(false);
+  EXPECT_EQ(first, record(false));
+  EXPECT_EQ(first.find("/wall_clock"), std::string::npos);
+  EXPECT_NE(record(true).find("/wall_clock"), std::string::npos);
+  EXPECT_EQ(record(false, 12, true), record(false, 12, true))
+      << "with what the ghost's controller considered";
 }
 
 /// The frames of a recording whose replay has one segment, and its text messages.

@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "view/session/session.hpp"
+#include "view/car/car_subject.hpp"
+#include "view/recording/drive_files.hpp"
 #include "view/web_client.hpp"
 
 /// A session with one client, for the tests of what it does with commands.
@@ -34,17 +35,18 @@ inline vehicle::Configuration small() {
   return configuration;
 }
 
+inline std::shared_ptr<const evaluation::Environment> environment_of(const std::string& course) {
+  return evaluation::load_environment(SLALOM_COURSES "/" + course, evaluation::Protocol::true_physics, {});
+}
+
 inline SessionOptions session_options() {
   SessionOptions options;
   options.scenario = {.course = "stag", .method = "svg_mppi", .config = "default", .seed = 4, .obstacles = 2};
   options.load = [](const ScenarioNames& names) {
-    LoadedScenario loaded;
-    loaded.environment = evaluation::load_environment(SLALOM_COURSES "/" + names.course,
-                                                      evaluation::Protocol::true_physics, {});
-    loaded.configuration = small();
-    loaded.lap.obstacles = names.obstacles;
-    return loaded;
+    return car_subject(
+        {environment_of(names.course), {small(), names.method}, {.obstacles = names.obstacles}}, names.seed);
   };
+  add_files(options, {});
   options.choices.courses = {"stag", "eel"};
   options.choices.methods = {"svg_mppi", "mppi"};
   options.choices.configurations = {"default"};
@@ -63,7 +65,8 @@ inline double scalar(std::string_view frame, const std::string& name) {
 /// A session with one client, driven by hand.
 class ViewSession : public ::testing::Test {
  protected:
-  explicit ViewSession(SessionOptions options = session_options()) : session_(std::move(options), server_) {}
+  explicit ViewSession(SessionOptions options = session_options())
+      : session_(options.load(options.scenario), server_, options) {}
 
   void SetUp() override {
     session_.turn();

@@ -43,8 +43,7 @@ TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   const std::string fifth = step_to(5);
   EXPECT_EQ(FrameReader(fifth).block(Block::scalars).size(), 8 * car_scalars().size());
   const double x5 = scalar(fifth, "x"), x60 = scalar(step_to(60), "x");
-  const evaluation::LapSetup setup{
-      session_options().load(session_options().scenario).environment, {small()}, {.obstacles = 2}};
+  const evaluation::LapSetup setup{environment_of("stag"), {small()}, {.obstacles = 2}};
   std::vector<double> x;
   run_lap(setup, 4, [&](const evaluation::ControlStep& tick) { x.push_back(tick.seen.pose.x); });
   EXPECT_EQ(x5, x[5]);
@@ -252,6 +251,8 @@ TEST_F(ViewSessionPaused, EveryChangeIsPlannedForAgainFromTheStateThatIsShown) {
   EXPECT_EQ(scalar(answer(30), "samples"), 64);
   tell({{"do", "method"}, {"method", "mppi"}});
   EXPECT_EQ(scalar(answer(30), "method"), 1);
+  tell({{"do", "undo"}});
+  EXPECT_EQ(scalar(answer(30), "method"), 0);
   tell({{"do", "undo"}});
   EXPECT_EQ(scalar(answer(30), "samples"), 128);
   tell({{"do", "ghost"}, {"method", "svg_mppi"}});

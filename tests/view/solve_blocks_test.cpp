@@ -1,5 +1,5 @@
 // The blocks of a message about a solve: effective sample sizes, inputs of each step, costs of each step.
-#include "view/protocol/solve_blocks.hpp"
+#include "view/protocol/blocks.hpp"
 
 #include <gtest/gtest.h>
 

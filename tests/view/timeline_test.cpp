@@ -3,66 +3,89 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace slalom::view {
 namespace {
 
-/// A drive whose copies hold 2 MiB.
-struct Large {
-  int steps = 0;
-  int sum = 0;
-  std::vector<char> ballast = std::vector<char>(2u << 20, 'x');
+/// A subject whose state holds 2 MiB; the first value counts.
+class Large final : public SolverSubject {
+ public:
+  std::unique_ptr<Subject> clone() const override { return std::make_unique<Large>(); }
+  const SubjectFacts& facts() const override { return facts_; }
+  std::vector<double> start() const override { return std::vector<double>((2u << 20) / sizeof(double)); }
+  double time_step() const override { return 1.0 / 40; }
+  const SolverOptions* options() const override { return nullptr; }
+  void set_options(const SolverOptions&) override {}
+  const SolveResult& solve(std::span<const double>, const SolveRequest&) override { return solve_; }
+  std::span<const double> inputs() const override { return {}; }
+  Trajectories roll_out(std::span<const double>, std::span<const float>) override { return {}; }
+  std::vector<double> step(std::span<const double> state, std::span<const double>) override {
+    std::vector<double> next(state.begin(), state.end());
+    next[0] = std::fmod(31 * next[0], 1009) + 1;
+    return next;
+  }
+  std::vector<maps::Pose> poses(std::span<const double>) override { return {}; }
+  std::vector<Shape> shapes() override { return {}; }
+  std::vector<Line> figure(std::span<const double>) override { return {}; }
+  void place(std::span<double> state, const maps::Pose& to) override { state[0] = to.x; }
+  void move(int, const maps::Pose&) override {}
 
-  int ticks() const { return steps; }
-  void tick(const Delays&) { sum = 31 * sum % 1009 + ++steps; }
+ private:
+  SubjectFacts facts_;
+  SolveResult solve_;
 };
-using Past = TimelineOf<Large>;
+
+Drives large() {
+  return {Run(Polymorphic<Subject>(std::make_unique<Large>()))};
+}
 
 constexpr std::size_t frame_size = 64u << 10;
 
 /// Drives ticks of 1/40 s with frames that cannot be compressed further.
-void drive(Past& past, Large& drives, int ticks) {
+void drive(Timeline& past, Drives& drives, int ticks) {
   for (int i = 0; i < ticks; ++i) {
     past.checkpoint(drives);
-    const int tick = drives.ticks();
-    drives.tick({});
-    DrivenTick driven{tick, {}, shared(std::string(frame_size, static_cast<char>(tick)))};
+    DrivenTick driven{.tick = drives.ticks(),
+                      .frame = shared(std::string(frame_size, static_cast<char>(drives.ticks())))};
+    drives.tick(driven.records);
     driven.keep_scalars(3);
     past.keep(std::move(driven));
   }
 }
 
 TEST(Timeline, HoldsNoMoreThanItsBounds) {
-  Past past(1.0 / 40);
-  Large drives;
+  Timeline past(1.0 / 40);
+  Drives drives = large();
   const std::size_t before = allocated_bytes();
   for (int second = 0; second < 150; ++second) {
     drive(past, drives, 40);
-    EXPECT_LE(past.frame_bytes(), Past::max_frame_bytes);
-    EXPECT_LE(past.copy_bytes(), Past::max_copy_bytes);
+    EXPECT_LE(past.frame_bytes(), Timeline::max_frame_bytes);
+    EXPECT_LE(past.copy_bytes(), Timeline::max_copy_bytes);
   }
   EXPECT_EQ(past.newest(), 5999);
   EXPECT_GT(past.newest() - past.oldest(), 2000) << "frames of 64 KiB fill 128 MiB with 2047 ticks";
   if (before == 0) return;  // the system does not tell
-  EXPECT_GT(past.copy_bytes(), Past::max_copy_bytes / 2) << "the bytes of copies are measured";
-  EXPECT_LE(allocated_bytes() - before, Past::max_frame_bytes + Past::max_copy_bytes + (8u << 20));
+  EXPECT_GT(past.copy_bytes(), Timeline::max_copy_bytes / 2) << "the bytes of copies are measured";
+  EXPECT_LE(allocated_bytes() - before, Timeline::max_frame_bytes + Timeline::max_copy_bytes + (8u << 20));
 }
 
 TEST(Timeline, ReachesEveryStoredTickExactly) {
-  Past past(1.0 / 40);
-  Large drives;
+  Timeline past(1.0 / 40);
+  Drives drives = large();
   drive(past, drives, 300);
-  past.note(300, [](Large& each) { each.sum += 5; });
+  past.note(300, place_body({500, 0, 0}));
   past.act(drives);
   drive(past, drives, 3000);
   for (const int tick : {past.oldest(), past.oldest() + 333, past.newest() - 1}) {
-    Large again;
+    Drives again = large();
     while (again.ticks() < tick) {
       again.tick({});
-      if (again.ticks() == 300) again.sum += 5;
+      if (again.ticks() == 300) place_body({500, 0, 0})(again);
     }
-    std::optional<Large> reached;
+    std::optional<Drives> reached;
     while (!past.approach(reached, tick)) continue;
-    EXPECT_EQ(reached->sum, again.sum) << tick;
+    EXPECT_EQ(reached->driven.state, again.driven.state) << tick;
     EXPECT_EQ(past.frame(tick)->front(), static_cast<char>(tick));
   }
 }

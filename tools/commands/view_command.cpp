@@ -1,14 +1,16 @@
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "slalom/core/version.hpp"
-#include "slalom/view/serve.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/live_view/subjects.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
+#include "view/car/car_subject.hpp"
 #include "view/embedded.hpp"
+#include "view/recording/drive_files.hpp"
 #include "view/server/server.hpp"
 #include "view/session/session.hpp"
 
@@ -45,48 +47,47 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
                       .seed = arguments.seed,
                       .obstacles = arguments.scenario.obstacles,
                       .opponents = arguments.scenario.opponents};
-  options.load = [given = arguments.scenario](const view::ScenarioNames& names) {
+  options.load = [given = arguments.scenario](view::ScenarioNames& names) {
     ScenarioArguments a = given;
     a.course = names.course;
     a.config = names.config;
     a.obstacles = names.obstacles;
     a.obstacle.resize(std::min(a.obstacle.size(), static_cast<std::size_t>(names.obstacles)));
     a.opponents = names.opponents;
-    Scenario scenario = load_scenario(a, names.method);
-    return view::LoadedScenario{scenario.environment, scenario.configuration, scenario.lap};
+    const Scenario scenario = load_scenario(a, names.method);
+    names = view::with_course(names, *scenario.environment);
+    return view::car_subject({scenario.environment, {scenario.configuration, names.method}, scenario.lap},
+                             names.seed);
   };
   options.choices = choices();
   options.against = arguments.against;
   options.introduction = arguments.introduction;
-  options.record_all = arguments.record_all;
-  options.record_times = arguments.record_times;
-  options.program = std::string("slalom ") + version();
   options.further_arguments = further_arguments(arguments.scenario);
+  view::add_files(options, {.program = std::string("slalom ") + version(),
+                            .everything = arguments.record_all,
+                            .wall_clock = arguments.record_times});
   return options;
 }
 
 int view(const ViewArguments& arguments) {
-  const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
-  view::Server server(options, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
-  view::Session session(session_options(arguments), server);
+  view::ServerOptions address = server_options(arguments.host, arguments.port, arguments.token);
+  if (!arguments.room.empty() || !arguments.problem.empty()) address.framed_by = view::notebooks;
+  view::Server server(address, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
+  view::SessionOptions options;
+  std::unique_ptr<view::Subject> subject;
+  if (!arguments.room.empty()) {
+    subject =
+        for_option("--room", [&] { return room_subject(arguments.room, arguments.method, arguments.seed); });
+  } else if (!arguments.problem.empty()) {
+    subject = problem_subject(arguments.problem, arguments.method, arguments.seed);
+  } else {
+    options = session_options(arguments);
+    subject = options.load(options.scenario);
+  }
+  view::Session session(std::move(subject), server, std::move(options));
   const InterruptFlag interrupt;
-  print_address(view::address_of(server, options));
+  print_address(view::address_of(server, address));
   while (!interrupt.raised()) session.turn(std::chrono::milliseconds(50));
-  return 0;
-}
-
-/// Serves the page of a problem that is not a car, or of a navigator in a room.
-int view_problem(const ViewArguments& arguments) {
-  const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
-  const auto subject = [&] {
-    return arguments.room.empty() ? problem_subject(arguments.problem, arguments.method, arguments.seed)
-                                  : room_subject(arguments.room, arguments.method, arguments.seed);
-  };
-  view::View view(arguments.room.empty() ? subject() : for_option("--room", subject),
-                  {.host = options.host, .port = options.port, .token = options.token});
-  const InterruptFlag interrupt;
-  print_address(view.address());
-  while (!interrupt.raised()) view.turn(std::chrono::milliseconds(50));
   return 0;
 }
 
@@ -126,7 +127,7 @@ void declare_view(Subcommand& command) {
       if (value.empty()) continue;
       if (!command.given_only({name, "--method", "--seed", "--host", "--port", "--token"}))
         throw CommandLineError(name, "has only --method, --seed, --host, --port and --token beside it");
-      return view_problem(*arguments);
+      return view(*arguments);
     }
     if (command.given_only({"--host", "--port", "--token", "--record-all", "--record-times", "--threads"}))
       set_introduction(*arguments);

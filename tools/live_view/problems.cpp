@@ -30,7 +30,7 @@ struct Solving {
 };
 
 template <class P>
-std::unique_ptr<view::Subject> subject(P problem, const Solving& solving, view::Drawing<P> drawing) {
+std::unique_ptr<view::SolverSubject> subject(P problem, const Solving& solving, view::Drawing<P> drawing) {
   SolverOptions options = solver_options(solving.method);
   *options.find<int>("horizon") = solving.horizon;
   *options.find<PerInput>("input_min") = solving.low;
@@ -41,7 +41,7 @@ std::unique_ptr<view::Subject> subject(P problem, const Solving& solving, view::
                                                               std::move(drawing));
 }
 
-std::unique_ptr<view::Subject> pendulum(Solving solving) {
+std::unique_ptr<view::SolverSubject> pendulum(Solving solving) {
   using State = Pendulum::State<double>;
   const auto tip = [](const State& x) { return maps::Pose{std::sin(x.angle), std::cos(x.angle), 0}; };
   const auto rod = [tip](const State& x) {
@@ -57,7 +57,7 @@ std::unique_ptr<view::Subject> pendulum(Solving solving) {
                   .title = "pendulum"});
 }
 
-std::unique_ptr<view::Subject> cart_pole(Solving solving) {
+std::unique_ptr<view::SolverSubject> cart_pole(Solving solving) {
   using State = CartPole::State<double>;
   const auto tip = [](const State& x) {
     return maps::Pose{x.position + std::sin(x.angle), std::cos(x.angle), 0};
@@ -82,12 +82,12 @@ std::unique_ptr<view::Subject> cart_pole(Solving solving) {
                   .title = "cart_pole"});
 }
 
-std::unique_ptr<view::Subject> differential_drive(Solving solving) {
+std::unique_ptr<view::SolverSubject> differential_drive(Solving solving) {
   solving.horizon = 25, solving.low = {0, -2}, solving.high = {1.5, 2};
   return subject(DifferentialDrive{}, solving, view::drawing_among_discs());
 }
 
-std::unique_ptr<view::Subject> quadrotor(Solving solving) {
+std::unique_ptr<view::SolverSubject> quadrotor(Solving solving) {
   using State = Quadrotor::State<double>;
   const auto wall = [](const Quadrotor& p) {
     const double middle = 0.5 * (p.wall_from + p.wall_to), thick = p.wall_to - p.wall_from;
@@ -112,7 +112,7 @@ std::unique_ptr<view::Subject> quadrotor(Solving solving) {
 }
 
 /// The arm from above.
-std::unique_ptr<view::Subject> arm(Solving solving) {
+std::unique_ptr<view::SolverSubject> arm(Solving solving) {
   using State = Arm::State<double>;
   const auto hand = [](const State& x) {
     const auto at = Arm{}.posture(x).hand;
@@ -146,8 +146,8 @@ std::unique_ptr<view::Subject> arm(Solving solving) {
 
 }  // namespace
 
-std::unique_ptr<view::Subject> problem_subject(const std::string& name, const std::string& method,
-                                               std::uint64_t seed) {
+std::unique_ptr<view::SolverSubject> problem_subject(const std::string& name, const std::string& method,
+                                                     std::uint64_t seed) {
   constexpr std::array make{pendulum, cart_pole, differential_drive, quadrotor, arm};
   std::string all;
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -25,7 +25,7 @@ maps::Pose pose_of(std::span<const double> state) {
 
 /// A navigator in its room. Its state is that of the robot; the room, the people and the map of the scans are
 /// members.
-class RoomSubject final : public view::Subject {
+class RoomSubject final : public view::SolverSubject {
  public:
   RoomSubject(const RoomScenario& scenario, const std::string& method, std::uint64_t seed)
       : scenario_(evaluation::with_heading(scenario, seed)), seed_(seed) {
@@ -61,15 +61,15 @@ class RoomSubject final : public view::Subject {
   std::optional<SolverOptions> options_of(const std::string& method) const override {
     return evaluation::with_seed(navigation::method_options(method, driver_.navigator.base), seed_);
   }
-  std::vector<OptionEntry> parameters() const override {
+  std::vector<view::OptionSection> parameters() const override {
     std::vector<OptionEntry> all = list_options(driver_.navigator);
     std::erase_if(all,
                   [](const OptionEntry& each) { return std::string_view(each.declaration.name) == "base"; });
-    return all;
+    return {{"problem", std::move(all)}};
   }
-  bool set_parameter(const std::string& name, const std::string& text) override {
+  bool set_parameter(const std::string& section, const std::string& name, const std::string& text) override {
     navigation::NavigatorOptions changed = driver_.navigator;
-    if (name == "base" || !set_option(changed, name, text)) return false;
+    if (section != "problem" || name == "base" || !set_option(changed, name, text)) return false;
     robot_->replace(changed, driver_.solver);
     driver_.navigator = changed;
     return true;
@@ -153,12 +153,12 @@ class RoomSubject final : public view::Subject {
   void place(std::span<double> state, const maps::Pose& to) override {
     state[0] = to.x, state[1] = to.y, state[2] = to.yaw;
   }
-  void move(int shape, const maps::Point& to) override {
+  void move(int shape, const maps::Pose& to) override {
     const auto index = static_cast<std::size_t>(shape);
     const std::size_t obstacles = world_->room().obstacles.size() + world_->room().posts.size();
     if (index > obstacles) throw std::invalid_argument("body: people walk by themselves");
     if (index < obstacles) {
-      world_->move_obstacle(index, to);
+      world_->move_obstacle(index, {to.x, to.y});
       scenario_.room.obstacles = world_->room().obstacles;
       scenario_.room.posts = world_->room().posts;
       return;
@@ -188,8 +188,8 @@ class RoomSubject final : public view::Subject {
 
 }  // namespace
 
-std::unique_ptr<view::Subject> room_subject(const std::string& scenario, const std::string& method,
-                                            std::uint64_t seed) {
+std::unique_ptr<view::SolverSubject> room_subject(const std::string& scenario, const std::string& method,
+                                                  std::uint64_t seed) {
   return std::make_unique<RoomSubject>(evaluation::room_scenario(scenario), method, seed);
 }
 

@@ -5,7 +5,6 @@
 #include "tools/scenario/scenario.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
-#include "view/session/session.hpp"
 
 /// The description of a scenario in the live view and in recordings.
 namespace slalom::tools {

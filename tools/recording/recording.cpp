@@ -57,13 +57,13 @@ void Recording::begin_lap(std::uint64_t seed) {
 
 void Recording::add(const evaluation::ControlStep& tick) {
   ++ticks_;
-  recorder_.add_frame(view::encode_car(*facts_, tick, control_period_, prediction_step_,
+  recorder_.add_frame(view::encode_car(facts_, tick, control_period_, prediction_step_,
                                        choices_.method_index(state_.names.method)));
 }
 
 void Recording::end_lap(const evaluation::LapResult& lap, int number) {
   if (!lap.finished) return;
-  state_.laps.push_back({.tick = ticks_,
+  state_.laps.push_back({.end = ticks_,
                          .lap = number,
                          .time = lap.time,
                          .contacts = lap.collisions,

@@ -8,7 +8,7 @@
 
 #include "slalom/evaluation/lap.hpp"
 #include "tools/scenario/scenario.hpp"
-#include "view/protocol/car_frame.hpp"
+#include "view/car/car_subject.hpp"
 #include "view/recording/recorder.hpp"
 
 namespace slalom::tools {

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "view/protocol/blocks.hpp"
 #include "view/protocol/frame_writer.hpp"
-#include "view/protocol/scene_blocks.hpp"
-#include "view/protocol/solve_blocks.hpp"
 
 namespace slalom::view {
 namespace {
@@ -154,7 +153,7 @@ class StepEncoder {
     to_.put({solve_.samples ? solve_.samples->samples() : 0.0, known(solve_.collided_share)});
     to_.put({known(solve_.temperature), static_cast<double>(solve_.iterations), 1e3 * m.update_time});
     to_.put({1e3 * step_.period, frame_.collides ? 1.0 : 0.0});
-    to_.put({static_cast<double>(m.collisions + (counts ? 0 : frame_.collides)), step_.prediction_step});
+    to_.put({static_cast<double>(m.collisions + (counts ? 0 : frame_.collides)), m.prediction_step});
     to_.put({static_cast<double>(step_.method), cost, static_cast<double>(solve_.symptom())});
     for (const double sum : sums) to_.put(sum);
     if (facts_.figures.empty()) {

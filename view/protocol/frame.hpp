@@ -16,11 +16,10 @@ std::vector<std::string> scalar_names(const SubjectFacts& facts);
 
 /// Facts about a control step whose plan has been made and not yet applied.
 struct StepFacts {
-  int tick = 0;                ///< index of the control step
-  StepMeasures measures{};     ///< `collisions` without this step where the subject measures nothing itself
-  double period = 0;           ///< s of a control step
-  double prediction_step = 0;  ///< s of a step of the plan
-  int method = 0;              ///< index of the method
+  int tick = 0;             ///< index of the control step
+  StepMeasures measures{};  ///< `collisions` without this step where the subject measures nothing itself
+  double period = 0;        ///< s of a control step
+  int method = 0;           ///< index of the method
   std::vector<double> state{};
 };
 

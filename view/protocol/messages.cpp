@@ -56,15 +56,6 @@ std::string changed_yaml(const OptionsFacts& facts, const std::vector<std::strin
   return yaml;
 }
 
-std::vector<std::string> abilities(const SubjectFacts& facts) {
-  std::vector<std::string> words;
-  if (facts.can_place) words.emplace_back("place");
-  if (facts.can_move) words.emplace_back("move");
-  if (!facts.course.empty())
-    words.insert(words.end(), {"add", "scenario", "real_time", "save", "ghost", "undo"});
-  return words;
-}
-
 Json statuses_json(const SubjectFacts& facts) {
   if (!facts.statuses.empty()) return facts.statuses;
   Json names = Json::array();
@@ -90,7 +81,7 @@ int Choices::method_index(const std::string& method) const {
 }
 
 std::string hello_message(const SubjectFacts& facts, const Choices& choices, double history,
-                          double control_period) {
+                          double control_period, const std::vector<std::string>& can) {
   Json hello = {
       {"type", "hello"},
       {"protocol", 2},
@@ -106,7 +97,7 @@ std::string hello_message(const SubjectFacts& facts, const Choices& choices, dou
       {"inputs", facts.inputs},
       {"body",
        {{"length", facts.length}, {"width", facts.width}, {"front", facts.front}, {"rear", facts.rear}}},
-      {"can", abilities(facts)},
+      {"can", can},
       {"history_seconds", history},
       {"control_period", control_period}};
   if (const auto& scanner = facts.scanner)
@@ -157,7 +148,7 @@ std::string command_line(const OptionsFacts& facts) {
 
 std::string state_message(const DriveState& facts) {
   Json laps = Json::array();
-  for (const LapNote& lap : facts.laps)
+  for (const DrivenLap& lap : facts.laps)
     laps.push_back({{"lap", lap.lap},
                     {"time", lap.time},
                     {"contacts", lap.contacts},

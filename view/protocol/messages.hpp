@@ -31,15 +31,10 @@ struct Choices {
 };
 
 /// Names and sizes that do not change while a subject is driven. `history`: s of the drive that are stored;
-/// `control_period`: s.
+/// `control_period`: s; `can`: what the page can do.
 std::string hello_message(const SubjectFacts& facts, const Choices& choices, double history,
-                          double control_period);
+                          double control_period, const std::vector<std::string>& can = {});
 
-/// Options of one kind.
-struct OptionSection {
-  std::string name;                  ///< a method, or what else the options belong to
-  std::vector<OptionEntry> options;  ///< options with their present values
-};
 /// Values of options as text, by "section.option".
 using OptionTexts = std::map<std::string, std::string>;
 /// Adds the values of those options that `to` does not have yet.
@@ -60,20 +55,10 @@ std::string options_message(const OptionsFacts& facts);
 /// Returns the command line of the same drive; empty without a scenario.
 std::string command_line(const OptionsFacts& facts);
 
-/// A lap that was driven.
-struct LapNote {
-  int tick = 0;  ///< at its end
-  int lap = 0;   ///< from 1
-  double time = 0;
-  int contacts = 0;
-  std::string method;
-  bool ghost = false;  ///< driven by the ghost
-};
-
 /// A drive as the page is told of it.
 struct DriveState {
   ScenarioNames names{};
-  std::vector<LapNote> laps{};
+  std::vector<DrivenLap> laps{};
   double time = 0, rate = 1;                ///< s; simulated to real time, 0: as fast as possible
   double pace = 0;                          ///< simulated to real time, measured; 0: not known
   double control_period = 0;                ///< s

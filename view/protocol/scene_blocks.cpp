@@ -1,4 +1,4 @@
-#include "view/protocol/scene_blocks.hpp"
+#include "view/protocol/blocks.hpp"
 
 #include <algorithm>
 #include <cstdint>

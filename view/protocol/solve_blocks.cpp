@@ -1,4 +1,4 @@
-#include "view/protocol/solve_blocks.hpp"
+#include "view/protocol/blocks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "json/json.hpp"
+#include "view/car/car_subject.hpp"
 #include "view/embedded.hpp"
-#include "view/protocol/car_frame.hpp"
 #include "view/recording/small_frame.hpp"
 
 namespace slalom::view {

@@ -18,7 +18,7 @@ namespace slalom::view {
 /// The facts that a recording contains about itself.
 struct RecorderOptions {
   std::string program = "slalom";                         ///< name of the program that writes the recording
-  std::map<std::string, std::string> settings;            ///< stored as the metadata "slalom"
+  std::map<std::string, std::string> settings{};          ///< stored as the metadata "slalom"
   double lidar_angle_min = 0, lidar_angle_increment = 0;  ///< rad
   bool everything = false;  ///< all candidates, guides and cost maps of every step; else a small recording
   bool wall_clock = false;  ///< records wall-clock times; without them the same drive gives the same bytes

@@ -31,6 +31,9 @@ struct ServerOptions {
   double burst = 240;                ///< messages that a client may send at once after silence
 };
 
+/// The pages of notebooks, for `framed_by`.
+inline constexpr const char* notebooks = "http://localhost:* http://127.0.0.1:* vscode-webview: vscode-file:";
+
 /// A resource that is served under a path.
 struct Resource {
   std::string type;      ///< Content-Type

@@ -1,57 +1,96 @@
 #pragma once
 
+#include <array>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/lap.hpp"
-#include "view/session/timeline.hpp"
+#include "slalom/core/polymorphic.hpp"
+#include "slalom/view/subject.hpp"
+#include "view/protocol/messages.hpp"
 
 namespace slalom::view {
 
-/// The car, and the ghost if there is one, each in a world of its own. A copy continues bit for bit like the
-/// original.
+/// Facts about a step that do not follow from the drive, with which it is driven again exactly.
+struct StepRecord {
+  double delay = 0;       ///< DriveRequest::delay
+  int solves = 1;         ///< DriveRequest::solves
+  bool collides = false;  ///< whether the body collided
+};
+
+/// The method of a subject and all options.
+struct Settings {
+  std::string method{};                   ///< empty with a solver of the user's own
+  std::vector<OptionSection> sections{};  ///< that of the method first
+
+  OptionTexts texts() const;  ///< values of all options
+};
+Settings settings_of(const Subject& subject);
+/// A subject and where its state is. A copy continues bit for bit like the original.
+struct Run {
+  /// Begins a drive.
+  explicit Run(Polymorphic<Subject> subject);
+
+  Polymorphic<Subject> subject;
+  std::shared_ptr<const Settings> settings;  ///< method and options
+  std::vector<double> state;
+  double period;       ///< s of a control step
+  int steps = 0;       ///< control steps until now
+  int collisions = 0;  ///< steps that collided
+  double elapsed = 0;  ///< s since the last solve
+
+  /// Drives one step. `on_plan` may set `record.collides`.
+  void tick(StepRecord& record, const Subject::OnPlan& on_plan);
+};
+
+/// The subject that is driven, and the ghost if there is one, each in a world of its own.
 struct Drives {
-  evaluation::LapDrive car;
-  std::optional<evaluation::LapDrive> ghost{};
+  Run driven;
+  std::optional<Run> ghost{};
   std::string ghost_label{};
+  int ghost_start = 0;  ///< control steps before the ghost started
   bool edited = false;  ///< whether the drive differs from that of the command line
 
-  int ticks() const noexcept { return car.steps(); }
-  const sim::World& world() const noexcept { return car.world(); }
-  /// Drives one control period.
-  void tick(const Delays& delays, const evaluation::ControlStepCallback& on_car = {},
-            const evaluation::ControlStepCallback& on_ghost = {});
+  int ticks() const noexcept { return driven.steps; }
+  /// Drives one step. `records`: of what is driven, and of the ghost.
+  void tick(std::array<StepRecord, 2> records);
+  /// Begins anew with the present options of both.
+  Drives restarted() const;
+  std::vector<DrivenLap> laps() const;  ///< laps of both, in the order of their ends
 };
+
+/// Returns the values of `wanted` that differ from the settings, but none that they do not have.
+OptionTexts changed_texts(const Settings& settings, const OptionTexts& wanted);
+/// Returns the options with which a method begins: the subject's own, else its defaults with those that all
+/// methods have from the texts of the `present` one. Throws std::invalid_argument on an unknown method.
+SolverOptions method_options(const Subject& subject, const std::string& method, const OptionTexts& texts,
+                             const std::string& present);
 
 /// An action of a user between two ticks. It throws std::invalid_argument, perhaps after it has changed
-/// something, if a world rejects it or a driver is not valid.
+/// something, if a subject rejects it.
 using Action = std::function<void(Drives&)>;
 
-/// A box or disc that does not drive.
-struct Body {
-  maps::Pose pose;
-  double length = 0.3, width = 0.3;  ///< m; the length of a disc is its diameter
-  bool is_disc = false;
-};
-/// Returns the bodies of a world that do not drive, in the order of their numbers.
-std::vector<Body> bodies_of(const sim::World& world);
+// These change the scene of both.
+Action add_shape(const Shape& shape);
+Action move_shape(int shape, const maps::Pose& to);
+Action remove_shape(int shape);
+/// Puts all shapes that do not move by themselves where they were.
+Action set_shapes(std::vector<Shape> shapes);
 
-// These change the worlds of car and ghost.
-Action add_body(const Body& body);
-Action add_parked_car(const maps::Pose& pose);
-Action move_body(int body, const maps::Pose& pose);
-Action remove_body(int body);
-/// Replaces all bodies that do not drive; they are numbered in this order, after the driven cars.
-Action set_bodies(std::vector<Body> bodies);
+// These change what is driven, but not the ghost.
+Action place_body(const maps::Pose& to);
+/// Sets options by "section.option"; a key without a section is an option of the method.
+Action set_options(OptionTexts texts);
+/// Lets a method drive, with its options.
+Action change_method(SolverOptions options);
+/// Sets method and options back to earlier ones.
+Action restore(Settings settings);
 
-/// Puts the car elsewhere, but not the ghost.
-Action move_car(const maps::Pose& pose);
-/// Lets another driver drive the car from the next tick on.
-Action change_driver(evaluation::Driver driver);
-/// Starts a ghost as a copy of the car, with another driver if one is given. `label`: its name on the page.
-Action start_ghost(std::string label, std::optional<evaluation::Driver> driver = {});
+/// Starts a ghost as a copy of what is driven, with another method if one is given. `label`: its name.
+Action start_ghost(std::string label, std::optional<SolverOptions> method = {});
 /// Takes the ghost away.
 void end_ghost(Drives& drives);
 

@@ -4,177 +4,190 @@
 #include <cmath>
 #include <utility>
 
-#include "view/protocol/frame_reader.hpp"
+#include "slalom/solvers/registry.hpp"
 
 namespace slalom::view {
 namespace {
 
 constexpr std::size_t max_changes = 200;  // that can be undone
+// One is not always enough for a plan on the other side of an obstacle that was moved into the way.
+constexpr int solves_of_change = 3;
 
-// The introduction, in slow motion until the cars have passed the obstacle.
+// The introduction, in slow motion until driven body and ghost have passed the obstacle.
 constexpr double approaching_rate = 0.5, passing_rate = 0.1;
-constexpr double reach = 4;             // m from the car to an obstacle ahead, about the length of a plan
-constexpr double beside = 1.5;          // m to either side of the car's axis
+constexpr double reach = 4;             // m from the body to an obstacle ahead, about the length of a plan
+constexpr double beside = 1.5;          // m to either side of the body's axis
 constexpr double behind = 0.6;          // m from the centre of a car to that of a car that it has passed
 constexpr int max_passing_ticks = 120;  // a car may be blocked
 
-/// Whether a body that does not drive lies ahead of the first car of a world, or beside it.
-bool has_obstacle_near(const sim::World& world) {
-  const sim::CarState& car = world.state(0);
-  return std::ranges::any_of(bodies_of(world), [&](const Body& body) {
-    const auto [ahead, aside] = maps::inverse_transform({car.x, car.y, car.yaw}, {body.pose.x, body.pose.y});
-    return ahead > -behind && ahead < reach && std::abs(aside) < beside;
+/// Whether a shape that does not move lies ahead of the body, or beside it.
+bool has_obstacle_near(Run& run) {
+  const maps::Pose body = run.subject->poses(run.state).front();
+  return std::ranges::any_of(run.subject->shapes(), [&](const Shape& shape) {
+    const auto [ahead, aside] = maps::inverse_transform(body, {shape.pose.x, shape.pose.y});
+    return shape.kind != ShapeKind::opponent && ahead > -behind && ahead < reach && std::abs(aside) < beside;
   });
 }
 
 }  // namespace
 
-Session::Session(SessionOptions options, Server& server) : Playback(server), options_(std::move(options)) {
-  install(options_.load(options_.scenario), options_.scenario);
-  if (!options_.against.empty()) set_ghost(options_.against);
+Session::Session(std::unique_ptr<Subject> subject, Server& server, SessionOptions options)
+    : server_(server), audience_(server), options_(std::move(options)) {
+  state_.names = options_.scenario;
   state_.introduction = options_.introduction;
+  if (options_.choices.methods.empty())
+    for (const char* name : solver_names()) options_.choices.methods.emplace_back(name);
+  install(std::move(subject));
+  if (!options_.against.empty()) set_ghost(options_.against);
   slow_down();
 }
 
-/// Drives a scenario from its start, without a ghost.
-void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
-  // Everything that may throw comes before anything is replaced.
-  const evaluation::Driver driver{loaded.configuration, names.method};
-  Drives drives{evaluation::LapDrive({loaded.environment, driver, loaded.lap}, names.seed)};
-  facts_ = car_facts(loaded.environment.get());
-  scene_ = shared(encode_scene(*facts_));
-  loaded_ = std::move(loaded.configuration);
-  loaded_texts_.clear();
-  add_texts(loaded_texts_, sections_of(loaded_, names.method));
-  state_.names = with_course(names, *loaded.environment);
-  state_.bounds = bounds_of(facts_->course);
+/// Drives a subject from its start, without a ghost.
+void Session::install(std::unique_ptr<Subject> subject) {
+  Drives drives{Run(std::move(subject))};
+  std::string scene = encode_scene(drives.driven.subject->facts());
+  scene_ = scene.empty() ? nullptr : shared(std::move(scene));
+  loaded_ = drives.driven.settings->texts();
   undo_.clear();
   redo_.clear();
-  server_.send(0, {scene_, true});
+  if (scene_) server_.send(0, {scene_, true});
   begin(std::move(drives));
 }
 
-/// Drives again from the start with the same seed and the present drivers of car and ghost.
-void Session::restart() {
-  Drives drives{evaluation::LapDrive(setup(), state_.names.seed)};
-  if (drives_->ghost) start_ghost(drives_->ghost_label, drives_->ghost->setup().driver)(drives);
-  begin(std::move(drives));
-}
-
+/// Begins with other drives, without a past.
 void Session::begin(Drives drives) {
-  Playback::begin(std::move(drives));
-  state_.laps.clear();
-  // Options can still be set back; the bodies of another world cannot.
+  drives_ = std::move(drives);
+  timeline_ = Timeline(control_period(), options_.packing);
+  held_.reset();
+  if (!facts().course.empty()) state_.bounds = bounds_of(facts().course);
+  laps_ = 0;
+  viewed_ = passing_ticks_ = -1;
+  steps_left_ = 0;
+  ++state_.generation;
+  pace_ = {};
+  is_state_changed_ = true;
+  // Options can still be set back; the shapes of another scene cannot.
   for (auto* changes : {&undo_, &redo_}) {
     std::erase_if(*changes, [](const Change& each) { return each.before.index() == 1; });
     for (Change& each : *changes) each.ticks = 0;
   }
-  passing_ticks_ = -1;
   slow_down();
-  are_options_changed_ = true;
+  if (state_.paused) tick();
 }
 
-void Session::drive_tick(bool is_shown) {
-  pace_.step(control_period(), rate_);
-  Drives& drives = *drives_;
-  timeline_.checkpoint(drives);
-  std::string ghost, frame;
-  const Delays delays = state_.real_time ? last_updates_ : Delays{};
-  const auto on_ghost = [&](const evaluation::ControlStep& step) {
-    ghost = encode_ghost_frame(frame_of(*drives.ghost, step));
-    last_updates_.ghost = step.output.tick_time;
-  };
-  const int number = drives.ticks();
-  const auto on_car = [&](const evaluation::ControlStep& step) {
-    frame = frame_of(drives.car, step) + ghost;
-    last_updates_.car = step.output.tick_time;
-  };
-  drives.tick(delays, on_car, on_ghost);
-  DrivenTick driven{number, delays, shared(std::move(frame))};
-  driven.keep_scalars(scalars());
-  timeline_.keep(std::move(driven));
-  note_laps(drives.car, driver().method, false);
-  if (drives.ghost) note_laps(*drives.ghost, drives.ghost_label, true);
+void Session::tick() {
+  pace_.step(control_period(), state_.rate);
+  timeline_.checkpoint(*drives_);
+  keep(drive(*drives_, 1));
+  offer_newest();
+}
+
+/// Drives one step. `solves`: DriveRequest::solves.
+DrivenTick Session::drive(Drives& drives, int solves) {
+  DrivenTick driven{.tick = drives.ticks(), .settings = drives.driven.settings};
+  for (std::size_t i = 0; i < 2; ++i)
+    driven.records[i] = {.delay = state_.real_time ? last_updates_[i] : 0, .solves = solves};
+  std::string ghost;
+  if (drives.ghost)
+    ghost = encode_ghost_frame(drive(*drives.ghost, driven.records[1], last_updates_[1]).message);
+  Frame frame = drive(drives.driven, driven.records[0], last_updates_[0]);
+  driven.bounds = frame.bounds;
+  driven.frame = shared(std::move(frame.message) + ghost);
+  driven.keep_scalars(scalar_names(facts()).size());
+  return driven;
+}
+
+/// Drives one of two one step further and returns the frame of the step. `update_time` becomes the s of wall
+/// clock that the plan took.
+Frame Session::drive(Run& run, StepRecord& record, double& update_time) {
+  Frame frame;
+  const SolverOptions* options = run.subject->options();
+  const int method = options_.choices.method_index(options ? options->method() : "");
+  run.tick(record, [&](const SolveResult& solve, double seconds) {
+    const StepMeasures own{.time = run.steps * run.period,
+                           .update_time = seconds,
+                           .collisions = run.collisions,
+                           .prediction_step = run.period};
+    frame = encode_frame(*run.subject, solve,
+                         {.tick = run.steps,
+                          .measures = run.subject->measures().value_or(own),
+                          .period = run.period,
+                          .method = method,
+                          .state = run.state});
+    record.collides = frame.collides;
+    update_time = seconds;
+  });
+  return frame;
+}
+
+/// Keeps a step that was driven.
+void Session::keep(DrivenTick tick) {
+  const Bounds& b = tick.bounds;
+  if (tick.tick == 0) state_.bounds = b;
+  state_.bounds.include(b.x0, b.y0);
+  state_.bounds.include(b.x1, b.y1);
+  timeline_.keep(std::move(tick));
+  const std::size_t laps = drives_->laps().size();
+  is_state_changed_ = is_state_changed_ || laps != std::exchange(laps_, laps);
   slow_down();
-  if (is_shown) offer_newest();
 }
 
-std::string Session::frame_of(const evaluation::LapDrive& drive, const evaluation::ControlStep& step) const {
-  const evaluation::Driver& driver = drive.setup().driver;
-  return encode_car(*facts_, step, drive.setup().control_period(), driver.configuration.vehicle.time_step,
-                    options_.choices.method_index(driver.method));
-}
-
-void Session::note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost) {
-  const sim::LapTimer& timer = *drive.world().laps(0);
-  int laps = 0, contacts = 0;
-  for (const LapNote& lap : state_.laps) {
-    if (lap.ghost != is_ghost) continue;
-    laps = lap.lap;
-    contacts += lap.contacts;
-  }
-  if (timer.laps() <= laps) return;
-  state_.laps.push_back({.tick = drive.steps(),
-                         .lap = timer.laps(),
-                         .time = timer.last_lap_time(),
-                         .contacts = drive.collisions() - contacts,
-                         .method = method,
-                         .ghost = is_ghost});
-  is_state_changed_ = true;
-}
-
-/// Keeps the introduction in slow motion until both cars have passed the obstacle.
+/// Keeps the introduction in slow motion until both have passed the obstacle.
 void Session::slow_down() {
   if (!state_.introduction || passing_ticks_ > max_passing_ticks) return;
-  const bool is_near = has_obstacle_near(drives_->world()) ||
-                       (drives_->ghost && has_obstacle_near(std::as_const(*drives_->ghost).world()));
+  const bool is_near =
+      has_obstacle_near(drives_->driven) || (drives_->ghost && has_obstacle_near(*drives_->ghost));
   if (is_near)
     ++passing_ticks_;
   else if (passing_ticks_ >= 0)
     passing_ticks_ = max_passing_ticks + 1;
   const bool is_over = passing_ticks_ > max_passing_ticks;
   const double rate = is_over ? 1 : passing_ticks_ >= 0 ? passing_rate : approaching_rate;
-  is_state_changed_ = is_state_changed_ || rate != rate_;
-  rate_ = rate;
+  is_state_changed_ = is_state_changed_ || rate != state_.rate;
+  state_.rate = rate;
 }
 
-/// Goes back for the first change after a pause, unless a change is shown there already.
-bool Session::prepare_change() {
-  const int ahead = held_ ? shown_tick() - held_->ticks() : -1;
-  return (ahead >= 0 && ahead <= scan_lead) || approach(scan_lead);
-}
-
-void Session::forget_after(int tick, int ticks) {
-  Playback::forget_after(tick, ticks);
-  std::erase_if(state_.laps, [&](const LapNote& lap) { return lap.tick > tick + 1; });
-  for (auto* changes : {&undo_, &redo_})
-    std::erase_if(*changes, [&](const Change& each) { return each.ticks > ticks; });
-  are_options_changed_ = true;
-}
-
-/// Applies actions to the drives, from the tick that is shown on. While nothing moves, this tick is driven
-/// again, so that the plan that is shown belongs to the change. The scan of a tick was taken at the end of
-/// the tick before; a change of what it sees therefore has the `lead` 1: both are driven again. If an action
+/// Applies an action to the drives, from the tick that is shown on. While nothing moves, this tick is driven
+/// again, so that the plan that is shown belongs to the change. The scan of a tick may have been taken at the
+/// end of the tick before; a change of what it sees then has the `lead` 1: both are driven again. With
+/// another duration of steps the drive begins anew. If the action, a solve or a function of the drawing
 /// throws, nothing has changed.
-void Session::perform(const std::vector<Action>& actions, int lead) {
+void Session::perform(const Action& action, int lead) {
   const bool is_driven_again = is_held();
   const int shown = shown_tick();
   Drives drives = present(lead);
-  for (const Action& each : actions) each(drives);
-  acted_ = drives.ticks();
-  drives_ = std::move(drives);
-  if (is_driven_again) forget_after(acted_ - 1, shown);
-  for (const Action& each : actions) timeline_.note(acted_, each);
-  is_state_changed_ = are_options_changed_ = true;
-  if (!is_driven_again) return;
-  held_ = *drives_;
-  const Clock::time_point due = pace_.due;
-  if (acted_ < shown) {
-    drive_tick(false);
-    timeline_.act(*drives_);
+  action(drives);
+  is_state_changed_ = true;
+  const double step = drives.driven.subject->time_step();
+  if (step > 0 && step != drives.driven.period) {
+    acted_ = 0;
+    return begin(drives.restarted());
   }
-  tick();
-  pace_.due = due;
+  const int acted = drives.ticks();
+  std::optional<Drives> before;
+  std::vector<DrivenTick> ticks;
+  if (is_driven_again) {
+    before = drives;
+    while (drives.ticks() <= shown) {
+      if (!ticks.empty()) timeline_.act(drives);
+      ticks.push_back(drive(drives, solves_of_change));
+    }
+    forget_after(acted - 1, shown);
+  }
+  acted_ = acted;
+  timeline_.note(acted, action);
+  drives_ = std::move(drives);
+  if (!is_driven_again) return;
+  timeline_.checkpoint(*before);
+  held_ = std::move(before);
+  for (DrivenTick& each : ticks) keep(std::move(each));
+  is_newest_sent_ = false;
+  publish_newest();
+}
+
+/// Returns the shapes that a change applies to.
+Session::Shapes Session::shapes() {
+  return present(facts().scans_ahead).driven.subject->shapes();
 }
 
 /// Stores what a change has replaced, so that it can be undone; what was undone cannot be done again after

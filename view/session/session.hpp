@@ -1,112 +1,152 @@
 #pragma once
 
+#include <array>
+#include <chrono>
+#include <cstdint>
 #include <functional>
-#include <future>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "view/protocol/car_frame.hpp"
-#include "view/recording/encodings.hpp"
+#include "view/protocol/messages.hpp"
+#include "view/server/audience.hpp"
 #include "view/session/drives.hpp"
-#include "view/session/playback.hpp"
+#include "view/session/pace.hpp"
+#include "view/session/timeline.hpp"
 
 namespace slalom::view {
 
-/// A scenario, loaded.
-struct LoadedScenario {
-  std::shared_ptr<const evaluation::Environment> environment;
-  vehicle::Configuration configuration;
-  evaluation::LapSettings lap;
+/// A drive as it is stored: its messages in their order, and what names the file that they are written to.
+struct StoredDrive {
+  std::string hello, options, state;
+  std::shared_ptr<const std::string> scene;  ///< empty without map and course
+  std::vector<DrivenTick> ticks;
+  std::string name, command_line;
+  std::optional<Scanner> scanner;
 };
 
 struct SessionOptions {
-  ScenarioNames scenario;
-  std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws errors for the user
-  Choices choices;
-  std::string further_arguments;   ///< arguments of the equivalent command line; begins with a space
-  std::string against{};           ///< method of a ghost from the start, if any
-  bool introduction = false;       ///< in slow motion until the first obstacle has been passed
-  bool record_all = false;         ///< recordings and replays contain everything
-  bool record_times = false;       ///< recordings contain wall-clock times
-  std::string program = "slalom";  ///< name of the program in recordings
+  ScenarioNames scenario{};
+  /// Loads another scenario and completes its names. Throws errors for the user. Without it, the page cannot
+  /// choose one.
+  std::function<std::unique_ptr<Subject>(ScenarioNames&)> load{};
+  Choices choices{};
+  std::string further_arguments{};  ///< arguments of the equivalent command line; begins with a space
+  std::string against{};            ///< method of a ghost from the start, if any
+  bool introduction = false;        ///< in slow motion until the first obstacle has been passed
+  Packing packing{};                ///< form of stored frames
+  /// Writes a file, perhaps in a thread of its own, and sends it to a page with `send`. `what`: recording or
+  /// replay. Without it, the page cannot save a drive. Throws errors for the user.
+  std::function<void(const std::string& what, StoredDrive drive, std::function<void(Message)> send)> save{};
 };
 
-/// Drives a car, sends frames to the clients of a server, and executes the commands of the client that
-/// drives; the others watch, and can take over.
-class Session final : public Playback<Drives> {
+/// Drives a subject for the pages that are open, and executes the commands of the one that drives; the others
+/// watch, and can take over. The drive pauses, goes back to any stored step and continues from there.
+/// Everything happens in the thread that calls `turn`, which never waits for a client.
+class Session {
  public:
-  /// Throws what `load` throws.
-  Session(SessionOptions options, Server& server);
+  /// Throws std::invalid_argument if the subject or the method of the ghost is not valid.
+  Session(std::unique_ptr<Subject> subject, Server& server, SessionOptions options = {});
 
+  /// Executes the commands that have come, and drives one step if it is due; waits for one, for `at_most` at
+  /// most.
+  void turn(std::chrono::nanoseconds at_most = {});
   /// Number of messages that were not valid commands.
   std::uint64_t refused() const noexcept { return audience_.refused(); }
   /// Whether ticks of a command "step" are left.
   bool is_busy() const noexcept { return steps_left_ > 0; }
 
  private:
-  static constexpr int scan_lead = 1;  ///< ticks before the one that is shown, whose end made its scan
-  /// The options or the bodies that a change has replaced after some ticks.
+  using Clock = Pace::Clock;
+  using Json = nlohmann::ordered_json;
+  using Shapes = std::vector<Shape>;
+  /// The options or the shapes that a change has replaced after some ticks.
   struct Change {
     int ticks;
-    std::variant<vehicle::Configuration, std::vector<Body>> before;
+    std::variant<Settings, Shapes> before;
   };
 
   // Driving.
-  void install(LoadedScenario loaded, const ScenarioNames& names);
-  void restart() override;
+  void install(std::unique_ptr<Subject> subject);
   void begin(Drives drives);
-  void tick() override { drive_tick(true); }
-  void drive_tick(bool is_shown);
+  void tick();
+  DrivenTick drive(Drives& drives, int solves);
+  Frame drive(Run& run, StepRecord& record, double& update_time);
+  void keep(DrivenTick tick);
   void slow_down();
-  void note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost);
-  std::string frame_of(const evaluation::LapDrive& drive, const evaluation::ControlStep& step) const;
+
+  // Time.
+  Clock::duration until_due() const;
+  int shown_tick() const { return viewed_ >= 0 ? viewed_ : timeline_.newest(); }
+  bool is_held() const;
+  Drives& present(int lead = 0);
+  bool approach(int lead);
+  bool prepare_change();
+  void continue_from_shown();
+  void forget_after(int tick, int ticks);
+  void show_step(int tick);
+  void offer_newest();
+  void publish_newest();
 
   // Changing the drive, from the tick that is shown on.
-  bool prepare_change() override;
-  Packing packing() const override { return {pack, unpack}; }
-  void forget_after(int tick, int ticks) override;
-  void perform(const std::vector<Action>& actions, int lead = 0);
+  void perform(const Action& action, int lead = 0);
   void remember(decltype(Change::before) before, int drag = 0);
-  void change_driver(const vehicle::Configuration& configuration, const std::string& method);
   void undo(bool again);
+  Shapes shapes();
+  SolverOptions options_for(const std::string& method);
+  void change_options(const Action& action);
   void fork(const Json& command);
   void set_ghost(const std::string& method);
 
   // Commands.
-  void obey(std::uint64_t client, const std::string& what, const Json& command) override;
+  void obey(std::uint64_t client, const std::string& what, const Json& command);
+  bool obey_transport(const std::string& what, const Json& command);
   bool obey_edit(const std::string& what, const Json& command);
-  bool obey_scenario(const std::string& what, const Json& command);
   bool obey_options(const std::string& what, const Json& command);
   void save(std::uint64_t client, const std::string& what);
 
   // Messages.
-  void join(std::uint64_t client) override;
-  void tell() override;
+  void join(std::uint64_t client);
+  void tell();
   std::string hello() const;
   std::string state() const;
   OptionsFacts options_facts() const;
 
-  const evaluation::LapSetup& setup() const { return drives_->car.setup(); }
-  const evaluation::Driver& driver() const { return setup().driver; }
-  double control_period() const override { return setup().control_period(); }
-  std::size_t scalars() const override { return car_scalars().size(); }
+  const SubjectFacts& facts() const { return drives_->driven.subject->facts(); }
+  double control_period() const { return drives_->driven.period; }
+  /// The method and options of the step that is shown.
+  const Settings& settings() const {
+    return viewed_ >= 0 ? *timeline_.at(viewed_).settings : *drives_->driven.settings;
+  }
 
+  Server& server_;
+  Audience audience_;
   SessionOptions options_;
-  vehicle::Configuration loaded_;  ///< the configuration of the scenario, without changes
-  OptionTexts loaded_texts_;       ///< the same as text
-  std::shared_ptr<const SubjectFacts> facts_;
-  std::shared_ptr<const std::string> scene_;  ///< message with the course
-  int acted_ = 0;                             ///< ticks before the last change
+  DriveState state_;  ///< `state` fills in what follows from drives and timeline
+  std::optional<Drives> drives_;
+  Timeline timeline_;
+  std::optional<Drives> held_;  ///< while nothing moves: what a change last applied to, with the change
+  OptionTexts loaded_;          ///< values of all options without changes
+  std::shared_ptr<const std::string> scene_;  ///< message with map and course; empty if there is neither
   std::vector<Change> undo_, redo_;           ///< changes to undo and to do again, newest last
+  int acted_ = 0;                             ///< ticks before the last change
   int drag_ = 0;                              ///< the drag of the last change
-  DriveState state_;                          ///< `state` fills in what follows from drives and timeline
+  std::string told_options_;                  ///< message with the options that the pages have
 
-  Delays last_updates_;     ///< s of wall clock
-  int passing_ticks_ = -1;  ///< ticks of the introduction since the cars came to the obstacle; -1 before
-  bool are_options_changed_ = false;
-  std::future<void> saving_;  ///< the last member: its thread ends before what it uses
+  Pace pace_;
+  bool is_state_changed_ = true;
+  bool waiting_ = true;                   ///< for the first page to be opened
+  bool is_prepared_ = true;               ///< whether a change after a pause need not wait
+  bool is_newest_sent_ = true;            ///< false if the newest step came too early for a frame
+  int viewed_ = -1;                       ///< step that is shown while it is not the newest
+  int steps_left_ = 0;                    ///< steps of a command "step" that are still to come
+  std::size_t laps_ = 0;                  ///< number of laps that have ended
+  int passing_ticks_ = -1;                ///< ticks of the introduction since an obstacle was near; -1 before
+  std::array<double, 2> last_updates_{};  ///< s of wall clock, of what is driven and of the ghost
+  Clock::time_point last_state_ = Clock::now(), last_frame_ = last_state_;
 };
 
 }  // namespace slalom::view

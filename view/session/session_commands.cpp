@@ -14,16 +14,17 @@ maps::Pose pose_of(const Json& command) {
   return {field::number(command, "x"), field::number(command, "y"), field::number(command, "yaw", 0)};
 }
 
-Action addition(const Json& command) {
-  Body body{.pose = pose_of(command)};
+Shape added_shape(const Json& command, const SubjectFacts& facts) {
+  Shape shape{.pose = pose_of(command), .length = 0.3};
   const std::string kind = field::text(command, "kind");
   field::require(kind == "car" || kind == "box" || kind == "disc", "kind", "car, box or disc");
-  body.is_disc = kind == "disc";
-  body.length = field::number(command, "length", body.length);
-  body.width = field::number(command, "width", body.length);
-  const double least = std::min(body.length, body.width), most = std::max(body.length, body.width);
+  shape.is_disc = kind == "disc";
+  shape.length = field::number(command, "length", shape.length);
+  shape.width = field::number(command, "width", shape.length);
+  const double least = std::min(shape.length, shape.width), most = std::max(shape.length, shape.width);
   field::require(least >= 0.02 && most <= 10, "length and width", "in [0.02, 10] m");
-  return kind == "car" ? add_parked_car(body.pose) : add_body(body);
+  if (kind != "car") return shape;
+  return {.pose = shape.pose, .length = facts.length, .width = facts.width, .kind = ShapeKind::parked_car};
 }
 
 std::uint64_t seed_of(const std::string& digits) {
@@ -38,38 +39,26 @@ int count_of(const Json& command, const char* key, int present, int most) {
   return count;
 }
 
-/// Returns the action of the commands add, move, remove, place_car and nudge; empty for others.
-Action edit_of(const std::string& what, const Json& command, const sim::CarState& car) {
-  if (what == "add") return addition(command);
-  if (what == "move") return move_body(field::integer(command, "body"), pose_of(command));
-  if (what == "remove") return remove_body(field::integer(command, "body"));
-  if (what == "place_car") return move_car(pose_of(command));
-  if (what != "nudge") return {};
+/// Returns the pose of the commands place_car and nudge.
+maps::Pose placed_pose(const std::string& what, const Json& command, const maps::Pose& now) {
+  if (what == "place_car") return pose_of(command);
   const double aside = field::number(command, "left", 0), turn = field::number(command, "turn", 0);
   field::require(std::abs(aside) <= 2 && std::abs(turn) <= 3.2, "nudge", "at most 2 m and 3.2 rad");
-  return move_car({car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn});
+  return {now.x - aside * std::sin(now.yaw), now.y + aside * std::cos(now.yaw), now.yaw + turn};
 }
 
-/// Sets an option as vehicle::set_option does. Throws std::invalid_argument, too, for more samples than a
-/// page can wait for.
-void set_page_option(vehicle::Configuration& configuration, const std::string& key, const std::string& value,
-                     const std::string& method) {
-  vehicle::set_option(configuration, key, value, method);
-  if (!key.ends_with("samples") && !key.ends_with("horizon")) return;
-  for (const SolverOptions& each : configuration.methods) field::check_samples(each);
-}
-
-/// Applies the settings `set` of a command, a list of key=value. Returns false if there are none.
-bool apply_settings(vehicle::Configuration& configuration, const Json& command, const std::string& method) {
+/// Returns the settings `set` of a command, a list of key=value.
+OptionTexts settings_in(const Json& command) {
   const Json set = command.contains("set") ? command.at("set") : Json::array();
   field::require(set.is_array() && set.size() <= 200, "set", "a list of at most 200 key=value");
+  OptionTexts texts;
   for (const Json& each : set) {
     const std::string assignment = each.is_string() ? each.get<std::string>() : "";
     const auto equals = assignment.find('=');
     field::require(equals != std::string::npos, "set", "a list of key=value");
-    set_page_option(configuration, assignment.substr(0, equals), assignment.substr(equals + 1), method);
+    texts[assignment.substr(0, equals)] = assignment.substr(equals + 1);
   }
-  return !set.empty();
+  return texts;
 }
 
 /// Returns the scenario that the command scenario chooses; only listed courses and configurations are
@@ -99,60 +88,64 @@ bool is_among(std::initializer_list<std::string_view> names, const std::string& 
 }  // namespace
 
 void Session::obey(std::uint64_t client, const std::string& what, const Json& command) {
-  if (what == "save") return save(client, field::text(command, "what"));
-  if (!obey_transport(client, what, command) && !obey_edit(what, command) && !obey_scenario(what, command) &&
-      !obey_options(what, command))
-    throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command");
+  if (what == "past") {
+    const int from = field::integer(command, "from"), to = field::integer(command, "to");
+    return server_.send(client, {shared(timeline_.past(from, to)), true});
+  }
+  if (what == "take_over") return audience_.take_over(client);
+  if (what == "save" && options_.save) return save(client, field::text(command, "what"));
+  audience_.require_driver(client);
+  is_state_changed_ = true;
+  if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_options(what, command))
+    throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command of this page");
   // Another scenario or another rate ends the introduction.
   const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);
   if (!state_.introduction || !(is_other || is_among({"rate", "real_time"}, what))) return;
   state_.introduction = false;
-  if (is_other) rate_ = 1;
+  if (is_other) state_.rate = 1;
 }
 
 bool Session::obey_edit(const std::string& what, const Json& command) {
-  const bool is_of_car = what == "nudge" || what == "place_car";
-  const sim::CarState car = is_of_car ? present().world().state(0) : sim::CarState{};
-  const Action action = edit_of(what, command, car);
-  if (!action) return false;
-  const int drag = field::integer(command, "drag", 0), lead = is_of_car ? 0 : scan_lead;
-  std::vector<Body> before = bodies_of(present(lead).world());
-  perform({action}, lead);
-  if (!is_of_car) remember(std::move(before), drag);
-  return true;
-}
-
-bool Session::obey_scenario(const std::string& what, const Json& command) {
-  if (what == "real_time") {
-    state_.real_time = field::flag(command, "on");
-    if (state_.real_time) rate_ = 1;
-  } else if (what == "scenario") {
-    ScenarioNames present = state_.names;
-    present.method = driver().method;
-    const ScenarioNames names = chosen_scenario(present, command, options_.choices);
-    install(options_.load(names), names);
-    paused_ = false;
-  } else {
-    return false;
+  const SubjectFacts& facts = this->facts();
+  if ((what == "place_car" && facts.can_place) || (what == "nudge" && facts.can_add)) {
+    Run& now = present().driven;
+    perform(place_body(placed_pose(what, command, now.subject->poses(now.state).front())));
+    return true;
   }
+  Action action;
+  if (what == "move" && facts.can_move)
+    action = move_shape(field::integer(command, "body") - 1, pose_of(command));
+  else if (what == "add" && facts.can_add)
+    action = add_shape(added_shape(command, facts));
+  else if (what == "remove" && facts.can_add)
+    action = remove_shape(field::integer(command, "body") - 1);
+  else
+    return false;
+  const int drag = field::integer(command, "drag", 0);
+  Shapes before = shapes();
+  perform(action, facts.scans_ahead);
+  remember(std::move(before), drag);
   return true;
 }
 
 bool Session::obey_options(const std::string& what, const Json& command) {
-  const vehicle::Configuration before = present().car.setup().driver.configuration;
-  const std::string method = present().car.setup().driver.method;
-  const auto change_options = [&](const vehicle::Configuration& changed) {
-    change_driver(changed, method);
-    remember(before);
-  };
-  if (what == "set") {
-    vehicle::Configuration changed = before;
-    set_page_option(changed, field::text(command, "key"), field::text(command, "value"), method);
-    change_options(changed);
+  if (what == "real_time" && facts().can_delay) {
+    state_.real_time = field::flag(command, "on");
+    if (state_.real_time) state_.rate = 1;
+  } else if (what == "scenario" && options_.load) {
+    ScenarioNames names = state_.names;
+    names.method = settings().method;
+    names = chosen_scenario(std::move(names), command, options_.choices);
+    std::unique_ptr<Subject> subject = options_.load(names);
+    state_.names = std::move(names);
+    state_.paused = false;
+    install(std::move(subject));
+  } else if (what == "set") {
+    change_options(set_options({{field::text(command, "key"), field::text(command, "value")}}));
   } else if (what == "reset_options") {
-    change_options(loaded_);
+    change_options(set_options(changed_texts(settings(), loaded_)));
   } else if (what == "method") {
-    change_driver(before, field::text(command, "method"));
+    change_options(change_method(options_for(field::text(command, "method"))));
   } else if (what == "undo" || what == "redo") {
     undo(what == "redo");
   } else if (what == "fork") {
@@ -165,16 +158,19 @@ bool Session::obey_options(const std::string& what, const Json& command) {
   return true;
 }
 
-/// Lets another configuration or method drive. With another control period the drive begins anew.
-void Session::change_driver(const vehicle::Configuration& configuration, const std::string& method) {
-  evaluation::LapSetup changed = setup();
-  changed.driver = {configuration, method};
-  if (changed.control_period() == control_period())
-    perform({view::change_driver(changed.driver)});
-  else {
-    begin({evaluation::LapDrive(changed, state_.names.seed)});
-    if (paused_) tick();
-  }
+void Session::change_options(const Action& action) {
+  Settings before = settings();
+  perform(action);
+  remember(std::move(before));
+}
+
+/// Returns the options with which a method begins, and notes those that it would have without changes.
+SolverOptions Session::options_for(const std::string& method) {
+  const Subject& subject = *present().driven.subject;
+  const Settings& now = settings();
+  const SolverOptions loaded = method_options(subject, method, loaded_, now.method);
+  add_texts(loaded_, {{method, list_options(loaded)}});
+  return method_options(subject, method, now.texts(), now.method);
 }
 
 /// Takes the last change back, or with `again` the last undo.
@@ -184,12 +180,12 @@ void Session::undo(bool again) {
   continue_from_shown();
   if (from.empty()) return;  // going back has undone it
   const Change last = from.back();
-  Change replaced{last.ticks, driver().configuration};
-  if (const auto* bodies = std::get_if<1>(&last.before)) {
-    replaced.before = bodies_of(present(scan_lead).world());
-    perform({set_bodies(*bodies)}, scan_lead);
+  Change replaced{last.ticks, settings()};
+  if (const auto* before = std::get_if<Shapes>(&last.before)) {
+    replaced.before = shapes();
+    perform(set_shapes(*before), facts().scans_ahead);
   } else {
-    change_driver(std::get<0>(last.before), driver().method);
+    perform(restore(std::get<Settings>(last.before)));
   }
   from.pop_back();
   replaced.ticks = acted_;
@@ -197,26 +193,28 @@ void Session::undo(bool again) {
   drag_ = 0;
 }
 
-/// Continues with another method or other options; the present driver continues as a ghost.
+/// Continues with another method or other options; what drove until now continues as a ghost.
 void Session::fork(const Json& command) {
-  evaluation::LapSetup changed = present().car.setup();
-  const std::string method = field::text(command, "method"), before = changed.driver.method;
-  const vehicle::Configuration replaced = changed.driver.configuration;
-  changed.driver.method = method;
-  const bool has_settings = apply_settings(changed.driver.configuration, command, method);
-  if (changed.control_period() != control_period())
-    throw std::invalid_argument("fork: the control period cannot change during a drive");
-  perform(
-      {start_ghost(before == method ? before + " as before" : before), view::change_driver(changed.driver)});
-  if (has_settings) remember(replaced);
+  const std::string method = field::text(command, "method"), before = settings().method;
+  std::optional<SolverOptions> other;
+  if (method != before) other = options_for(method);
+  const Action ghost = start_ghost(before == method ? before + " as before" : before);
+  change_options([=, texts = settings_in(command)](Drives& drives) {
+    ghost(drives);
+    if (other) change_method (*other)(drives);
+    set_options(texts)(drives);
+    const double step = drives.driven.subject->time_step();
+    if (step > 0 && step != drives.driven.period)
+      throw std::invalid_argument("fork: the control period cannot change during a drive");
+  });
 }
 
-/// Starts a ghost with a method as a copy of the car; without one, ends the ghost.
+/// Starts a ghost with a method as a copy of what is driven; without one, ends the ghost.
 void Session::set_ghost(const std::string& method) {
-  if (method.empty()) return perform({end_ghost});
-  std::optional<evaluation::Driver> other;
-  if (method != driver().method) other = {driver().configuration, method};
-  perform({start_ghost(method, std::move(other))});
+  if (method.empty()) return perform(end_ghost);
+  std::optional<SolverOptions> other;
+  if (method != settings().method) other = options_for(method);
+  perform(start_ghost(method, std::move(other)));
 }
 
 }  // namespace slalom::view

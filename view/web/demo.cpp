@@ -6,8 +6,8 @@
 
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "view/problem/differential_drive.hpp"
-#include "view/problem/problem_session.hpp"
 #include "view/server/server.hpp"
+#include "view/session/session.hpp"
 
 namespace {
 
@@ -80,7 +80,7 @@ std::unique_ptr<slalom::view::Subject> robot() {
 
 struct Demonstration {
   slalom::view::Server server{{}, {}};
-  slalom::view::ProblemSession session{robot(), server};
+  slalom::view::Session session{robot(), server};
 };
 
 }  // namespace

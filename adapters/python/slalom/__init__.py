@@ -27,7 +27,8 @@ _DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "World", "
 
 
 class SymptomWarning(RuntimeWarning):
-    """A likely reason for poor plans of a controller, `Plan.symptom`, has stayed for 20 solves."""
+    """A likely reason for poor plans: a `Plan.symptom` that has stayed for 20 solves, costs that are nan or differ for the
+    same arguments, or an `elapsed` beyond the horizon."""
 
 
 def __getattr__(name: str) -> object:

@@ -60,7 +60,7 @@ def add_methods(solvers: ModuleType) -> None:
 
     def make(self: Any, problem: Any, **options: Any) -> None:
         """__init__(self: object, problem: object, **kwargs) -> None"""
-        base.__init__(self, self._method, problem, **options)
+        base.__init__(self, type(self)._method, problem, **options)
 
     for method in solvers.methods():
         name = "".join(word.capitalize() for word in method.split("_"))
@@ -175,12 +175,13 @@ def _call(name: str, positional: Iterable[Any], named: dict[str, Any]) -> str:
 
 
 def takes_k(function: Callable[..., Any]) -> bool:
-    """Whether a callable has a parameter `k` without a default. False if it does not tell its parameters."""
+    """Whether a callable has a third argument without a default: the index of the step. False if it does not tell."""
     try:
-        k = inspect.signature(function).parameters.get("k")
+        parameters = list(inspect.signature(function).parameters.values())[2:3]
     except (TypeError, ValueError):
         return False
-    return k is not None and k.default is k.empty
+    return bool(parameters) and parameters[0].default is inspect.Parameter.empty and parameters[0].kind in (
+        inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
 
 
 def changed(problem: Any) -> dict[str, Any]:

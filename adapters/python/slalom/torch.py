@@ -44,13 +44,18 @@ def on_tensors(function: Callable[..., Any]) -> Callable[..., Any]:
             return torch.stack([x[:, 0] + 0.1 * x[:, 1], x[:, 1] + 0.1 * u[:, 0]]).T
 
     Its arguments are tensors on the memory of the solver's arrays, and its results are passed on as arrays on the memory
-    of the tensors: nothing is copied. The arguments must not be changed. Gradients are not recorded.
+    of the tensors: nothing is copied. A function that changes its arguments raises ValueError. Gradients are not recorded.
     """
 
     @functools.wraps(function)
-    def on_arrays(*arrays: Any, **step: int) -> Any:
+    def on_arrays(*arguments: Any) -> Any:
+        tensors = [torch.from_numpy(_writable(each)) if isinstance(each, np.ndarray) else each for each in arguments]
         with torch.no_grad():
-            return _to_arrays(function(*(torch.from_numpy(_writable(array)) for array in arrays), **step))
+            result = function(*tensors)
+        if any(getattr(tensor, "_version", 0) for tensor in tensors):
+            raise ValueError(f"{getattr(function, '__name__', function)}: changes its arguments in place; must compute new "
+                             "tensors, as x = x - goal for x -= goal")
+        return _to_arrays(result)
 
     return on_arrays
 

@@ -133,7 +133,12 @@ void bind_compiled(py::module_& module) {
            [](CompiledProblem& self, const std::string& name) {
              return from_numbers(parameter_of(self, name).values);
            })
-      .def("__setattr__", &set_attribute)
+      .def("__setattr__",
+           [](const py::object& self, const std::string& name, const py::object& value) {
+             if (may_use(self.ptr(), py::str("parameters").ptr()))
+               return set_attribute(self.cast<CompiledProblem&>(), name, value);
+             throw py::error_already_set();
+           })
       .def("__dir__", [](CompiledProblem& self) {
         py::list all = py::module_::import("builtins").attr("object").attr("__dir__")(py::cast(self));
         for (const Parameter& parameter : self.parameters()) all.append(parameter.name);
@@ -148,7 +153,8 @@ void bind_compiled(py::module_& module) {
       "A weight or bound is one number, or one for each state or input. Keyword arguments, also "
       "attributes:\n\n";
   for (const Part& part : network_parts) words += "    " + std::string(part.name) + ": " + part.help + "\n";
-  py::class_<NetworkProblem, AnyProblem> problem(module, "MlpProblem", words.c_str());
+  py::class_<NetworkProblem, AnyProblem> problem(module, "MlpProblem", words.c_str(),
+                                                 collected<NetworkProblem>());
   problem.def(py::init([](const py::object& network, const py::kwargs& keywords) {
                 return std::make_unique<NetworkProblem>(with_keywords({network, {}}, keywords));
               }),

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "controller.hpp"
 
@@ -67,14 +68,24 @@ py::object copy(const py::object& self) {
   return made;
 }
 
-Plan solve(const py::object& self, std::vector<double> state, double elapsed, double deadline,
+Plan solve(const py::object& self, const Numbers& state, double elapsed, double deadline,
            const Numbers& proposals) {
   auto& controller = self.cast<Controller&>();
   check_proposals(controller.solver(), proposals);
   const std::vector<float> values(proposals.data(), proposals.data() + proposals.size());
   const auto count = static_cast<int>(proposals.ndim() == 3 ? proposals.shape(0) : proposals.size() > 0);
-  controller.solve(self, std::move(state), {elapsed, deadline, {values, count}});
+  controller.solve(self, vector_of(state, controller.problem().states(), "state"),
+                   {elapsed, deadline, {values, count}});
   return {self, controller.solves()};
+}
+
+/// The inputs for now.
+Numbers command(const py::object& self, const Numbers& state) {
+  auto& controller = self.cast<Controller&>();
+  const AnyProblem& problem = controller.problem();
+  controller.solve(self, vector_of(state, problem.states(), "state"),
+                   {controller.is_new() ? 0 : problem.evaluator().time_step()});
+  return Numbers(problem.inputs(), controller.inputs().data());
 }
 
 std::vector<Plan> solve_batch(const std::vector<py::object>& controllers,
@@ -91,7 +102,8 @@ std::vector<Plan> solve_batch(const std::vector<py::object>& controllers,
 }
 
 void bind_controller(py::module_& module) {
-  py::class_<Controller> base(module, "Controller", "Base class of all controllers.");
+  py::class_<Controller> base(module, "Controller", "Base class of all controllers.",
+                              collected<Controller>());
   base.def(py::init(&make_controller), "method"_a, "problem"_a)
       .def("solve", &solve, "state"_a, "elapsed"_a = 0.0,
            "deadline"_a = std::numeric_limits<double>::infinity(), "proposals"_a = Numbers(),
@@ -99,11 +111,19 @@ void bind_controller(py::module_& module) {
            "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
            "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
            "inputs), or (horizon, inputs) for one.")
+      .def("command", &command, "state"_a,
+           "The inputs float64 [inputs] for now, at `state`: those of a plan, when a step of the problem has "
+           "passed since the last one.")
       .def(py::pickle(&state_of, &from_state))
       .def("__copy__", &copy)
       .def("__deepcopy__", [](const py::object& self, const py::dict&) { return copy(self); })
-      .def("reset", &Controller::reset, "seed"_a = 0,
-           "Discards all state and starts the random numbers from `seed`.")
+      .def(
+          "reset",
+          [](Controller& self, std::optional<std::uint64_t> seed) {
+            self.reset(seed ? *seed : values_of(self.options())["seed"].cast<std::uint64_t>());
+          },
+          "seed"_a = py::none(),
+          "Discards all state and starts the random numbers from `seed`, by default that of the options.")
       .def("set_previous_input", &Controller::set_previous_input, "input"_a,
            "Sets the input applied before the next solve, for problems with limits on their input rates. "
            "By default it is the input that the last plan had for that time.")

@@ -52,7 +52,8 @@ py::dict lap_dict(const evaluation::LapResult& lap, const std::vector<std::array
 }
 
 void bind_planner(py::module_& module) {
-  py::class_<vehicle::Planner>(module, "Planner", "Computes steering and speed from LiDAR scan and odometry.")
+  py::class_<vehicle::Planner>(module, "Planner", "Computes steering and speed from LiDAR scan and odometry.",
+                               guarded())
       .def(py::init([](const Environment& environment, const std::string& method, const py::dict& options,
                        const std::string& config) {
              const auto configuration = configure(method, config, options);

@@ -146,7 +146,7 @@ void bind_field(py::module_& module) {
       "beyond the outermost ones the value is that of the nearest point of their edge.\n\n"
       "samples: [row, column], row 0 at the smallest y. " +
       placement;
-  py::class_<Field> field(module, "Field", words.c_str());
+  py::class_<Field> field(module, "Field", words.c_str(), guarded());
   field.def(py::init(&make_field), "samples"_a, "resolution"_a, level())
       .def_static("from_function", &field_from_function, "function"_a, "width"_a, "height"_a, "resolution"_a,
                   level(),
@@ -178,7 +178,7 @@ void bind_maps(py::module_& module) {
       "cells: [row, column], row 0 at the smallest y: truth values (occupied or not), or numbers as in "
       "nav_msgs/OccupancyGrid: 0 is free, 100 occupied, anything else unknown. " +
       placement;
-  py::class_<OccupancyGrid> bound(module, "OccupancyGrid", words.c_str());
+  py::class_<OccupancyGrid> bound(module, "OccupancyGrid", words.c_str(), guarded());
   bound.def(py::init(&make_grid), "cells"_a, "resolution"_a, level());
   const auto read = reader(bound);
   read("cells", "int8 [row, column], a copy: 0 free, 100 occupied, -1 unknown", &cells_of);

@@ -27,7 +27,7 @@ std::vector<maps::Pose> poses_of(const Numbers& rows, const char* what, py::ssiz
 }
 
 void bind_costmap(py::module_& module) {
-  py::class_<Footprint>(module, "Footprint",
+  py::class_<Footprint>(module, "Footprint", guarded(),
                         "The outline of a robot: vertices [n, 2] (m), x forward, y to the left.")
       .def(py::init([](const Numbers& vertices) {
              std::vector<maps::Point> points;
@@ -38,7 +38,7 @@ void bind_costmap(py::module_& module) {
            "vertices"_a)
       .def_static("rectangle", &Footprint::rectangle, "front"_a, "rear"_a, "width"_a,
                   "A rectangle: `front` and `rear` (m) are the distances from the origin to its sides.");
-  py::class_<Costmap>(module, "Costmap",
+  py::class_<Costmap>(module, "Costmap", guarded(),
                       "The distances from the cells of an OccupancyGrid to the nearest obstacle. `unknown`: "
                       "whether unknown cells are an 'obstacle' or 'priced'.")
       .def(py::init([](const maps::OccupancyGrid& grid, const std::string& unknown) {
@@ -129,7 +129,7 @@ void bind_navigator(py::module_& module) {
       "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
       "with the options of `solver`. Other options:\n\n" +
       options_text(navigation::NavigatorOptions{});
-  py::class_<PythonNavigator>(module, "Navigator", words.c_str())
+  py::class_<PythonNavigator>(module, "Navigator", words.c_str(), guarded())
       .def(py::init([](const Footprint& footprint, const Costmap& costmap, const std::string& method,
                        const py::dict& solver, const py::kwargs& options) {
              navigation::NavigatorOptions set;

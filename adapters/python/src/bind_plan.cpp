@@ -96,8 +96,9 @@ void bind_results(py::class_<Plan>& plan) {
 void bind_plan(py::module_& module) {
   py::class_<Plan> plan(
       module, "Plan",
-      "The solution of a controller. Arrays are views of the controller's memory, valid until it solves "
-      "again; `to_numpy` copies them.");
+      "The solution of a controller. `inputs` and `states` are copies; the other arrays are views of the "
+      "controller's memory, valid until it solves again, which `to_numpy` copies.",
+      collected<Plan>());
   bind_results(plan);
   const auto read = reader(plan);
   read("samples", "float32 [samples, horizon, inputs], the last samples", &samples);
@@ -109,24 +110,25 @@ void bind_plan(py::module_& module) {
   read("status",
        "'ok', 'deadline', 'all_collided', 'degenerate' or 'non_finite_state'; a time that is not valid is an "
        "error",
-       [](const Plan& p) { return std::string(name(p.controller().status())); });
+       [](const Plan& p) { return std::string(name(p.controller().checked_status())); });
   read("ok", "whether the status is 'ok'",
-       [](const Plan& p) { return p.controller().status() == Status::ok; });
+       [](const Plan& p) { return p.controller().checked_status() == Status::ok; });
   read("inputs", "float64 [horizon, inputs]; the first row is for now", [](const Plan& p) {
     Controller& c = p.controller();
-    return view(p, c.inputs().data(), {c.solver().horizon(), c.solver().inputs()});
+    return Numbers({c.solver().horizon(), c.solver().inputs()}, c.inputs().data());
   });
   read("states", "float64 [horizon + 1, states], predicted for the inputs", [](const Plan& p) {
     Controller& c = p.controller();
-    return view(p, c.prediction().states.data(), {c.solver().horizon() + 1, c.problem().states()});
+    return Numbers({c.solver().horizon() + 1, c.problem().states()}, c.prediction().states.data());
   });
   read("cost", "cost of the plan", [](const Plan& p) { return p.controller().prediction().cost; });
   read("collided", "whether the plan collides",
        [](const Plan& p) { return p.controller().prediction().collided; });
   read("cost_terms", "the parts of the plan's cost by name; they sum to it", &cost_terms);
   read("corrections",
-       "values that the final check changed: inputs that were not within the bounds, and a cost that was not "
-       "finite once it has been read; 0 in normal operation",
+       "values that the checks changed: inputs that were not within the bounds, predicted states and costs "
+       "that "
+       "were not finite, and costs of samples that were nan; 0 in normal operation",
        [](const Plan& p) { return p.controller().corrections(); });
   read("controller", "the controller that made the plan", [](const Plan& p) { return p.owner; });
   plan.def("to_numpy", &to_numpy,

@@ -58,29 +58,50 @@ py::dict read_mlp(const std::string& file) {
                   "residual"_a = p.residual);
 }
 
-void check_state(const AnyProblem& problem, const std::vector<double>& state) {
-  checked(state, static_cast<std::size_t>(problem.states()), "state");
-}
-
 void bind_any_problem(py::module_& module) {
-  py::class_<AnyProblem>(module, "AnyProblem", "Base class of all problems.")
+  py::class_<AnyProblem>(module, "AnyProblem", "Base class of all problems.", guarded())
       .def_property_readonly("states", &AnyProblem::states, "scalars of a state")
       .def_property_readonly(
           "inputs", [](const AnyProblem& self) { return self.inputs(); }, "inputs a step")
       .def(
           "step",
-          [](AnyProblem& self, const std::vector<double>& state, const std::vector<double>& input, int k) {
-            check_state(self, state);
-            checked(input, static_cast<std::size_t>(self.inputs()), "input");
-            return array_of(self.step(state, input, k));
+          [](AnyProblem& self, const Numbers& state, const Numbers& input, int k) {
+            return array_of(self.step(vector_of(state, self.states(), "state"),
+                                      vector_of(input, self.inputs(), "input"), k));
           },
           "state"_a, "input"_a, "k"_a = 0,
           "The state after one step, in double. `k` is the index of the step, for dynamics that take it.")
+      .def_property_readonly(
+          "time_step", [](const AnyProblem& self) { return self.evaluator().time_step(); },
+          "s, duration of a step; 0: unknown")
+      .def_property_readonly(
+          "bounds",
+          [](const AnyProblem& self) {
+            const InputBounds bounds = self.stated_bounds();
+            return py::make_tuple(array_of(bounds.low), array_of(bounds.high));
+          },
+          "least and largest inputs that the problem states: a pair of arrays [inputs]")
+      .def(
+          "predict",
+          [](AnyProblem& self, const Numbers& state, const Numbers& inputs) {
+            const py::ssize_t width = self.inputs();
+            if (inputs.ndim() != 2 || inputs.shape(1) != width)
+              throw std::invalid_argument("inputs: have the shape " + shape_text(extents_of(inputs)) +
+                                          ", must have (steps, " + std::to_string(width) + ")");
+            const Prediction found =
+                self.predict(vector_of(state, self.states(), "state"),
+                             std::vector<double>(inputs.data(), inputs.data() + inputs.size()));
+            return py::make_tuple(
+                Numbers({inputs.shape(0) + 1, py::ssize_t{self.states()}}, found.states.data()), found.cost);
+          },
+          "state"_a, "inputs"_a,
+          "The states float64 [steps + 1, states] under the inputs [steps, inputs] from `state`, and the "
+          "cost "
+          "of the sequence, in double. Limits of rates and levels are not applied.")
       .def(
           "collides",
-          [](AnyProblem& self, const std::vector<double>& state) {
-            check_state(self, state);
-            return self.predict(state, {}).collided;
+          [](AnyProblem& self, const Numbers& state) {
+            return self.predict(vector_of(state, self.states(), "state"), {}).collided;
           },
           "state"_a, "Whether a state collides, according to the terminal cost.");
 }
@@ -92,13 +113,14 @@ void bind_callable_problem(py::module_& module) {
       "dynamics(x[K, states], u[K, inputs]) -> x[K, states]\n"
       "cost(x, u) -> [K], or in terms {name: [K]}; or a pair (cost, collided[K])\n"
       "terminal_cost(x) -> the same, or None\n"
-      "dynamics and cost may take another argument, `k`: the index of the step, an int\n"
+      "dynamics and cost may take a third argument: the index of the step, an int\n"
       "input_min, input_max: bounds in addition to those of the options, one number or one per input\n"
       "input_rate_max: largest rate of the inputs, per s, in rollouts and plans; requires dt\n"
       "sampler(random, samples, horizon, inputs) -> [samples, horizon, inputs]: noise instead of standard "
       "normal values, drawn only from the numpy Generator `random`\n\n"
-      "x and u are float32, with contiguous columns; u is a view of the solver's "
-      "memory, valid during the call. The result of dynamics is not copied.");
+      "x and u are float32, with contiguous columns, and must not be written; u is a view of the solver's "
+      "memory, valid during the call. The result of dynamics is not copied.",
+      collected<CallableProblem>());
   problem
       .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
                        double dt, const Values& input_min, const Values& input_max,

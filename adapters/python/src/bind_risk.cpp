@@ -61,6 +61,10 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
     }
     if (first) std::rethrow_exception(first);
   }
+  void each_object(const std::function<void(void*)>& visit) override {
+    visit(&randomize_);
+    for (const auto& variant : variants_) variant->each_object(visit);
+  }
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override {
     return variants_.front()->step(state, input, k);
   }
@@ -155,7 +159,7 @@ std::unique_ptr<RiskProblem> make_risk(const AnyProblem& problem, const py::obje
 }  // namespace
 
 void bind_risk(py::module_& module) {
-  py::class_<RandomStream>(module, "RandomStream", "Random numbers of one variant of the world.")
+  py::class_<RandomStream>(module, "RandomStream", "Random numbers of one variant of the world.", guarded())
       .def(
           "uniform", [](RandomStream& r, double low, double high) { return r.uniform(low, high); },
           "low"_a = 0.0, "high"_a = 1.0, "A uniform value in [low, high).")
@@ -171,7 +175,8 @@ void bind_risk(py::module_& module) {
       "measure: which measure of their costs counts: 'mean', 'worst', 'cvar' (mean of the worst share "
       "`tail`) or 'exponential' (weight `aversion` of high costs)\n\n"
       "The variants are made once, so all samples of all solves meet the same ones. A sequence collides if "
-      "it collides in any.")
+      "it collides in any.",
+      collected<RiskProblem>())
       .def(py::init(&make_risk), "problem"_a, "randomize"_a, py::kw_only(), "variants"_a = 9,
            "measure"_a = "mean", "tail"_a = RiskOptions{}.tail, "aversion"_a = RiskOptions{}.aversion,
            "seed"_a = RiskOptions{}.seed)

@@ -41,7 +41,7 @@ view::Shape shape_of(const py::object& values) {
 }
 
 /// A controller of Python with its drawing. The page's thread holds the interpreter lock in every function.
-class PythonSubject final : public view::Subject {
+class PythonSubject final : public view::SolverSubject {
  public:
   PythonSubject(py::object controller, std::shared_ptr<const Drawing> drawing,
                 std::shared_ptr<const view::SubjectFacts> facts)
@@ -130,7 +130,7 @@ class PythonSubject final : public view::Subject {
     at(drawing_->y) = to.y;
     if (drawing_->heading) at(*drawing_->heading) = to.yaw;
   }
-  void move(int shape, const maps::Point& to) override {
+  void move(int shape, const maps::Pose& to) override {
     const py::gil_scoped_acquire lock;
     drawing_->move(controller_.attr("problem"), shape, to.x, to.y);
   }
@@ -177,7 +177,7 @@ std::unique_ptr<view::View> make_view(const py::object& controller, Drawing draw
 }  // namespace
 
 void bind_view(py::module_& module) {
-  py::class_<view::View>(module, "_View", "A page that shows a controller; slalom.show makes it.")
+  py::class_<view::View>(module, "_View", "A page that shows a controller; slalom.show makes it.", guarded())
       .def(py::init([](const py::object& controller, std::vector<double> start, int x, int y,
                        std::optional<int> heading, py::object pose, double length, double width,
                        py::object figure, py::object shapes, py::object move,

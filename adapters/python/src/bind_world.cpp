@@ -45,7 +45,7 @@ py::dict observe(const py::object& self, std::size_t car) {
 }
 
 void bind_course(py::module_& module) {
-  py::class_<Environment, std::shared_ptr<Environment>> course(module, "Course",
+  py::class_<Environment, std::shared_ptr<Environment>> course(module, "Course", guarded(),
                                                                "A course prepared for driving.");
   course.def(py::init([](const std::string& name, const std::string& evaluation) {
                const Folders folders = course_folders();
@@ -86,7 +86,7 @@ void bind_simulated_world(py::module_& module) {
       "Simulated cars with LiDAR on a course.\n\nKeyword arguments with the defaults of evaluation "
       "'true':\n\n" +
       options_text(default_options({}));
-  py::class_<sim::World> world(module, "World", words.c_str());
+  py::class_<sim::World> world(module, "World", words.c_str(), guarded());
   world
       .def(py::init([](const Environment& environment, const py::kwargs& keywords) {
              sim::WorldOptions options = default_options(environment);

@@ -29,9 +29,9 @@ bool takes_k(const py::object& callable) {
   return py::module_::import("slalom.display").attr("takes_k")(callable).cast<bool>();
 }
 
-/// Calls a function of a step, with its index `k` if the function takes it.
+/// Calls a function of a step, with its index `k` if the function takes it. It must not write `x` and `u`.
 py::object call_step(const py::object& function, const py::array& x, const py::array& u, bool with_k, int k) {
-  return with_k ? function(x, u, py::arg("k") = k) : function(x, u);
+  return with_k ? function(lent(x), lent(u), k) : function(lent(x), lent(u));
 }
 
 /// Adds a cost that a callable returned to `costs` [count] and its terms to `prediction`, if that is given.
@@ -69,8 +69,7 @@ CallableProblem::CallableProblem(CallableParts parts)
   require(inputs >= 1 && inputs <= 10000, "inputs: " + std::to_string(inputs) + " must be in [1, 10000]");
   const auto require_count = [&](const std::vector<double>& values, const std::string& what) {
     require(values.size() <= 1 || static_cast<int>(values.size()) == inputs,
-            what + ": has " + std::to_string(values.size()) + " values, must have 1 or " +
-                std::to_string(inputs));
+            what + ": has " + std::to_string(values.size()) + " values, must have " + one_or(inputs));
   };
   require_count(parts_.input_min, "input_min");
   require_count(parts_.input_max, "input_max");
@@ -191,7 +190,6 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
     constexpr py::ssize_t width = sizeof(float);
     py::array u(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{parts_.inputs}},
                 {width, width * (holds ? count : batch.stride())}, from, owner_);
-    read_only(u);
     if (together) {
       keep(x, all_x, k);
       keep(u, all_u, k);
@@ -204,14 +202,13 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
     const auto size = static_cast<std::size_t>(rows);
     std::vector<float> stage(size);
     std::vector<std::uint8_t> hit(size);
-    add_cost("cost", stage_cost(all_x, read_only(all_u), 0), rows, stage.data(), hit.data());
+    add_cost("cost", stage_cost(all_x, all_u, 0), rows, stage.data(), hit.data());
     for (std::size_t i = 0; i < size; ++i) {
       costs[i % static_cast<std::size_t>(count)] += stage[i];
       collided[i % static_cast<std::size_t>(count)] |= hit[i];
     }
   }
-  if (!parts_.terminal_cost.is_none())
-    add_cost("terminal_cost", parts_.terminal_cost(x), count, costs, collided);
+  if (!parts_.terminal_cost.is_none()) add_cost("terminal_cost", terminal_cost(x), count, costs, collided);
 }
 
 void CallableProblem::evaluate(const SequenceBatch& batch, int first, int count, float* costs,
@@ -246,7 +243,7 @@ Prediction CallableProblem::predict(std::span<const double> state, std::span<con
     result.states.insert(result.states.end(), now.begin(), now.end());
   }
   if (!parts_.terminal_cost.is_none())
-    add_cost("terminal_cost", parts_.terminal_cost(row(now)), 1, &result.cost, &collided, &result);
+    add_cost("terminal_cost", terminal_cost(row(now)), 1, &result.cost, &collided, &result);
   result.collided = collided != 0;
   return result;
 }

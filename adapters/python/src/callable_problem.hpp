@@ -20,8 +20,9 @@ struct CallableParts {
 
 /// A problem made of callables on batches of K samples: dynamics(x[K, nx], u[K, nu]) -> x[K, nx],
 /// cost(x, u) -> [K], terminal_cost(x) -> [K]. Dynamics and cost may take the index of the step as a
-/// parameter `k`. A cost may consist of terms, {name: [K]}, or be a pair
-/// (cost, collided). The inputs are views of the solver's memory, and the result of dynamics is not copied.
+/// third parameter. A cost may consist of terms, {name: [K]}, or be a pair
+/// (cost, collided). The functions get arrays that must not be written: views of the solver's
+/// memory, and what dynamics returned, which is not copied.
 class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
   /// Throws std::invalid_argument with the rule that a part breaks.
@@ -52,6 +53,10 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void begin(void* owner) override;
   /// Rethrows the first exception of a callable during the solve.
   void finish() override;
+  void each_object(const std::function<void(void*)>& visit) override {
+    for (py::object* object : {&parts_.dynamics, &parts_.cost, &parts_.terminal_cost, &parts_.sampler})
+      visit(object);
+  }
 
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                 std::uint8_t* collided) const noexcept override;
@@ -67,6 +72,7 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void draw(SequenceBatch& noise, int first, int count, RandomKey key) const;
   py::array next(const py::array& x, const py::array& u, int k) const;
   py::object stage_cost(const py::array& x, const py::array& u, int k) const;
+  py::object terminal_cost(const py::array& x) const { return parts_.terminal_cost(lent(x)); }
 
   CallableParts parts_;
   bool dynamics_take_k_ = false, cost_takes_k_ = false;  ///< the index of the step

@@ -33,7 +33,7 @@ Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<
     const bool is_last = k + 1 == points;
     if (is_last && parts_.terminal_cost.is_none()) break;
     const char* const what = is_last ? "terminal_cost" : "cost";
-    const py::object cost = is_last ? parts_.terminal_cost(x) : stage_cost(x, u, static_cast<int>(k));
+    const py::object cost = is_last ? terminal_cost(x) : stage_cost(x, u, static_cast<int>(k));
     visit_terms(what, cost, rows, collided.data(), [&](const std::string& name, const py::array& result) {
       const auto term = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
       if (term == terms)

@@ -16,8 +16,14 @@ std::string text_of(double value) {
   return py::str(py::float_(value));
 }
 
+/// Warns with slalom.SymptomWarning. Throws if the program's warning filter turns it into an error.
+void warn(const std::string& text) {
+  const py::object category = py::module_::import("slalom").attr("SymptomWarning");
+  if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
+}
+
 /// Throws std::invalid_argument if a time of the request is not one, or if the problem cannot use it.
-void check_times(const SolveRequest& request, double time_step) {
+void check_times(const SolveRequest& request, double time_step, int horizon) {
   if (!(request.elapsed >= 0 && std::isfinite(request.elapsed)))
     throw std::invalid_argument("elapsed: " + text_of(request.elapsed) + " must be finite and at least 0");
   if (request.elapsed > 0 && !(time_step > 0))
@@ -26,15 +32,10 @@ void check_times(const SolveRequest& request, double time_step) {
         "elapsed");
   if (!(request.deadline >= 0))
     throw std::invalid_argument("deadline: " + text_of(request.deadline) + " must be at least 0");
-}
-
-/// Warns with slalom.SymptomWarning. Throws if the program's warning filter turns it into an error.
-void warn_of(Symptom symptom) {
-  const py::object category = py::module_::import("slalom").attr("SymptomWarning");
-  const std::string text = std::string(name(symptom)) + " in " +
-                           std::to_string(SolveResult::symptom_patience) +
-                           " solves in a row: " + explanation(symptom);
-  if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
+  if (request.elapsed > horizon * time_step)
+    warn("elapsed: " + text_of(request.elapsed) + " s is longer than the horizon of " +
+         text_of(horizon * time_step) +
+         " s, so nothing of the last plan is left; it is the time since the last solve, in seconds");
 }
 
 /// Rollouts that end at once after a handler of a signal has raised an exception. Handlers run in the main
@@ -54,8 +55,12 @@ class Interruptible final : public BatchEvaluator {
       std::fill_n(costs + first, count, std::numeric_limits<float>::infinity());
     } else {
       rollouts_.evaluate(batch, first, count, costs, collided);
+      nan_costs_ +=
+          std::count_if(costs + first, costs + first + count, [](float c) { return std::isnan(c); });
     }
   }
+  /// The costs so far that were nan.
+  std::int64_t nan_costs() const noexcept { return nan_costs_; }
   /// The exception that a handler raised, or null.
   const std::exception_ptr& raised() const noexcept { return raised_; }
 
@@ -78,6 +83,7 @@ class Interruptible final : public BatchEvaluator {
   mutable Clock::time_point next_ = Clock::now() + period;
   mutable std::exception_ptr raised_;
   mutable std::atomic<bool> stopped_ = false;
+  mutable std::atomic<std::int64_t> nan_costs_ = 0;
 };
 
 }  // namespace
@@ -118,14 +124,36 @@ bool Controller::start(py::handle owner, std::vector<double> state, const SolveR
   return true;
 }
 
-/// Takes the plan from the solver. Rethrows the exception of a callable.
-void Controller::finish() {
+/// Takes the plan from the solver, of whose samples some had a cost of nan. Rethrows the exception of a
+/// callable.
+void Controller::finish(std::int64_t nan_costs) {
   core_.finish(*problem_);
   problem_->finish();
+  nan_costs_ = static_cast<int>(std::min<std::int64_t>(nan_costs, std::numeric_limits<int>::max() / 2));
+  if (nan_costs > 0 && !std::exchange(told_of_nan_, true))
+    warn("cost: nan for " + std::to_string(nan_costs) +
+         " samples of this solve, which get no weight: dynamics and cost must return numbers; inf marks a "
+         "sample "
+         "that must not be chosen");
+  if (solves_ == 1) check_repeats();
   // A robot that has arrived makes no progress, either: not worth a warning.
   if (result().suspicious_solves == SolveResult::symptom_patience &&
       result().suspicion != Symptom::no_progress)
-    warn_of(result().suspicion);
+    warn(std::string(name(result().suspicion)) + " in " + std::to_string(SolveResult::symptom_patience) +
+         " solves in a row: " + explanation(result().suspicion));
+}
+
+/// Warns if callables return other values for the same arguments.
+void Controller::check_repeats() {
+  if (!problem_->evaluator().whole_batches()) return;
+  const auto inputs = core_.inputs().first(static_cast<std::size_t>(problem_->inputs()));
+  const Prediction first = problem_->predict(state_, inputs), again = problem_->predict(state_, inputs);
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  if (!same(first.cost, again.cost) || !std::ranges::equal(first.states, again.states, same))
+    warn(
+        "dynamics, cost: return other values for the same arguments, so samples are compared by chance: "
+        "leave "
+        "random numbers out, and use slalom.RiskEvaluator for disturbances");
 }
 
 void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,
@@ -133,9 +161,11 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
   std::vector<Controller*> all;
   std::vector<Busy> busy;
   for (std::size_t i = 0; i < owners.size(); ++i) {
-    all.push_back(owners[i].cast<Controller*>());
+    if (!is_constructed(owners[i].ptr()))
+      throw py::type_error("controller: its __init__ has not been called");
+    all.push_back(&owners[i].cast<Controller&>());
     checked(states[i], static_cast<std::size_t>(all[i]->problem_->states()), "state");
-    check_times(request, all[i]->problem_->evaluator().time_step());
+    check_times(request, all[i]->problem_->evaluator().time_step(), all[i]->solver().horizon());
     busy.push_back(all[i]->use());
   }
   // Threads that hand the interpreter lock to each other take longer than one thread.
@@ -157,9 +187,9 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
     });
   }
   std::exception_ptr first;
-  for (Controller* each : started) {
+  for (std::size_t i = 0; i < started.size(); ++i) {
     try {
-      each->finish();
+      started[i]->finish(rollouts[i].nan_costs());
     } catch (...) {
       if (!first) first = std::current_exception();
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -43,10 +44,16 @@ class Controller {
   }
   const SolverOptions& options() const noexcept { return options_; }
   const SolveResult& result() const noexcept { return solver().result(); }
-  /// The status of the last solve. A cost that is not finite shows when the prediction is first asked for.
-  Status status() const noexcept { return core_.status(); }
-  /// The number of values that the final check changed in the last solve.
-  int corrections() const noexcept { return core_.corrections(); }
+  /// The status of the last solve and of its prediction.
+  Status checked_status() {
+    if (core_.status() != Status::non_finite_state) prediction();
+    return core_.status();
+  }
+  /// The number of values that the checks changed in the last solve, with the samples whose cost was nan.
+  int corrections() {
+    prediction();
+    return core_.corrections() + nan_costs_;
+  }
   /// The number of solves, which tells whether a plan is the last one.
   std::uint64_t solves() const noexcept { return solves_; }
   /// Whether it is in the state after its construction.
@@ -55,6 +62,7 @@ class Controller {
   std::span<const double> inputs() const noexcept { return core_.inputs(); }
   /// The states and the cost of the plan, computed on the first call.
   Prediction& prediction();
+  void each_object(const std::function<void(void*)>& visit) { problem_->each_object(visit); }
 
  private:
   struct Release {
@@ -72,7 +80,8 @@ class Controller {
 
   Busy use();
   bool start(py::handle owner, std::vector<double> state, const SolveRequest& request);
-  void finish();
+  void finish(std::int64_t nan_costs);
+  void check_repeats();
 
   Polymorphic<AnyProblem> problem_;
   SolverOptions options_;
@@ -80,6 +89,8 @@ class Controller {
   ControllerCore core_;
   std::uint64_t solves_ = 0;
   bool is_new_ = true;
+  int nan_costs_ = 0;          ///< samples of the last solve whose cost was nan
+  bool told_of_nan_ = false;   ///< whether a warning has told of such costs
   std::vector<double> state_;  ///< start of the last solve
   std::optional<Prediction> prediction_;
   Usage usage_;
@@ -89,6 +100,8 @@ class Controller {
 struct Plan {
   py::object owner;     ///< the controller
   std::uint64_t solve;  ///< Controller::solves of this plan
+
+  void each_object(const auto& visit) { visit(&owner); }
 
   /// Throws std::runtime_error if the controller has solved again.
   Controller& controller() const {

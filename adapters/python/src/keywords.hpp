@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "objects.hpp"
 #include "slalom/core/final_check.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose.hpp"
@@ -17,7 +18,6 @@
 /// Options as keyword arguments: names, defaults, ranges and errors are those of the C++ declarations.
 namespace slalom::python {
 
-namespace py = pybind11;
 using namespace pybind11::literals;
 
 /// An array of doubles, row by row. Made of an object it is converted as numpy does, or throws.
@@ -71,6 +71,12 @@ inline py::array read_only(py::array array) {
   return array;
 }
 
+/// A view of an array that must not be written, for a function of Python; the array itself does not change.
+inline py::array lent(const py::array& array) {
+  return read_only(py::array(array.dtype(), {array.shape(), array.shape() + array.ndim()},
+                             {array.strides(), array.strides() + array.ndim()}, array.data(), array));
+}
+
 /// The value of a parameter as a T. Throws TypeError with its name if it cannot be one.
 template <class T>
 T value_as(const py::handle& value, const std::string& name) {
@@ -89,6 +95,19 @@ inline const std::vector<double>& checked(const std::vector<double>& values, std
     throw std::invalid_argument(what + ": has " + std::to_string(values.size()) + " values, must have " +
                                 std::to_string(count));
   return values;
+}
+
+/// The values of a state or of an input. Throws std::invalid_argument unless the array is [count].
+inline std::vector<double> vector_of(const Numbers& values, int count, const std::string& what) {
+  if (values.ndim() != 1)
+    throw std::invalid_argument(what + ": has the shape " + shape_text(extents_of(values)) + ", must be (" +
+                                std::to_string(count) + ",)");
+  return checked({values.data(), values.data() + values.size()}, static_cast<std::size_t>(count), what);
+}
+
+/// How many values may be given for each of `count`: one for all, or one each.
+inline std::string one_or(int count) {
+  return count == 1 ? "1" : "1 or " + std::to_string(count);
 }
 
 /// Values that are given as one number, as a sequence, or not at all: None.
@@ -126,7 +145,8 @@ inline InputBounds bounds_of(const std::vector<double>& least, const std::vector
 inline std::string text_of(const py::handle& value) {
   PyObject* const object = value.ptr();
   if (py::isinstance<py::bool_>(value)) return to_text(value.cast<bool>());
-  if (PyNumber_Check(object) && !PyIndex_Check(object)) return to_text(value_as<double>(value, "an option"));
+  if (PyNumber_Check(object) && !PyIndex_Check(object))  // with a point: 2.0 is no number of steps
+    return py::str(py::float_(value_as<double>(value, "an option")));
   if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
     return value_as<std::string>(py::str(value), "an option");
   std::string text;
@@ -191,7 +211,7 @@ std::string options_text(const Options& options) {
   std::string text;
   for (const OptionEntry& entry : list_options(options)) {
     const Declaration& d = entry.declaration;
-    text += "    " + std::string(d.name) + " = " + to_text(entry.value);
+    text += "    " + std::string(d.name) + " = " + py::repr(to_python(entry.value)).cast<std::string>();
     if (*d.unit) text += " [" + std::string(d.unit) + "]";
     text += ": " + std::string(d.help);
     for (std::size_t i = 0; i < entry.choices.size(); ++i)

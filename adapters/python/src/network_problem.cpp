@@ -15,7 +15,7 @@ void spread(std::vector<double>& values, int count, const char* name) {
   if (values.size() == 1) values.resize(static_cast<std::size_t>(count), values[0]);
   if (static_cast<int>(values.size()) != count)
     throw std::invalid_argument(std::string("MlpProblem.") + name + ": has " + std::to_string(values.size()) +
-                                " values, must have 1 or " + std::to_string(count));
+                                " values, must have " + one_or(count));
   for (const double value : values)
     if (!std::isfinite(value))
       throw std::invalid_argument(std::string("MlpProblem.") + name + ": must be finite");

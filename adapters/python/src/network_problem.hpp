@@ -27,6 +27,9 @@ class NetworkProblem final : public AnyProblem, public BatchEvaluator {
   InputBounds stated_bounds() const override {
     return bounds_of(parts_.model.input_min, parts_.model.input_max, parts_.model.inputs);
   }
+  void each_object(const std::function<void(void*)>& visit) override {
+    for (py::object* object : {&parts_.network, &parts_.walls, &parts_.field}) visit(object);
+  }
   void set_state(std::span<const double> state) noexcept override;
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -58,6 +59,8 @@ class AnyProblem : public ControlledProblem {
   /// To be called before and after a solve. The argument is the PyObject that owns the solver's memory.
   virtual void begin(void* /*owner*/) {}
   virtual void finish() {}
+  /// Calls a function with a pointer to each py::object that the problem holds.
+  virtual void each_object(const std::function<void(void*)>&) {}
 };
 
 inline Trajectories AnyProblem::roll_out(std::span<const double> state, std::span<const float> sequences,

@@ -36,6 +36,10 @@ def test_every_option_is_a_keyword_with_its_default():
 @pytest.mark.parametrize("make, error, text", [
     (lambda: slalom.Mppi(slalom.Pendulum(), samples=0), ValueError, r"mppi.samples: '0' must be in \[1, "),
     (lambda: slalom.Mppi(slalom.Pendulum(), sample=10), TypeError, "unknown option 'sample'; did you mean 'samples'"),
+    (lambda: slalom.Mppi(slalom.Pendulum(), horizon=2.0), ValueError, "mppi.horizon: '2.0' must be an integer"),
+    (lambda: slalom.Mppi(linear()).solve([[0, 0]]), ValueError, r"state: has the shape \(1, 2\), must be \(2,\)"),
+    (lambda: linear(input_min=[1, 2, 3]), ValueError, "input_min: has 3 values, must have 1$"),
+    (lambda: linear().predict([0, 0], [0, 0]), ValueError, r"inputs: have the shape \(2,\), must have \(steps, 1\)"),
     (lambda: slalom.Mppi(slalom.Pendulum(), samples=1.5), ValueError, "mppi.samples: '1.5' must be an integer"),
     (lambda: slalom.Pendulum(dt=-1), ValueError, "Pendulum.dt"),
     (lambda: slalom.Mppi(slalom.Pendulum()).solve([0, 0, 0]), ValueError, "state: has 3 values, must have 2"),
@@ -70,19 +74,21 @@ def test_results_are_views_of_the_controller():
     controller = slalom.SvgMppi(slalom.Pendulum(), horizon=8, samples=100, batches=1, guides=3, guide_iterations=2,
                                  input_min=-5, input_max=5)
     plan = controller.solve([1.0, 0.0])
-    shapes = {"inputs": (8, 1), "nominal": (8, 1), "variances": (8, 1), "samples": (100, 8, 1), "costs": (100,),
+    shapes = {"nominal": (8, 1), "variances": (8, 1), "samples": (100, 8, 1), "costs": (100,),
               "weights": (100,), "samples_collided": (100,), "guides": (3, 8, 1), "guide_path": (6, 8, 1)}
     for name, shape in shapes.items():
         array = getattr(plan, name)
         assert array.shape == shape and array.base is not None and not array.flags.writeable, name
     assert plan.weights.sum() == pytest.approx(1, abs=1e-4)
     assert plan.samples[:, 0, 0].std() > 0
-    kept = plan.inputs
+    kept, held = plan.costs, [plan.inputs, plan.states]
+    before = [each.copy() for each in held]
     controller.solve([1.0, 0.0])
     with pytest.raises(RuntimeError, match="solved again"):
         plan.inputs
     del controller, plan
     assert np.all(np.isfinite(kept))  # the view keeps the memory
+    assert all(map(np.array_equal, held, before))  # copies
 
 
 def test_the_callable_problem_agrees_with_the_one_of_ours():
@@ -112,7 +118,7 @@ def test_callables_get_whole_batches_without_copies():
         return np.zeros(len(x), np.float32)
 
     slalom.Mppi(linear(cost=cost), horizon=4, samples=1000).solve([0, 0])
-    assert seen == [((1000, 2), (1000, 1), False, False, np.float32, 4)] * 4
+    assert [each for each in seen if each[0][0] > 1] == [((1000, 2), (1000, 1), False, False, np.float32, 4)] * 4
 
 
 def test_collisions_of_callables_are_reported():
@@ -173,6 +179,10 @@ def test_reset_repeats_and_a_non_finite_state_is_reported():
     first = controller.solve([1.0, 0.0]).inputs.copy()
     controller.reset(0)
     assert np.array_equal(controller.solve([1.0, 0.0]).inputs, first)
+    seeded = slalom.Mppi(slalom.Pendulum(), seed=7)
+    other = seeded.solve([1.0, 0.0]).inputs
+    seeded.reset()
+    assert np.array_equal(seeded.solve([1.0, 0.0]).inputs, other)
     plan = controller.solve([np.nan, 0.0])
     assert plan.status == "non_finite_state" and np.array_equal(plan.inputs, first)
 

@@ -85,7 +85,7 @@ namespace detail {
 
 /// A controller with its drawing.
 template <Problem P>
-class ControllerSubject final : public Subject {
+class ControllerSubject final : public SolverSubject {
  public:
   using State = typename Drawing<P>::State;
   using Inputs = typename Drawing<P>::Inputs;
@@ -109,13 +109,14 @@ class ControllerSubject final : public Subject {
   void set_options(const SolverOptions& options) override {
     controller_ = Controller<P>(controller_.problem(), options);
   }
-  std::vector<OptionEntry> parameters() const override {
-    if constexpr (has_parameters) return list_options(controller_.problem());
+  std::vector<OptionSection> parameters() const override {
+    if constexpr (has_parameters) return {{"problem", list_options(controller_.problem())}};
     return {};
   }
-  bool set_parameter([[maybe_unused]] const std::string& name,
+  bool set_parameter(const std::string& section, [[maybe_unused]] const std::string& name,
                      [[maybe_unused]] const std::string& text) override {
-    if constexpr (has_parameters) return set_option(controller_.problem(), name, text);
+    if constexpr (has_parameters)
+      return section == "problem" && set_option(controller_.problem(), name, text);
     return false;
   }
 
@@ -158,7 +159,9 @@ class ControllerSubject final : public Subject {
     if (drawing_->heading) x.*drawing_->heading = to.yaw;
     std::memcpy(state.data(), &x, sizeof x);
   }
-  void move(int shape, const maps::Point& to) override { drawing_->move(controller_.problem(), shape, to); }
+  void move(int shape, const maps::Pose& to) override {
+    drawing_->move(controller_.problem(), shape, {to.x, to.y});
+  }
 
  private:
   static constexpr std::size_t state_size = sizeof(State) / sizeof(double);

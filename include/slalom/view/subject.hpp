@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,6 +68,10 @@ struct SubjectFacts {
   std::vector<std::string> statuses{};  ///< names of the values of FrameSource::status, if it has its own
 
   // Facts that only a car on a course has.
+  bool can_add = false;                ///< whether shapes can be added and removed
+  bool can_delay = false;              ///< whether its commands can take effect later: DriveRequest::delay
+  bool fixes_seed = false;             ///< whether its drive sets the seed and threads of its solver
+  bool scans_ahead = false;            ///< whether it plans with a scan of the end of the step before
   std::vector<std::string> figures{};  ///< names of FrameSource::figures, which replace states and inputs
   double front = 0, rear = 0;          ///< m from the position to the axles; 0: it has no wheels
   int speed = -1, steering = -1;       ///< indices of a state's speed (m/s) and steering (rad); -1: none
@@ -74,12 +80,36 @@ struct SubjectFacts {
   bool is_closed = false;                      ///< whether the end of the course is its beginning
 };
 
+/// Options of one kind.
+struct OptionSection {
+  std::string name;                  ///< a method, or what else the options belong to
+  std::vector<OptionEntry> options;  ///< options with their present values
+};
+
+/// A lap that was driven.
+struct DrivenLap {
+  int end = 0;         ///< control steps until its end
+  int lap = 0;         ///< from 1
+  double time = 0;     ///< s
+  int contacts = 0;    ///< collisions in this lap
+  std::string method;  ///< method that drove at its end
+  bool ghost = false;  ///< whether the ghost has driven it
+};
+
+/// Facts with which a step begins.
+struct DriveRequest {
+  double elapsed = 0;  ///< s since the last solve
+  double delay = 0;    ///< s by which the command takes effect later than the settings say
+  int solves = 1;      ///< how often to solve; some subjects need several for a plan that fits a change
+};
+
 /// Figures of a step that a subject measures itself.
 struct StepMeasures {
-  double time = 0;         ///< s since the start
-  double update_time = 0;  ///< s of wall clock that the plan took
-  bool collides = false;   ///< whether the body collides
-  int collisions = 0;      ///< collisions until now
+  double time = 0;             ///< s since the start
+  double update_time = 0;      ///< s of wall clock that the plan took
+  bool collides = false;       ///< whether the body collides
+  int collisions = 0;          ///< collisions until now
+  double prediction_step = 0;  ///< s of a step of the plan
 };
 
 /// Names those that have no names, by their kind and number. `what`: where the names come from. Throws
@@ -116,38 +146,65 @@ class FrameSource {
   virtual std::optional<StepMeasures> measures() const { return {}; }  ///< figures of the last plan
 };
 
-/// A controller with its problem, as the live view drives it. `Controller` and the controllers of Python have
-/// one; `serve` makes it. All functions are called by one thread.
-class Subject : public FrameSource {
+/// A controller in its world, as the live view drives it. All functions are called by one thread.
+class Subject : public virtual FrameSource {
  public:
   /// Returns a copy that continues bit for bit like the original.
   virtual std::unique_ptr<Subject> clone() const = 0;
   virtual std::vector<double> start() const = 0;     ///< the state at the beginning
   virtual double time_step() const = 0;              ///< s; 0: unknown
   virtual const SolverOptions* options() const = 0;  ///< null with a solver of the user's own
-  /// Replaces the method or its options. Throws std::invalid_argument, and nothing changes, if one is not
-  /// valid.
+  /// Replaces the method or its options. Throws std::invalid_argument if one is not valid; the subject is
+  /// then not to be used any more, as with `set_parameter` and `apply`.
   virtual void set_options(const SolverOptions& options) = 0;
   /// The options with which another method begins. If there are none, it takes its defaults, with horizon,
   /// samples, bounds and seed of the present method.
   virtual std::optional<SolverOptions> options_of(const std::string& /*method*/) const { return {}; }
-  /// The problem's own parameters.
-  virtual std::vector<OptionEntry> parameters() const { return {}; }
+  /// The parameters: all options but those of the present method.
+  virtual std::vector<OptionSection> parameters() const { return {}; }
   /// Sets a parameter; false if there is none of that name. Throws std::invalid_argument out of its range.
-  virtual bool set_parameter(const std::string& /*name*/, const std::string& /*text*/) { return false; }
+  virtual bool set_parameter(const std::string& /*section*/, const std::string& /*name*/,
+                             const std::string& /*text*/) {
+    return false;
+  }
+  /// Puts into effect what was set, if that has not happened yet. Throws std::invalid_argument if options
+  /// contradict each other.
+  virtual void apply() {}
 
-  /// Begins anew, with the present options, parameters and shapes.
-  virtual void restart() {}
+  /// Begins anew, with the present options and parameters.
+  virtual void restart() = 0;
+  /// Function that is called with the solver's result and the s of wall clock that it took.
+  using OnPlan = std::function<void(const SolveResult& solve, double seconds)>;
+  /// Plans from a state, calls `on_plan`, in which the functions of FrameSource tell of this plan, and
+  /// returns the state a step later.
+  virtual std::vector<double> drive(std::span<const double> state, const DriveRequest& request,
+                                    const OnPlan& on_plan) = 0;
+  /// Returns the laps that were driven, in their order.
+  virtual std::span<const DrivenLap> laps() const { return {}; }
 
+  /// Puts the body of a state elsewhere. This and the functions below throw std::invalid_argument if that is
+  /// not possible; the subject is then not to be used any more.
+  virtual void place(std::span<double> state, const maps::Pose& to) = 0;
+  /// Puts a shape elsewhere, by its index in `shapes`.
+  virtual void move(int shape, const maps::Pose& to) = 0;
+  /// Adds a shape behind the others, with SubjectFacts::can_add.
+  virtual void add(const Shape& /*shape*/) {}
+  /// Removes a shape, with SubjectFacts::can_add.
+  virtual void remove(int /*shape*/) {}
+};
+
+/// A subject whose controller solves first, and whose system then moves by a step. `Controller` and the
+/// controllers of Python have one; `serve` makes it.
+class SolverSubject : public Subject {
+ public:
   /// Solves from a state and returns the solver's result.
   virtual const SolveResult& solve(std::span<const double> state, const SolveRequest& request) = 0;
   /// Returns the state of the real system a step after `state`.
   virtual std::vector<double> step(std::span<const double> state, std::span<const double> input) = 0;
 
-  /// Puts the body of a state elsewhere, or a shape.
-  virtual void place(std::span<double> state, const maps::Pose& to) = 0;
-  /// Puts a shape elsewhere, by its index in `shapes`.
-  virtual void move(int shape, const maps::Point& to) = 0;
+  void restart() override;
+  std::vector<double> drive(std::span<const double> state, const DriveRequest& request,
+                            const OnPlan& on_plan) override;
 };
 
 }  // namespace slalom::view

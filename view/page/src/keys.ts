@@ -41,7 +41,7 @@ const shortcuts: Shortcut[] = [
   ["1 2 3 4", "pole, box, parked car, select", choosing, "add"],
   ["[ ]", "push the car to its left or right", nudges, "add"],
   ["Delete", "delete the selected obstacle", { Delete: deleteSelected, Backspace: deleteSelected }, "add"],
-  ["Ctrl Z, Ctrl Y", "undo and redo a change of options or obstacles", undoing, "undo"],
+  ["Ctrl Z, Ctrl Y", "undo and redo a change of options, method or obstacles", undoing, "live"],
   ["K", "fork from the control step shown", { k: openFork }, "ghost"],
   ["S", "save or share: picture, replay, recording, link", { s: () => saveMenu.toggle() }],
   ["L", "layers", { l: () => get("layers").toggleAttribute("open") }],

@@ -208,7 +208,7 @@ export interface OptionDeclaration extends Texts<"name" | "symbol" | "unit" | "h
 export interface Hello extends Numbers<"protocol" | "history_seconds" | "control_period"> {
   type: "hello";
   title: string;
-  can: string[]; // place, move, add, scenario, real_time, save, ghost, undo
+  can: string[]; // place, move, add, scenario, real_time, save, ghost
   scalars: string[];
   statuses: string[];
   symptoms: Texts<"name" | "explanation">[];

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
 
-const ofCar = ["course", "ghost", "fork", "tab-laps", "nudge-left", "speed"]; // parts of the page
+const ofCar = ["course", "tab-laps", "nudge-left", "speed"]; // parts of the page
 
 export default async function (h) {
   let server = await h.start("view", "--problem", "differential_drive", "--port", "0");

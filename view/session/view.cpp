@@ -1,7 +1,7 @@
 #include "slalom/view/serve.hpp"
 #include "view/embedded.hpp"
-#include "view/problem/problem_session.hpp"
 #include "view/server/server.hpp"
+#include "view/session/session.hpp"
 
 namespace slalom::view {
 namespace {
@@ -13,7 +13,7 @@ ServerOptions server_options(const ServeOptions& given) {
   options.host = given.host;
   options.port = given.port;
   options.token = given.token;
-  options.framed_by = "http://localhost:* http://127.0.0.1:* vscode-webview: vscode-file:";  // notebooks
+  options.framed_by = notebooks;
   return options;
 }
 
@@ -22,12 +22,12 @@ ServerOptions server_options(const ServeOptions& given) {
 struct View::Implementation {
   Implementation(std::unique_ptr<Subject> subject, const ServeOptions& options)
       : server(server_options(options), {{"/", {"text/html; charset=utf-8", page_gzip(), true}}}),
-        session(std::move(subject), server) {
+        session((subject->restart(), std::move(subject)), server) {
     address = address_of(server, server_options(options));
     if (options.ready) options.ready(address);
   }
   Server server;
-  ProblemSession session;
+  Session session;
   std::string address;
 };
 
