@@ -13,21 +13,21 @@ class RoomSession : public ::testing::Test, protected view::PausedSession {
 };
 
 TEST_F(RoomSession, AGhostNavigatesInARoomOfItsOwn) {
-  step(4);
+  step_to(4);
   say({R"({"do": "ghost", "method": "mppi"})"});
   EXPECT_EQ(ghost_figure("x", 4), figure("x", 4));
-  step(16);
+  step_to(20);
   const double x = figure("x", 20), ghost = ghost_figure("x", 20);
   EXPECT_GT(ghost, ghost_figure("x", 4) + 0.1) << "it moves";
   EXPECT_NE(ghost, x);
   say({R"({"do": "seek", "tick": 10})"});
-  step(10);
+  step_to(20);
   EXPECT_EQ(figure("x", 20), x);
   EXPECT_EQ(ghost_figure("x", 20), ghost) << "both are driven again exactly";
 }
 
 TEST_F(RoomSession, UndoPutsThePalletBackAndTheMethod) {
-  step(4);
+  step_to(4);
   const auto bodies = [&] {
     const std::string shown = frame(4);
     return std::string(view::FrameReader(shown).block(view::Block::bodies));
