@@ -101,7 +101,7 @@ class RaceJob {
     print_statistics(words_, race_);
     const RacingLap* best = best_lap(race_);
     if (best) print_along(words_, race_, *best);
-    if (!arguments_.race.json.empty()) write_json(results(best), arguments_.race.json);
+    if (!arguments_.race.json.empty()) write_json(results(), arguments_.race.json);
     if (arguments_.plot.empty()) return;
     if (!best) {
       std::fprintf(words_, "note: no picture, since no lap was completed\n");
@@ -111,10 +111,9 @@ class RaceJob {
     std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
   }
 
-  Json results(const RacingLap* best) const {
+  Json results() const {
     Json json = results_json(settings_, scenario_);
     json.update(race_json(race_));
-    json["along"] = best ? along_json(race_, *best) : Json(nullptr);
     json["solve_ms"] = times_json(solve_ms_);
     return json;
   }

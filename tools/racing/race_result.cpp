@@ -15,8 +15,6 @@ using evaluation::RacingEnd;
 using evaluation::RacingLap;
 using evaluation::RacingSample;
 
-constexpr int along_steps = 100;
-
 /// A number of a sample, as it is named and rounded in results.
 struct SampleColumn {
   const char* key;
@@ -126,17 +124,6 @@ Json race_json(const RaceResult& race) {
     json["laps"].push_back(row);
   }
   return json;
-}
-
-Json along_json(const RaceResult& race, const RacingLap& lap) {
-  std::vector<double> distances, behind;
-  for (int i = 0; i <= along_steps; ++i) {
-    distances.push_back(race.length * i / along_steps);
-    behind.push_back(evaluation::time_behind(lap.samples, profile_of(race, lap).samples, distances.back()));
-  }
-  return {{"lap", static_cast<int>(&lap - race.laps.data()) + 1},
-          {"distance_m", distances},
-          {"behind_profile_s", behind}};
 }
 
 void print_lap_header(std::FILE* out, double grip) {

@@ -56,9 +56,6 @@ const evaluation::RacingLap* best_lap(const RaceResult& race);
 /// (statistics), and `laps`, each with its samples.
 nlohmann::ordered_json race_json(const RaceResult& race);
 
-/// The way of a lap in equal steps, with the time behind the profile.
-nlohmann::ordered_json along_json(const RaceResult& race, const evaluation::RacingLap& lap);
-
 // Tables.
 
 /// The names of the columns, with the friction circle (m/s^2).
