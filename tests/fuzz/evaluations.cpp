@@ -1,4 +1,4 @@
-// Tables of laps, logs of other programs, settings of evaluations, and results of races.
+// Tables of laps, logs of other programs, and settings of evaluations.
 #include <cmath>
 
 #include "fuzz/target.hpp"
@@ -6,7 +6,6 @@
 #include "slalom/evaluation/lap_log.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/racing/race_result.hpp"
 
 namespace slalom::fuzz {
 namespace {
@@ -151,56 +150,6 @@ const Target settings_target(
       scratch_file("laps.journal.csv", evaluation::checked_header() + "\n");
       is_valid([&] { resume(scratch_folder().path(), is_object ? text : "{}"); });
       return valid;
-    });
-
-constexpr double length = 20;  // m
-
-Json race_settings() {
-  return {{"course", "wren"}, {"start", Json::array({0.0, 0.0, 0.0})}};
-}
-
-evaluation::RacingLap racing_lap(bool standing, double speed) {
-  evaluation::RacingLap lap;
-  lap.standing = standing;
-  lap.seed = 3;
-  for (int i = 0; i <= 4; ++i) {
-    const double distance = length * i / 4;
-    lap.samples.push_back(
-        {.distance = distance, .time = distance / speed, .speed = speed, .longitudinal = 0.5, .lateral = -2});
-  }
-  lap.sector = evaluation::sector_times(lap.samples, length);
-  return lap;
-}
-
-const Target race_result_target(
-    "race_result", 1 << 14,
-    []() -> Seeds {
-      tools::RaceResult race;
-      race.length = length;
-      race.grip = 8;
-      race.profile = racing_lap(false, 5);
-      race.profile_from_rest = racing_lap(true, 4);
-      race.laps = {racing_lap(true, 3), racing_lap(false, 4.5)};
-      Json both = tools::race_json(race);
-      both["settings"] = race_settings();
-      race.laps.pop_back();
-      Json standing = tools::race_json(race);
-      standing["settings"] = race_settings();
-      return {both.dump(), standing.dump(2)};
-    },
-    [](std::string_view bytes) {
-      static const evaluation::RacingLap own = racing_lap(false, 4);
-      const tools::OtherRun other =
-          tools::read_run(scratch_file("race.json", bytes), race_settings(), length);
-      require(other.flying || other.standing, "a result has a lap");
-      for (const auto& read : {other.flying, other.standing}) {
-        if (!read) continue;
-        require(read->samples.size() >= 2, "a lap has samples");
-        for (int i = 0; i <= 10; ++i)
-          require(std::isfinite(evaluation::time_behind(own.samples, read->samples, length * i / 10)),
-                  "the time behind another lap is finite");
-      }
-      return true;
     });
 
 }  // namespace

@@ -50,9 +50,6 @@ TEST_F(RaceCommand, TellsFlyingLapsFromStandingStarts) {
   EXPECT_LE(r["flying"]["ideal"].get<double>(), best);
   EXPECT_EQ(r["standing"]["best_lap"], 1);
   EXPECT_NEAR(r["friction_circle_mps2"].get<double>(), 0.9 * 9.81, 1e-9);
-  EXPECT_NEAR(r["along"]["behind_profile_s"].back().get<double>(), best - r["profile"]["time"].get<double>(),
-              1e-6);
-  EXPECT_FALSE(r.contains("compared"));
 }
 
 TEST_F(RaceCommand, TheGripCircleIsThatOfTheFrictionAndTyresSaturateUnlessTheirOptionSaysOtherwise) {
@@ -64,38 +61,6 @@ TEST_F(RaceCommand, TheGripCircleIsThatOfTheFrictionAndTyresSaturateUnlessTheirO
   };
   EXPECT_GT(beyond("0.05", true), 0.8);
   EXPECT_EQ(beyond("9 --set world.saturating_tyres=false", false), 0);
-}
-
-TEST_F(RaceCommand, ComparesTwoRunsAlongTheLap) {
-  race("--laps 2 --json slow.json --set planner.max_speed=2");
-  expect_says(race("--laps 2 --json fast.json --compare slow.json --plot both.png"), {"behind slow.json"});
-  EXPECT_TRUE(fs::exists(folder_ / "both.png"));
-  const json fast = result("fast.json"), slow = result("slow.json");
-  const double difference = fast["flying"]["best"].get<double>() - slow["flying"]["best"].get<double>();
-  EXPECT_LT(difference, -1);
-  EXPECT_NEAR(fast["compared"]["difference_s"].get<double>(), difference, 1e-5);
-  const json& behind = fast["along"]["behind_other_s"];
-  EXPECT_EQ(behind[0], 0);
-  EXPECT_NEAR(behind.back().get<double>(), difference, 1e-5);
-}
-
-TEST_F(RaceCommand, SaysWhichRunsCannotBeCompared) {
-  race("--laps 1 --json r.json");
-  const std::string race_on = "race --config default --set samples=64 --laps 1 ";
-  expect_refused(race_on + "--course fox --compare r.json", {"r.json: settings.course", "fox"});
-  expect_refused(race_on + "--course wren --start 0.5,0,0 --compare r.json", {"r.json: settings.start"});
-  expect_refused(race_on + "--course wren --compare none.json", {"none.json"});
-  write("text.json", "lap");
-  expect_refused(race_on + "--course wren --compare text.json",
-                 {"text.json", "must be a result of slalom race"});
-  json damaged = result("r.json");
-  damaged["laps"][0]["samples"].erase("speed_mps");
-  std::ofstream(folder_ / "damaged.json") << damaged;
-  expect_refused(race_on + "--course wren --compare damaged.json",
-                 {"damaged.json", "must be a result of slalom race", "speed_mps"});
-  expect_refused(race_on + "--course wren --compare r.json --json r.json", {"--compare", "--json", "r.json"});
-  expect_says(race("--laps 2 --json q.json --compare r.json"),
-              {"r.json has no completed flying lap to compare with"});
 }
 
 TEST_F(RaceCommand, LapsThatAreNotCompletedCount) {
@@ -114,8 +79,6 @@ TEST_F(RaceCommand, LapsThatAreNotCompletedCount) {
     EXPECT_TRUE(lap["time"].is_null());
   }
   EXPECT_NE(r["laps"][0]["seed"], r["laps"][1]["seed"]);
-  EXPECT_TRUE(r["along"].is_null());
-  expect_refused("race --course wren --compare r.json", {"r.json: has no completed lap"});
 }
 
 class GridRaceCommand : public testing::ProgramTest {

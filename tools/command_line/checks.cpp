@@ -68,8 +68,7 @@ void check_files(const std::vector<GivenOption>& options) {
   std::map<std::string, std::string> taken;  // options by the paths of their files
   for (const GivenOption& option : options)
     for (const std::string& value : option.values) {
-      const bool input = (option.positional && option.name != "file") || option.name == "--config" ||
-                         option.name == "--compare";
+      const bool input = (option.positional && option.name != "file") || option.name == "--config";
       if (input && fs::is_regular_file(value)) taken.emplace(canonical_path(value), option.name);
     }
   for (const char* name : outputs)

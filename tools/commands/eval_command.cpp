@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -41,11 +42,21 @@ int eval(const EvalArguments& arguments) {
   write_json(summary, file);
   std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
   if (arguments.report) {
-    Report report{"Methods compared", evaluated, {}, {}, {}};
+    ReportChart chart{"methods", "Methods", {}};
     for (const auto& r : evaluated.results) {
-      const auto& e = evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
-      report.rows.push_back({"methods", e.label(), "", r.experiment});
+      const auto& e = evaluated.experiment(r.experiment);
+      auto row = std::find_if(chart.rows.begin(), chart.rows.end(),
+                              [&](const ChartRow& other) { return other.name == e.label(); });
+      if (row == chart.rows.end()) row = chart.rows.insert(row, {e.label()});
+      (e.scenario == "pt" ? row->tracking : row->obstacles) = &r;
     }
+    const Report report{
+        "Methods compared",
+        evaluated,
+        {},
+        {},
+        {{"Paired comparison", pairs_table(evaluated)}, {"Methods", results_table(evaluated)}},
+        {chart}};
     write_report(report, arguments.evaluation.out);
   }
   print_results(evaluated, words);

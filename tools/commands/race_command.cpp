@@ -1,10 +1,7 @@
 #include <cstdio>
 #include <memory>
-#include <optional>
-#include <utility>
 
 #include "json/json.hpp"
-#include "slalom/core/error.hpp"
 #include "slalom/evaluation/race.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
 #include "tools/command_line/words.hpp"
@@ -26,7 +23,7 @@ using evaluation::RacingLap;
 struct RaceArguments {
   ScenarioArguments scenario;
   GridRaceArguments race;  ///< laps, seed and JSON file of both kinds, and what only several cars have
-  std::string method = "svg_mppi", compare, plot;
+  std::string method = "svg_mppi", plot;
   bool standing = false;
   double friction = 0.9;
 };
@@ -58,7 +55,6 @@ class RaceJob {
     race_.grip = acceleration_of(arguments.friction);
     race_.profile = evaluation::profile_lap(setup_, false, race_.grip);
     race_.profile_from_rest = evaluation::profile_lap(setup_, true, race_.grip);
-    if (!arguments.compare.empty()) other_ = read_run(arguments.compare, settings_, race_.length);
   }
 
   /// The exit status.
@@ -101,55 +97,36 @@ class RaceJob {
     std::fprintf(words_, "interrupted after %zu of %d laps\n", race_.laps.size(), arguments_.race.laps);
   }
 
-  /// The lap of the other run with which a lap is compared: one with the same kind of start.
-  const RacingLap* comparable(const RacingLap& lap) const {
-    if (!other_) return nullptr;
-    const auto& same = lap.standing ? other_->standing : other_->flying;
-    return same ? &*same : nullptr;
-  }
-
   void write_results() {
     print_statistics(words_, race_);
     const RacingLap* best = best_lap(race_);
-    const RacingLap* theirs = best ? comparable(*best) : nullptr;
-    if (best && other_ && !theirs)
-      std::fprintf(words_, "note: %s has no completed %s to compare with\n", other_->file.c_str(),
-                   best->standing ? "standing start" : "flying lap");
-    if (best) print_along(words_, race_, *best, theirs, arguments_.compare);
-    if (!arguments_.race.json.empty()) write_json(results(best, theirs), arguments_.race.json);
+    if (best) print_along(words_, race_, *best);
+    if (!arguments_.race.json.empty()) write_json(results(), arguments_.race.json);
     if (arguments_.plot.empty()) return;
     if (!best) {
       std::fprintf(words_, "note: no picture, since no lap was completed\n");
       return;
     }
-    plot(*best, theirs);
+    plot(*best);
     std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
   }
 
-  Json results(const RacingLap* best, const RacingLap* theirs) const {
+  Json results() const {
     Json json = results_json(settings_, scenario_);
     json.update(race_json(race_));
-    json["along"] = best ? along_json(race_, *best, theirs) : Json(nullptr);
-    if (theirs)
-      json["compared"] = {{"file", other_->file},
-                          {"other_lap_s", theirs->time()},
-                          {"difference_s", best->time() - theirs->time()}};
     json["solve_ms"] = times_json(solve_ms_);
     return json;
   }
 
-  void plot(const RacingLap& best, const RacingLap* theirs) const {
-    const auto named = [](std::string name, const RacingLap& lap) {
-      return NamedLap{std::move(name) + formatted(", %.3f s", lap.time()), lap};
-    };
+  void plot(const RacingLap& best) const {
     const auto use = evaluation::grip_use(best.samples, race_.grip);
     const std::string facts =
         formatted("configuration %s \xC2\xB7 %.1f m \xC2\xB7 acceleration p50 %.2f, p99 %.2f m/s\xC2\xB2",
                   arguments_.scenario.config.c_str(), race_.length, use.p50, use.p99);
     const RacingLap& profile = profile_of(race_, best);
+    const char* const name = profile.standing ? "profile from rest, %.3f s" : "profile, %.3f s";
     draw_race({.lap = {lap_words(race_, best), best},
-               .profile = named(profile.standing ? "profile from rest" : "profile", profile),
-               .other = theirs ? std::optional(named(other_->file, *theirs)) : std::nullopt,
+               .profile = {formatted(name, profile.time()), profile},
                .length = race_.length,
                .grip = race_.grip,
                .title = arguments_.method + " on " + scenario_.environment->course.name,
@@ -163,7 +140,6 @@ class RaceJob {
   evaluation::LapSetup setup_;
   Json settings_;
   RaceResult race_;
-  std::optional<OtherRun> other_;
   std::vector<float> solve_ms_;
 };
 
@@ -172,7 +148,7 @@ int run_race(const Subcommand& command, const RaceArguments& arguments) {
   const bool grid = command.given("--cars") || command.given("--against");
   for (const char* name : {"--races", "--jobs"})
     if (!grid && command.given(name)) throw CommandLineError(name, "needs --cars or --against");
-  for (const char* name : {"--standing", "--friction", "--compare", "--plot"})
+  for (const char* name : {"--standing", "--friction", "--plot"})
     if (grid && command.given(name))
       throw CommandLineError(name, "is for laps against the clock, without --cars and --against");
   if (!grid) return RaceJob(arguments).run();
@@ -221,9 +197,6 @@ void declare_race(Subcommand& command) {
   command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
   command.option("--friction", arguments->friction,
                  "Radius of the friction circle with which accelerations are compared, in g", {0.01, 10.0});
-  command.option(
-      "--compare", arguments->compare,
-      "JSON file of another slalom race on the same course: shows where the best lap gains or loses time");
   command.json(arguments->race.json, "the results");
   command.option("--plot", arguments->plot,
                  "Write a picture of the best lap to this PNG, SVG or PDF: speed and profile, time behind, "

@@ -26,10 +26,9 @@ struct ReproduceArguments {
   bool quick = false, claims = false, course_given = false;
 };
 
-/// Prints the rows of a table beside the authors' results.
-void print_table(const PaperTable& table, const Evaluated& evaluated,
-                 const std::vector<Reference>& references, std::FILE* out) {
-  std::fprintf(out, "\n%s\n", table.title);
+/// The rows of a table beside the authors' results.
+TextTable shown_table(const PaperTable& table, const Evaluated& evaluated,
+                      const std::vector<Reference>& references) {
   TextTable shown({"<row", "<scenario", "laps", "MS (95 %)", "published MS", "released", "collision rate, %",
                    "published", "<verdict"});
   for (const char* scenario : {"pt", "oa"}) {
@@ -49,17 +48,19 @@ void print_table(const PaperTable& table, const Evaluated& evaluated,
       }
     }
   }
-  shown.print(out);
+  return shown;
 }
 
-void add_report_rows(const std::string& table, Report& report) {
+ReportChart chart_of(const PaperTable& table, const Evaluated& evaluated) {
+  ReportChart chart{table.figure, table.title, {}};
   for (const PaperRow& row : paper_rows()) {
-    if (row.table != table) continue;
-    for (const auto& r : report.evaluated.results) {
-      const auto& e = report.evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
-      if (drives(e, row)) report.rows.push_back({table, row.name, row.note, r.experiment});
-    }
+    if (row.table != table.name) continue;
+    ChartRow& shown = chart.rows.emplace_back(row.name);
+    for (const auto& r : evaluated.results)
+      if (const auto& e = evaluated.experiment(r.experiment); drives(e, row))
+        (e.scenario == "pt" ? shown.tracking : shown.obstacles) = &r;
   }
+  return chart;
 }
 
 int reproduce(ReproduceArguments arguments) {
@@ -95,12 +96,16 @@ int reproduce(ReproduceArguments arguments) {
   summary["claims"] = claims_json(files.logs, experiments, evaluated.rows);
   const std::string file = arguments.evaluation.out + "/summary.json";
   write_json(summary, file);
-  Report report{"Reproduction of the paper's simulation section", evaluated, {}, references, files.notes};
-  for (const std::string& table : arguments.tables) add_report_rows(table, report);
+  Report report{"Reproduction of the paper's simulation section", evaluated, references, files.notes, {}, {}};
+  for (const std::string& name : arguments.tables) {
+    const PaperTable& table = *find_table(name);
+    report.tables.emplace_back(table.title, shown_table(table, evaluated, references));
+    report.charts.push_back(chart_of(table, evaluated));
+    std::fprintf(words, "\n%s\n", table.title);
+    report.tables.back().second.print(words);
+  }
+  report.tables.emplace_back("Paired comparison", pairs_table(evaluated));
   write_report(report, arguments.evaluation.out);
-  draw_trajectories(evaluated, arguments.evaluation.out + "/figures");
-  for (const std::string& table : arguments.tables)
-    print_table(*find_table(table), evaluated, references, words);
   print_claims(summary["claims"], words);
   std::fprintf(words, "\n%s\n%s/report.html\n", file.c_str(), arguments.evaluation.out.c_str());
   if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);

@@ -16,7 +16,7 @@ using evaluation::RacingLap;
 using evaluation::RacingSample;
 
 constexpr Colour lap_colour{0.12, 0.42, 0.78, 1}, profile_colour{0.45, 0.48, 0.55, 1},
-    other_colour{0.85, 0.40, 0.08, 1}, beyond_colour{0.80, 0.13, 0.23, 1};
+    beyond_colour{0.80, 0.13, 0.23, 1};
 constexpr double width = 1240, height = 720, left = 64, right = 800, speed_top = 112, speed_bottom = 400,
                  delta_top = 456, delta_bottom = 660, circle_left = 876, circle_right = 1212,
                  circle_top = 112, circle_bottom = circle_top + circle_right - circle_left;
@@ -50,39 +50,31 @@ Pen::Points speeds(const RacingLap& lap, const Axis& x, const Axis& y) {
 
 void draw_speeds(Pen& pen, const RacePicture& picture, const Axis& x) {
   double fastest = 1;
-  for (const RacingLap* lap :
-       {&picture.lap.lap, &picture.profile.lap, picture.other ? &picture.other->lap : &picture.lap.lap})
+  for (const RacingLap* lap : {&picture.lap.lap, &picture.profile.lap})
     for (const RacingSample& sample : lap->samples) fastest = std::max(fastest, sample.speed);
   const Axis y = linear_axis(0, fastest, speed_bottom, speed_top, 5);
   draw_frame(pen, x, y, "speed, m/s", "");
   draw_sectors(pen, x, y, picture.length);
   pen.stroke(speeds(picture.profile.lap, x, y), {profile_colour, 1.6, 5});
-  if (picture.other) pen.stroke(speeds(picture.other->lap, x, y), {other_colour, 1.6});
   pen.stroke(speeds(picture.lap.lap, x, y), {lap_colour, 2});
 }
 
 void draw_deltas(Pen& pen, const RacePicture& picture, const Axis& x) {
-  std::vector<std::pair<const RacingLap*, Stroke>> others{{&picture.profile.lap, {profile_colour, 1.6, 5}}};
-  if (picture.other) others.emplace_back(&picture.other->lap, Stroke{other_colour, 1.8});
-  const auto behind = [&](const RacingLap& other, int i) {
-    return evaluation::time_behind(picture.lap.lap.samples, other.samples, picture.length * i / delta_steps);
-  };
+  std::vector<double> behind;
   double low = -0.01, high = 0.01;
-  for (const auto& [other, stroke] : others)
-    for (int i = 0; i <= delta_steps; ++i) {
-      low = std::min(low, behind(*other, i));
-      high = std::max(high, behind(*other, i));
-    }
-  const Axis y = linear_axis(low, high, delta_bottom, delta_top, 4);
-  draw_frame(pen, x, y, "time of the lap minus time of the profile or of the other run, s",
-             "distance along the course, m");
-  draw_sectors(pen, x, y, picture.length);
-  for (const auto& [other, stroke] : others) {
-    Pen::Points points;
-    for (int i = 0; i <= delta_steps; ++i)
-      points.emplace_back(x(picture.length * i / delta_steps), y(behind(*other, i)));
-    pen.stroke(points, stroke);
+  for (int i = 0; i <= delta_steps; ++i) {
+    behind.push_back(evaluation::time_behind(picture.lap.lap.samples, picture.profile.lap.samples,
+                                             picture.length * i / delta_steps));
+    low = std::min(low, behind.back());
+    high = std::max(high, behind.back());
   }
+  const Axis y = linear_axis(low, high, delta_bottom, delta_top, 4);
+  draw_frame(pen, x, y, "time of the lap minus time of the profile, s", "distance along the course, m");
+  draw_sectors(pen, x, y, picture.length);
+  Pen::Points points;
+  for (int i = 0; i <= delta_steps; ++i)
+    points.emplace_back(x(picture.length * i / delta_steps), y(behind[static_cast<std::size_t>(i)]));
+  pen.stroke(points, {profile_colour, 1.6, 5});
 }
 
 void draw_circle(Pen& pen, const RacePicture& picture) {
@@ -124,7 +116,6 @@ void draw_key(Pen& pen, const RacePicture& picture) {
   };
   entry(picture.lap.name, {lap_colour, 2});
   entry(picture.profile.name, {profile_colour, 1.6, 5});
-  if (picture.other) entry(picture.other->name, {other_colour, 1.6});
 }
 
 }  // namespace

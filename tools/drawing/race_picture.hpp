@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "slalom/evaluation/race.hpp"
@@ -16,11 +15,10 @@ struct NamedLap {
 
 /// The content of a picture of a lap against the clock.
 struct RacePicture {
-  NamedLap lap;                   ///< the lap that is shown
-  NamedLap profile;               ///< the lap of the course's speed profile
-  std::optional<NamedLap> other;  ///< a lap of another run
-  double length = 0;              ///< m, of the lap
-  double grip = 0;                ///< m/s^2, radius of the friction circle
+  NamedLap lap;       ///< the lap that is shown
+  NamedLap profile;   ///< the lap of the course's speed profile
+  double length = 0;  ///< m, of the lap
+  double grip = 0;    ///< m/s^2, radius of the friction circle
   std::string title, facts;
 };
 

@@ -81,7 +81,6 @@ void draw_marks(Pen& pen, const Panel& panel, const Axis& axis, double y, const 
     pen.box(axis.from, y - thick / 2, std::max(1.0, x - axis.from), thick, light, fill, 1.3);
   pen.line(axis(span.low), y, axis(span.high), y, fill, 1.8);
   for (const double end : {span.low, span.high}) pen.line(axis(end), y - 4, axis(end), y + 4, fill, 1.8);
-  if (panel.kind == Panel::Kind::spans) pen.disc(x, y, 4.6, fill);
 }
 
 void draw_panel(Pen& pen, const Panel& panel, double left, std::size_t rows) {
@@ -132,7 +131,7 @@ void draw_name(Pen& pen, const std::string& name, double middle) {
 
 void draw_key(Pen& pen, const RowChart& chart) {
   double x = margin;
-  for (const auto& [words, fill, light] : {std::tuple(chart.our_key, ours_fill, ours_light),
+  for (const auto& [words, fill, light] : {std::tuple(std::string("Slalom"), ours_fill, ours_light),
                                            std::tuple(chart.their_key, theirs_fill, theirs_light)}) {
     pen.box(x, 15, 18, 11, light, fill, 1.3);
     pen.text(x + 25, 25, 13, words, ink);
@@ -147,9 +146,9 @@ Drawing draw_chart(const RowChart& chart) {
   Drawing drawing;
   drawing.width = 2 * margin + names_width + static_cast<double>(panels) * panel_width +
                   static_cast<double>(panels - 1) * panel_gap;
-  const double heading = chart.title.empty() ? 0 : 44;
+  constexpr double heading = 44;
   drawing.height = heading + top + row_height * static_cast<double>(rows) + bottom;
-  drawing.draw = [chart, rows, panels, heading, width = drawing.width](Pen& pen) {
+  drawing.draw = [chart, rows, panels, width = drawing.width](Pen& pen) {
     pen.text(margin, 30, 17, chart.title, ink, 0, true);
     pen.text(width - margin, 30, 12, chart.note, faint_ink, 1);
     pen.shift(0, heading);

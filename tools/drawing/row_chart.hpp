@@ -26,7 +26,6 @@ struct Panel {
     boxes,  ///< quartiles, whiskers to 1.5 times their distance, values beyond as points, mean as a diamond;
             ///< logarithmic
     bars,   ///< from 0, with their spans; linear
-    spans,  ///< a point with its span; logarithmic
   };
   std::string title, axis;
   Kind kind = Kind::boxes;
@@ -37,8 +36,8 @@ struct Panel {
 struct RowChart {
   std::vector<std::string> names;
   std::vector<Panel> panels;
-  std::string our_key = "Slalom", their_key;  ///< names of the two colours; no key without `their_key`
-  std::string title, note;                    ///< lines above the chart; none if there is no title
+  std::string title, note;  ///< lines above the chart
+  std::string their_key;    ///< name of the other colour; no key without it
 };
 
 Drawing draw_chart(const RowChart& chart);

@@ -54,42 +54,6 @@ std::string listed(const std::vector<int>& laps) {
   return text;
 }
 
-void print_table(const Evaluated& evaluated, std::FILE* out) {
-  TextTable table({"<method", "<scenario", "laps", "success, %", "collisions", "collision rate, %",
-                   "lap time, s", "MS", "solve, ms"});
-  for (const ExperimentResult& r : evaluated.results) {
-    const Experiment& e = evaluated.experiment(r.experiment);
-    table.add({e.label(), e.scenario, std::to_string(r.laps), number_cell(100 * r.success_rate, 1),
-               std::to_string(r.collisions), rate_cell(r.collision_rate, r.collision_rate_ci),
-               mean_cell(r.time_mean, r.time_ci, r.finished), mean_cell(r.ms_mean, r.ms_ci, r.laps),
-               number_cell(r.solve_p50)});
-  }
-  table.print(out);
-  std::fprintf(
-      out,
-      "lap time: of finished laps. MS: mean cost of the control sequences sent in a lap, lower is better. In "
-      "brackets: 95 %% intervals, from %d laps on. Solve: median over a lap.\n",
-      fewest_laps);
-}
-
-void print_comparisons(const Evaluated& evaluated, std::FILE* out) {
-  const auto pairs = evaluated.against_reference();
-  if (pairs.empty()) return;
-  std::fprintf(out, "\n");
-  TextTable table({"<paired by lap", "<scenario", "laps", "only one succeeds", "<p", "<collisions, p",
-                   "lap time, s", "<p", "MS", "<p", "<compared with"});
-  for (const PairedComparison& c : pairs) {
-    const Experiment &e = evaluated.experiment(c.a), &reference = evaluated.experiment(c.b);
-    table.add({e.label(), e.scenario, std::to_string(c.laps),
-               formatted("%d : %d", c.only_a_succeeds, c.only_b_succeeds), p_text(c.success_p),
-               p_text(c.collisions_p), formatted("%+.3f", c.time_difference), p_text(c.time_p),
-               formatted("%+.3f", c.ms_difference), p_text(c.ms_p), reference.label()});
-  }
-  table.print(out);
-  if (std::any_of(pairs.begin(), pairs.end(), [](const auto& c) { return !c.ms_p; }))
-    std::fprintf(out, "MS is not tested where the weights of the two differ.\n");
-}
-
 void print_tracking(const std::string& label, const TrackingFigures& t, int laps, std::FILE* out) {
   const auto percent = [](int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; };
   std::fprintf(out,
@@ -178,9 +142,46 @@ Json Evaluated::summary() const {
           {"comparisons", pairs}};
 }
 
+TextTable results_table(const Evaluated& evaluated) {
+  TextTable table({"<method", "<scenario", "laps", "success, %", "collisions", "collision rate, %",
+                   "lap time, s", "MS", "solve, ms"});
+  for (const ExperimentResult& r : evaluated.results) {
+    const Experiment& e = evaluated.experiment(r.experiment);
+    table.add({e.label(), e.scenario, std::to_string(r.laps), number_cell(100 * r.success_rate, 1),
+               std::to_string(r.collisions), rate_cell(r.collision_rate, r.collision_rate_ci),
+               mean_cell(r.time_mean, r.time_ci, r.finished), mean_cell(r.ms_mean, r.ms_ci, r.laps),
+               number_cell(r.solve_p50)});
+  }
+  return table;
+}
+
+TextTable pairs_table(const Evaluated& evaluated) {
+  TextTable table({"<paired by lap", "<scenario", "laps", "only one succeeds", "<p", "<collisions, p",
+                   "lap time, s", "<p", "MS", "<p", "<compared with"});
+  for (const PairedComparison& c : evaluated.against_reference()) {
+    const Experiment &e = evaluated.experiment(c.a), &reference = evaluated.experiment(c.b);
+    table.add({e.label(), e.scenario, std::to_string(c.laps),
+               formatted("%d : %d", c.only_a_succeeds, c.only_b_succeeds), p_text(c.success_p),
+               p_text(c.collisions_p), formatted("%+.3f", c.time_difference), p_text(c.time_p),
+               formatted("%+.3f", c.ms_difference), p_text(c.ms_p), reference.label()});
+  }
+  return table;
+}
+
 void print_results(const Evaluated& evaluated, std::FILE* out) {
-  print_table(evaluated, out);
-  print_comparisons(evaluated, out);
+  results_table(evaluated).print(out);
+  std::fprintf(
+      out,
+      "lap time: of finished laps. MS: mean cost of the control sequences sent in a lap, lower is better. In "
+      "brackets: 95 %% intervals, from %d laps on. Solve: median over a lap.\n",
+      fewest_laps);
+  if (const TextTable pairs = pairs_table(evaluated); !pairs.empty()) {
+    std::fprintf(out, "\n");
+    pairs.print(out);
+    const auto all = evaluated.against_reference();
+    if (std::any_of(all.begin(), all.end(), [](const auto& c) { return !c.ms_p; }))
+      std::fprintf(out, "MS is not tested where the weights of the two differ.\n");
+  }
   for (const ExperimentResult& r : evaluated.results)
     if (r.tracking) print_tracking(evaluated.experiment(r.experiment).label(), *r.tracking, r.laps, out);
   for (const ExperimentResult& r : evaluated.results) {

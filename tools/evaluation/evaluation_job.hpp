@@ -8,6 +8,7 @@
 #include "slalom/evaluation/results.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/scenario/scenario.hpp"
+#include "tools/terminal/text_table.hpp"
 
 /// Shared by `eval` and `reproduce`: an evaluation from its arguments to laps.csv and summary.json.
 namespace slalom::tools {
@@ -63,7 +64,11 @@ evaluation::Evaluation make_evaluation(const EvaluationArguments& arguments, con
 bool run_evaluation(const EvaluationArguments& arguments,
                     const std::vector<evaluation::Experiment>& experiments, Evaluated& evaluated);
 
-/// Prints a table of the results.
+/// A row an experiment.
+TextTable results_table(const Evaluated& evaluated);
+/// A row a pair of `against_reference`.
+TextTable pairs_table(const Evaluated& evaluated);
+/// Prints both tables, and what has none.
 void print_results(const Evaluated& evaluated, std::FILE* out);
 
 }  // namespace slalom::tools

@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "json/json.hpp"
-#include "slalom/core/error.hpp"
-#include "slalom/core/option_access.hpp"
-#include "slalom/core/read_file.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/terminal/text_table.hpp"
 
@@ -18,10 +14,6 @@ namespace {
 using evaluation::RacingEnd;
 using evaluation::RacingLap;
 using evaluation::RacingSample;
-
-constexpr int along_steps = 100;
-constexpr double max_sample = 1e9;         // largest number of a sample that is read
-constexpr double length_tolerance = 1e-6;  // share of the length
 
 /// A number of a sample, as it is named and rounded in results.
 struct SampleColumn {
@@ -69,36 +61,6 @@ Json timed_json(const RacingLap& lap, double grip) {
   visit_lap(lap, grip,
             [&](const auto& value, const evaluation::Figure& figure) { json[figure.name] = value; });
   return json;
-}
-
-/// The lap that `best_lap` of the statistics `key` names; none if the run has no such lap.
-std::optional<RacingLap> best_of(const Json& run, const char* key) {
-  const int which = member<int>(member(run, key), "best_lap");
-  if (which == 0) return std::nullopt;
-  const Json& laps = member(run, "laps");
-  if (which < 1 || which > static_cast<int>(laps.size()))
-    throw std::invalid_argument("best_lap: " + std::to_string(which) + " must be the number of a lap");
-  const Json& samples = member(laps.at(static_cast<std::size_t>(which - 1)), "samples");
-  RacingLap read;
-  read.standing = std::string_view(key) == "standing";
-  read.sector.fill(std::numeric_limits<double>::quiet_NaN());
-  read.samples.resize(member(samples, "distance_m").size());
-  for (const SampleColumn& column : sample_columns) {
-    const Json& values = member(samples, column.key);
-    if (!values.is_array() || values.size() != read.samples.size())
-      throw std::invalid_argument(std::string(column.key) + ": has " + std::to_string(values.size()) +
-                                  " values, must have " + std::to_string(read.samples.size()) +
-                                  " as distance_m");
-    for (std::size_t i = 0; i < read.samples.size(); ++i) {
-      const double value = values[i].is_number() ? values[i].get<double>() : max_sample + 1;
-      if (!(std::abs(value) <= max_sample))
-        throw std::invalid_argument(std::string(column.key) + ": " + json_text(values[i]) +
-                                    " must be a number of at most 1e9 in magnitude");
-      read.samples[i].*column.value = value;
-    }
-  }
-  if (read.samples.size() < 2) throw std::invalid_argument("samples: at least 2 are needed");
-  return read;
 }
 
 constexpr int parts = 10;  // parts of the way in the table of a lap
@@ -164,45 +126,6 @@ Json race_json(const RaceResult& race) {
   return json;
 }
 
-Json along_json(const RaceResult& race, const RacingLap& lap, const RacingLap* other) {
-  std::vector<double> distances, behind_profile, behind_other;
-  for (int i = 0; i <= along_steps; ++i) {
-    const double distance = race.length * i / along_steps;
-    distances.push_back(distance);
-    behind_profile.push_back(evaluation::time_behind(lap.samples, profile_of(race, lap).samples, distance));
-    if (other) behind_other.push_back(evaluation::time_behind(lap.samples, other->samples, distance));
-  }
-  Json json{{"lap", static_cast<int>(&lap - race.laps.data()) + 1},
-            {"distance_m", distances},
-            {"behind_profile_s", behind_profile}};
-  if (other) json["behind_other_s"] = behind_other;
-  return json;
-}
-
-OtherRun read_run(const std::string& file, const Json& settings, double length) {
-  OtherRun other{file, {}, {}};
-  try {
-    const Json run = parse_json(read_file(file, max_json_bytes));
-    for (const char* key : {"course", "start"}) {
-      const Json &theirs = member(member(run, "settings"), key), &ours = settings.at(key);
-      if (!(theirs == ours))
-        throw IoError(file, 0,
-                      std::string("settings.") + key + ": " + json_text(theirs) + " must be " +
-                          json_text(ours) + ", as in this run");
-    }
-    if (const double theirs = member<double>(run, "length_m");
-        !(std::abs(theirs - length) <= length_tolerance * length))
-      throw IoError(file, 0,
-                    "length_m: " + to_text(theirs) + " must be " + to_text(length) + ", as in this run");
-    other.flying = best_of(run, "flying");
-    other.standing = best_of(run, "standing");
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file, 0, std::string("must be a result of slalom race --json: ") + error.what());
-  }
-  if (!other.flying && !other.standing) throw IoError(file, 0, "has no completed lap");
-  return other;
-}
-
 void print_lap_header(std::FILE* out, double grip) {
   std::fprintf(out, "%-18s %9s", "lap", "time, s");
   for (int i = 1; i <= evaluation::racing_sectors; ++i)
@@ -239,24 +162,17 @@ void print_statistics(std::FILE* out, const RaceResult& race) {
   table.print(out);
 }
 
-void print_along(std::FILE* out, const RaceResult& race, const RacingLap& lap, const RacingLap* other,
-                 const std::string& other_name) {
+void print_along(std::FILE* out, const RaceResult& race, const RacingLap& lap) {
   const RacingLap& profile = profile_of(race, lap);
-  std::fprintf(out, "\n%s along the way\n%12s %12s %13s %18s", lap_words(race, lap).c_str(), "distance, m",
+  std::fprintf(out, "\n%s along the way\n%12s %12s %13s %18s\n", lap_words(race, lap).c_str(), "distance, m",
                "speed, m/s", "profile, m/s", "behind profile, s");
-  if (other) std::fprintf(out, "   behind %s, s", other_name.c_str());
-  std::fprintf(out, "\n");
   for (int i = 1; i <= parts; ++i) {
     const double distance = race.length * i / parts;
     const auto at = [&](const RacingLap& each) {
       return evaluation::at_distance(each.samples, distance).value_or(each.samples.back());
     };
-    std::fprintf(out, "%12.1f %12.2f %13.2f %18.3f", distance, at(lap).speed, at(profile).speed,
+    std::fprintf(out, "%12.1f %12.2f %13.2f %18.3f\n", distance, at(lap).speed, at(profile).speed,
                  evaluation::time_behind(lap.samples, profile.samples, distance));
-    if (other)
-      std::fprintf(out, " %+*.3f", static_cast<int>(other_name.size()) + 11,
-                   evaluation::time_behind(lap.samples, other->samples, distance));
-    std::fprintf(out, "\n");
   }
 }
 

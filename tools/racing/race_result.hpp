@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,20 +56,6 @@ const evaluation::RacingLap* best_lap(const RaceResult& race);
 /// (statistics), and `laps`, each with its samples.
 nlohmann::ordered_json race_json(const RaceResult& race);
 
-/// The way of a lap in equal steps, with the time behind the profile and behind `other`, which may be null.
-nlohmann::ordered_json along_json(const RaceResult& race, const evaluation::RacingLap& lap,
-                                  const evaluation::RacingLap* other);
-
-/// The best laps of another run on the same course.
-struct OtherRun {
-  std::string file;
-  std::optional<evaluation::RacingLap> flying, standing;
-};
-
-/// Reads a result of `slalom race --json`. Throws IoError if the file is not one, if it has no completed lap,
-/// or if its course, start or length differs from that of `settings` and `length` (m).
-OtherRun read_run(const std::string& file, const nlohmann::ordered_json& settings, double length);
-
 // Tables.
 
 /// The names of the columns, with the friction circle (m/s^2).
@@ -80,10 +65,8 @@ void print_lap(std::FILE* out, const std::string& label, const evaluation::Racin
 /// A table of flying laps and standing starts: completed laps, mean, best, sum of the best sectors, how much
 /// the best takes longer than the profile, grip used.
 void print_statistics(std::FILE* out, const RaceResult& race);
-/// The way in ten parts: speeds of a lap and of the profile, and times behind the profile and behind `other`
-/// (may be null), which is called `other_name`.
-void print_along(std::FILE* out, const RaceResult& race, const evaluation::RacingLap& lap,
-                 const evaluation::RacingLap* other, const std::string& other_name);
+/// The way in ten parts: speeds of a lap and of the profile, and the time behind the profile.
+void print_along(std::FILE* out, const RaceResult& race, const evaluation::RacingLap& lap);
 
 /// A result as a sentence: "lap 3 (flying) 12.345 s".
 std::string lap_words(const RaceResult& race, const evaluation::RacingLap& lap);

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 #include "slalom/evaluation/evaluation.hpp"
 #include "slalom/evaluation/grid_race.hpp"
@@ -32,19 +31,13 @@ class ProgressLine {
   void write(const std::string& text);
 
   std::FILE* stream_;
-  bool terminal_, colour_ = false;
-  bool shown_ = false;
+  bool terminal_, shown_ = false;
   int tenth_ = -1;  ///< tenth of an evaluation that was printed last
   std::chrono::steady_clock::time_point next_{};
 };
 
-/// The state of an evaluation in at most `columns - 1` characters: bar, laps, time left. Until the first lap
-/// is finished there is no estimate of the time left, and after the last lap none is needed.
-std::string evaluation_text(const evaluation::EvaluationProgress& progress, int columns, bool colour);
-
-/// The state of a lap or race in at most `columns - 1` characters: its name, a bar that is full to the share
-/// `progress` in [0, 1], and as many of `parts` as there is room for, the first ones first.
-std::string lap_text(const std::string& name, double progress, const std::vector<std::string>& parts,
-                     int columns, bool colour);
+/// Laps and time left. Until the first lap is finished there is no estimate of it, and after the last lap
+/// none is needed.
+std::string evaluation_text(const evaluation::EvaluationProgress& progress);
 
 }  // namespace slalom::tools

@@ -26,6 +26,33 @@ void TextTable::print(std::FILE* out) const {
   }
 }
 
+std::string TextTable::html() const {
+  std::string html = "<table>\n";
+  for (const auto& row : rows_) {
+    const bool is_head = &row == &rows_.front();
+    const std::string tag = is_head ? "th" : "td";
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool words = rows_.front()[i][0] == '<';
+      html += "<" + tag + (words ? " class=\"words\">" : ">") + escaped(row[i].substr(is_head && words)) +
+              "</" + tag + ">";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '&'   ? "&amp;"
+           : c == '<' ? "&lt;"
+           : c == '>' ? "&gt;"
+           : c == '"' ? "&quot;"
+                      : std::string(1, c);
+  return out;
+}
+
 std::string number_cell(double value, int digits) {
   return std::isfinite(value) ? formatted("%.*f", digits, value) : "-";
 }

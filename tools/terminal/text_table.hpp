@@ -21,11 +21,15 @@ class TextTable {
   /// Adds a row with a cell for each column.
   void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   void print(std::FILE* out) const;
+  std::string html() const;
+  bool empty() const { return rows_.size() < 2; }
 
  private:
   std::vector<std::vector<std::string>> rows_;  ///< the heads first
 };
 
+/// A text as HTML shows it.
+std::string escaped(const std::string& text);
 /// "12.346"; "-" if it is not finite.
 std::string number_cell(double value, int digits = 3);
 /// "0.412 (0.398-0.427)", with an interval of 95 %; without it below fewest_laps, "-" for what is not a

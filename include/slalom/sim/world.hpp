@@ -126,7 +126,7 @@ class World {
   /// exist.
   void set_state(std::size_t car, const CarState& state);
 
-  /// Moves by one time step. Command i is for driven car i; cars without one coast as configured.
+  /// Moves by one time step. Command i is for driven car i; cars without one roll on.
   StepStatus step(std::span<const Command> commands) noexcept;
 
   /// Moves by one time step and puts the driven cars into these states, for replays. Finds collisions and

@@ -15,7 +15,6 @@
 #include "slalom/vehicle/racing/race_course.hpp"
 #include "support/temporary_folder.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/racing/race_result.hpp"
 #include "tools/recording/driven_recording.hpp"
 #include "vehicle/course_folder.hpp"
 #include "view/recording/replay.hpp"
@@ -62,7 +61,6 @@ const FileReader readers[] = {
      [](const fs::path& pipe) { evaluation::read_rows(pipe, no_experiments, true, 0); }},
     {"Settings", "settings.json", [](const fs::path& pipe) { load_evaluation(pipe.parent_path()); }},
     {"LapLog", "log.csv", [](const fs::path& pipe) { evaluation::read_lap_log(pipe); }},
-    {"RaceResult", "race.json", [](const fs::path& pipe) { read_run(pipe.string(), Json::object(), 1); }},
     {"DrivenSamples", "lap.mcap", [](const fs::path& pipe) { read_drive(pipe.string()); }},
     {"Mcap", "lap.mcap", [](const fs::path& pipe) { view::load_replay(pipe.string()); }}};
 
