@@ -67,13 +67,10 @@ RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
   const auto read = vehicle::read_centre_line(arguments.input);
   if (read.left.empty())
     throw IoError(arguments.input, 0, "has no widths; give a map, and this file as --line");
-  double length = 0;
-  for (std::size_t i = 1; i < read.line.points.size(); ++i)
-    length += std::hypot(read.line.points[i].x - read.line.points[i - 1].x,
-                         read.line.points[i].y - read.line.points[i - 1].y);
-  const auto corridor = vehicle::corridor_from_widths(
-      read.line.points, read.left, read.right, read.line.closed, vehicle::centre_line_step(car, length));
-  RaceCourse made = vehicle::race_course(corridor, car, options);
+  const double step = centre_line_step(car, vehicle::length({read.line.points, {}, {}, {}, false}));
+  RaceCourse made = vehicle::race_course(
+      vehicle::corridor_from_widths(read.line.points, read.left, read.right, read.line.closed, step), car,
+      options);
   if (!read.line.note.empty()) made.notes.push_back(arguments.input + ": " + read.line.note);
   return made;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "vehicle/racing/free_space.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -25,23 +26,6 @@ void lower_speeds(Path& path, const PathGeometry& geometry, const SpeedLimits& l
   for (const auto& point : path) speeds.push_back(point.speed);
   speeds = feasible_speeds(speeds, geometry.curvature, geometry.step, geometry.closed, limits);
   for (std::size_t i = 0; i < speeds.size(); ++i) path[i].speed = speeds[i];
-}
-
-/// m, from a point to the nearest occupied cell, at most `reach`.
-double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point, double reach) {
-  const maps::Point at = maps::inverse_transform(map.origin, point);
-  const double column = at.x / map.resolution, row = at.y / map.resolution;
-  const int cells = saturate_cast<int>(std::ceil(reach / map.resolution)) + 1;
-  const int x0 = saturate_cast<int>(std::floor(column)), y0 = saturate_cast<int>(std::floor(row));
-  double nearest = reach;
-  for (int y = y0 - cells; y <= y0 + cells; ++y)
-    for (int x = x0 - cells; x <= x0 + cells; ++x) {
-      if (!map.contains(x, y) || map.at(x, y) != maps::Occupancy::occupied) continue;
-      const double dx = std::max({x - column, column - (x + 1), 0.0});
-      const double dy = std::max({y - row, row - (y + 1), 0.0});
-      nearest = std::min(nearest, std::hypot(dx, dy) * map.resolution);
-    }
-  return nearest;
 }
 
 /// Collects stretches from the pieces of a course, in order.
@@ -89,7 +73,7 @@ void check_walls(const Course& course, const PathGeometry& path, const CourseChe
     for (int k = 0; k < parts; ++k) {
       const double share = (k + 0.5) / parts, part = path.step[i] / parts;
       const maps::Point place{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
-      const double distance = distance_to_wall(course.map, place, needed);
+      const double distance = detail::distance_to_wall(course.map, place, needed, false);
       check.min_distance = std::min(check.min_distance, distance);
       stretches.add(begin, begin + part, place, distance, distance < needed);
       begin += part;

@@ -75,8 +75,8 @@ Curve normals(const Curve& curve, bool closed) {
     const auto row = static_cast<std::ptrdiff_t>(i);
     const maps::Point d =
         curve[within(row + 1, curve.size(), closed)] - curve[within(row - 1, curve.size(), closed)];
-    const double size = std::hypot(d.x, d.y);
-    result.push_back({-d.y / size, d.x / size});
+    const double size = std::hypot(d.x, d.y), share = size > 0 ? 1 / size : 0;
+    result.push_back({-d.y * share, d.x * share});
   }
   return result;
 }

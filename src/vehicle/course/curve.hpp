@@ -56,14 +56,15 @@ Curve resampled(const Curve& curve, int count);
 /// The signed curvatures (1/m) of a closed curve: of circles through points `reach` rows before and after.
 std::vector<double> curvature(const Curve& curve, int reach);
 
-/// Unit normals to the left, from the points before and after.
+/// Unit normals to the left, from the points before and after; 0 where those are the same.
 Curve normals(const Curve& curve, bool closed = true);
 
 /// Convolves the values at the points of a curve, whose steps are equal, with a Gaussian of standard
 /// deviation `width`, in the unit of `step`. The ends of an open curve keep their values: near them the
-/// weights reach equally far to both sides.
+/// weights reach equally far to both sides. A width of 0 changes nothing.
 template <class Value>
 std::vector<Value> smoothed(const std::vector<Value>& values, bool closed, double step, double width) {
+  if (!(width > 0)) return values;
   const auto n = static_cast<std::ptrdiff_t>(values.size());
   const auto reach = std::min(n / 2, saturate_cast<std::ptrdiff_t>(std::ceil(4 * width / step)));
   std::vector<double> weight, sum;  // sum: of the weights up to each one, on both sides

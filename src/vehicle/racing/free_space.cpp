@@ -39,6 +39,24 @@ int fill_spots(maps::OccupancyGrid& map, double largest) {
 
 }  // namespace
 
+double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point, double reach,
+                        bool unknown_is_wall) {
+  const maps::Point at = maps::inverse_transform(map.origin, point);
+  const double column = at.x / map.resolution, row = at.y / map.resolution;
+  const int cells = saturate_cast<int>(std::ceil(reach / map.resolution)) + 1;
+  const int x0 = saturate_cast<int>(std::floor(column)), y0 = saturate_cast<int>(std::floor(row));
+  double nearest = reach / map.resolution;
+  for (int y = y0 - cells; y <= y0 + cells; ++y)
+    for (int x = x0 - cells; x <= x0 + cells; ++x) {
+      if (!map.contains(x, y) || map.at(x, y) == maps::Occupancy::free) continue;
+      if (!unknown_is_wall && map.at(x, y) != maps::Occupancy::occupied) continue;
+      const double dx = std::max({x - column, column - (x + 1), 0.0});
+      const double dy = std::max({y - row, row - (y + 1), 0.0});
+      if (dx < nearest && dy < nearest) nearest = std::min(nearest, std::hypot(dx, dy));
+    }
+  return nearest * map.resolution;
+}
+
 FreeSpace::FreeSpace(const maps::OccupancyGrid& map, double spot)
     : map_(map), spots_(fill_spots(map_, spot)), field_(maps::distance_transform(map_, true)) {}
 
@@ -46,7 +64,7 @@ double FreeSpace::clearance(const maps::Point& point) const {
   const maps::Point at = cell(point);
   if (!on_map(at)) return -1;
   const double centre = to_centre(at);  // infinite without any wall
-  return std::isfinite(centre) ? to_edge(at, centre + map_.resolution) : centre;
+  return std::isfinite(centre) ? distance_to_wall(map_, point, centre + map_.resolution, true) : centre;
 }
 
 bool FreeSpace::is_clear(const maps::Point& point, double keep) const {
@@ -55,7 +73,7 @@ bool FreeSpace::is_clear(const maps::Point& point, double keep) const {
   // Half a diagonal lies between centre and corner, and as much between a point and the centre of its cell.
   const double centre = to_centre(at), doubt = 1.5 * map_.resolution;
   if (centre - doubt >= keep) return true;
-  return centre + doubt >= keep && to_edge(at, keep + map_.resolution) >= keep;
+  return centre + doubt >= keep && distance_to_wall(map_, point, keep + map_.resolution, true) >= keep;
 }
 
 maps::Point FreeSpace::centre(int column, int row) const {
@@ -79,19 +97,6 @@ double FreeSpace::to_centre(const maps::Point& at) const {
   };
   return (1 - t) * ((1 - s) * distance(left, low) + s * distance(left + 1, low)) +
          t * ((1 - s) * distance(left, low + 1) + s * distance(left + 1, low + 1));
-}
-
-double FreeSpace::to_edge(const maps::Point& at, double reach) const {
-  const int cells = saturate_cast<int>(std::ceil(reach / map_.resolution)) + 1;
-  const int x0 = saturate_cast<int>(std::round(at.x)), y0 = saturate_cast<int>(std::round(at.y));
-  double nearest = reach / map_.resolution;
-  for (int y = y0 - cells; y <= y0 + cells; ++y)
-    for (int x = x0 - cells; x <= x0 + cells; ++x) {
-      if (!map_.contains(x, y) || map_.at(x, y) == maps::Occupancy::free) continue;
-      const double dx = std::max(0.0, std::abs(at.x - x) - 0.5), dy = std::max(0.0, std::abs(at.y - y) - 0.5);
-      if (dx < nearest && dy < nearest) nearest = std::min(nearest, std::hypot(dx, dy));
-    }
-  return nearest * map_.resolution;
 }
 
 }  // namespace slalom::vehicle::detail

@@ -6,6 +6,10 @@
 
 namespace slalom::vehicle::detail {
 
+/// m, from a point to the edge of the nearest occupied cell, or also of an unknown one, at most `reach`.
+double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point, double reach,
+                        bool unknown_is_wall);
+
 /// The space of a map in which a car can drive.
 class FreeSpace {
  public:
@@ -36,9 +40,6 @@ class FreeSpace {
 
   /// m, from a point, in cells, to the centre of the nearest wall cell, between the values of cells.
   double to_centre(const maps::Point& at) const;
-
-  /// m, from a point, in cells, to the nearest wall cell, at most `reach` (m).
-  double to_edge(const maps::Point& at, double reach) const;
 
   maps::OccupancyGrid map_;
   int spots_ = 0;

@@ -19,7 +19,8 @@ struct CorridorMeasure {
 Corridor measured_corridor(const FreeSpace& space, const std::vector<maps::Point>& line, bool closed,
                            const CorridorMeasure& measure);
 
-/// The same along a line in the middle between the walls. `line` gives the way, and may be rough.
+/// The same along a line in the middle between the walls. `line` gives the way, and may be rough. Throws
+/// std::invalid_argument if the corridor is closed, and at least half of the points are not in free space.
 Corridor centred_corridor(const FreeSpace& space, const std::vector<maps::Point>& line, bool closed,
                           const CorridorMeasure& measure);
 

@@ -168,11 +168,14 @@ void check(const RaceCourseOptions& options, const RacingCar& car) {
     throw std::invalid_argument("reverse: must not be set with a start pose, which sets the direction");
 }
 
-void check(const GuideLine& guide) {
+void check(const GuideLine& guide, const RacingCar& car) {
   if (guide.points.size() < 4)
     throw std::invalid_argument("line: " + std::to_string(guide.points.size()) +
                                 " points; at least 4 are needed");
   maps::check_points("line", guide.points);
+  if (const double length = detail::length(guide.points, guide.closed); !(length >= car.wheelbase))
+    throw std::invalid_argument("line: " + to_text(length) + " m long; must be at least " +
+                                to_text(car.wheelbase) + " m, the wheelbase of the car");
 }
 
 /// The size of the cells (m) of a drawn map: as given, or larger if it would have more than `most_cells`.
@@ -241,7 +244,7 @@ double centre_line_step(const RacingCar& car, double length) {
 RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, const RaceCourseOptions& options,
                        const GuideLine* guide) {
   check(options, car);
-  if (guide) check(*guide);
+  if (guide) check(*guide, car);
   count(car.width, map.resolution, most_cells_of_car, "map: the width of the car");
   RaceCourse course;
   course.map = map;

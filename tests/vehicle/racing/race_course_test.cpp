@@ -110,9 +110,7 @@ TEST(RaceCourse, AStartPoseSetsPlaceAndDirection) {
 TEST(RaceCourse, ReverseIsTheOtherWayRound) {
   maps::OccupancyGrid map = rectangular_course();
   map.origin.x -= 8;
-  RaceCourseOptions options;
-  options.reverse = true;
-  const RaceCourse course = race_course(map, RacingCar{}, options);
+  const RaceCourse course = race_course(map, RacingCar{}, {.start = {}, .reverse = true});
   EXPECT_LT(signed_area(course.corridor.centre_line), 0);
   EXPECT_NEAR(std::abs(course.start.yaw), testing::pi, 1e-9) << "the car stands at the origin, turned round";
 }
@@ -190,6 +188,21 @@ TEST(RaceCourse, AnOpenLineIsDrivenFromEndToEnd) {
   EXPECT_GT(least(course.distance), wall_distance(RacingCar{}, 2) - 0.02);
   EXPECT_NEAR(length(course.corridor), 15.6, 1);
   EXPECT_NEAR(course.start.y, 2.5, 0.5);
+}
+
+TEST(RaceCourse, ALineThatIsNotOnTheMapIsRefused) {
+  const auto makes = [](double scale, double by) {
+    GuideLine guide{{{0, 0}, {15, 0.2}, {15.5, 8}, {7, 8}, {0, 7.5}}};
+    for (maps::Point& point : guide.points) point = {scale * point.x + by, scale * point.y};
+    return message_of([&] { race_course(rectangular_course(), RacingCar{}, {}, &guide); });
+  };
+  EXPECT_EQ(makes(1, 0), "accepted");
+  EXPECT_EQ(makes(1, 20),
+            "line: 0 of its 5 points are in free space of the map; it reaches from (20.00, 0.00) to (35.50, "
+            "8.00), and the map from (-2.98, -2.98) to (18.98, 10.98)");
+  for (const double scale : {0.0, 1e-12, 1e-3, 1e5})
+    for (const double by : {0.0, 4.0, 16.0, 1e6})
+      EXPECT_NE(makes(scale, by), "accepted") << scale << " " << by;
 }
 
 TEST(RaceCourse, MakesTheMapOfACorridor) {
