@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/numbers/count.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -17,7 +17,7 @@ class Window {
          const PassabilityOptions& options)
       : track_(track), bodies_(bodies), radius_(options.radius), reach_(options.window), centre_(centre) {
     resolution_ = track.grid().resolution;
-    half_ = saturate_cast<int>(std::ceil(options.window / resolution_));
+    half_ = static_cast<int>(count(options.window, resolution_, 1e4, "passability: the window"));
     side_ = 2 * half_ + 1;
     seen_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
   }
