@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "view/recording/encodings.hpp"
-
 namespace slalom::view {
 namespace {
 
@@ -142,14 +140,10 @@ void HttpConnection::answer() {
   if (verdict.status == 200) {
     const Resource& resource = all_.resources.at(path_of(target));
     response_.set(http::field::content_type, resource.type);
-    body = resource.body;
-    const std::string_view encodings = view_of(request[http::field::accept_encoding]);
-    const bool plain = encodings.find("gzip") == std::string_view::npos ||
-                       encodings.find("gzip;q=0") != std::string_view::npos;
-    if (resource.is_gzip && plain) body = plain_ = gunzip(resource.body);
-    if (resource.is_gzip && !plain) response_.set(http::field::content_encoding, "gzip");
+    if (resource.is_gzip) response_.set(http::field::content_encoding, "gzip");
     // The page declares its policy in its head, but browsers take this part of it from the header alone.
     response_.set("Content-Security-Policy", "frame-ancestors " + all_.options.framed_by);
+    body = resource.body;
   } else {
     ++all_.refused;
     response_.set(http::field::content_type, "text/plain; charset=utf-8");

@@ -69,8 +69,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_;
   http::request_parser<http::empty_body> parser_;
-  std::string plain_;                                     // the page, for a client that takes no gzip
-  http::response<http::span_body<const char>> response_;  // views of the resources, or of `plain_`
+  http::response<http::span_body<const char>> response_;  // views of the resources
   std::array<char, 1024> rest_{};
   bool is_handed_over_ = false;
 };

@@ -36,10 +36,9 @@ inline constexpr const char* notebooks = "http://localhost:* http://127.0.0.1:* 
 
 /// A resource that is served under a path.
 struct Resource {
-  std::string type;  ///< Content-Type
-  std::string body;  ///< content
-  bool is_gzip =
-      false;  ///< whether the body is compressed with gzip; clients that do not ask for it get it plain
+  std::string type;      ///< Content-Type
+  std::string body;      ///< content
+  bool is_gzip = false;  ///< whether the body is compressed with gzip, which every browser accepts
 };
 
 /// A message to clients; shared, so that one copy serves all.
