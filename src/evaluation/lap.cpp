@@ -11,7 +11,6 @@
 #include "evaluation/driver/car_driver.hpp"
 #include "evaluation/lap_setup.hpp"
 #include "evaluation/overtaking/overtaking_meter.hpp"
-#include "slalom/evaluation/passability.hpp"
 #include "slalom/sim/shapes.hpp"
 
 namespace slalom::evaluation {
@@ -61,11 +60,6 @@ struct LapDrive::State {
     result.min_clearance = std::numeric_limits<double>::infinity();
     const sim::World& world = drive.world;
     if (world.cars() > 1) overtaking.emplace(world);
-    std::vector<sim::Box> parked;
-    for (std::size_t i = world.cars(); i < world.bodies(); ++i) parked.push_back(world.outline(i));
-    const double radius = 0.5 * world.options().car.width;
-    result.impassable =
-        static_cast<int>(impassable_obstacles(world.track(), parked, {.radius = radius}).size());
   }
 
   double progress() const noexcept { return std::clamp(drive.world.laps(0)->progress() / length, 0.0, 1.0); }

@@ -32,11 +32,6 @@ sim::CarParameters car_of(const LapSettings& settings, const vehicle::Configurat
   return car;
 }
 
-bool has_planner(const LapSettings& settings, int index) noexcept {
-  const int first = settings.blocking_opponents + settings.erratic_opponents;
-  return index >= first && index < first + settings.planning_opponents;
-}
-
 std::optional<HardwareConditions> hardware_of(const LapSettings& settings) {
   if (!settings.hardware && !settings.localised) return std::nullopt;
   HardwareConditions conditions = settings.hardware
@@ -44,12 +39,6 @@ std::optional<HardwareConditions> hardware_of(const LapSettings& settings) {
                                       : HardwareConditions::sensors(settings.range_noise, settings.dropout);
   for (const auto& [name, text] : settings.localiser) set_option(conditions.localiser, name, text);
   return conditions;
-}
-
-sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept {
-  if (index < settings.blocking_opponents) return sim::OpponentDriver::blocking;
-  if (index < settings.blocking_opponents + settings.erratic_opponents) return sim::OpponentDriver::erratic;
-  return settings.opponent_driver;
 }
 
 bool set_world_option(LapSettings& settings, std::string_view key, std::string_view text) {

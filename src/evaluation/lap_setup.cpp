@@ -40,15 +40,12 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
           "world.opponents: " + std::to_string(settings.opponents) + " must be 0 on an open course");
   require(settings.rounds == 1 || closed,
           "world.rounds: " + std::to_string(settings.rounds) + " must be 1 on an open course");
-  const int others = std::max(settings.opponents, 1),
-            special = settings.blocking_opponents + settings.erratic_opponents + settings.planning_opponents;
-  require(settings.opponent_speed.fits(others), "world.opponent_speed: has " +
-                                                    std::to_string(settings.opponent_speed.values().size()) +
-                                                    " values, must have one, or one for each opponent");
-  require(special <= settings.opponents,
-          "world.blocking_opponents, world.erratic_opponents and world.planning_opponents: together " +
-              std::to_string(special) + ", must be at most world.opponents, " +
-              std::to_string(settings.opponents));
+  require(settings.opponent_speed.fits(std::max(settings.opponents, 1)),
+          "world.opponent_speed: has " + std::to_string(settings.opponent_speed.values().size()) +
+              " values, must have one, or one for each opponent");
+  require(settings.planning_opponents <= settings.opponents,
+          "world.planning_opponents: " + std::to_string(settings.planning_opponents) +
+              " must be at most world.opponents, " + std::to_string(settings.opponents));
 }
 
 }  // namespace
@@ -76,8 +73,7 @@ void check_settings(const LapSetup& setup) {
 void LapSetup::validate() const {
   check_settings(*this);
   make_planner(*this);
-  for (int i = 0; i < settings.opponents; ++i)
-    if (has_planner(settings, i)) setup_of_opponent(*this, i).validate();
+  for (int i = 0; i < settings.planning_opponents; ++i) setup_of_opponent(*this, i).validate();
 }
 
 maps::Pose LapSetup::start() const {
@@ -154,7 +150,7 @@ LapSetup setup_of_opponent(const LapSetup& setup, int index) {
   LapSettings& settings = own.settings;
   settings.obstacles = settings.opponents = 0;
   settings.parked.clear();
-  settings.blocking_opponents = settings.erratic_opponents = settings.planning_opponents = 0;
+  settings.planning_opponents = 0;
   settings.opponent_speed = 1;
   const double share = own.driver.speed_share = setup.settings.opponent_speed[index];
   vehicle::Configuration& configuration = own.driver.configuration;
@@ -235,15 +231,15 @@ void add_opponents(CarDrive& drive, const LapSetup& setup, std::uint64_t seed,
   std::shared_ptr<const sim::RacingLine> line;
   for (int i = 0; i < settings.opponents; ++i) {
     const auto number = static_cast<std::size_t>(i) + 1;
-    drive.world.set_scanning(number, has_planner(settings, i));
-    if (has_planner(settings, i)) {
+    const bool plans = i < settings.planning_opponents;
+    drive.world.set_scanning(number, plans);
+    if (plans) {
       drive.drivers.emplace_back(number, PlanningDriver(setup_of_opponent(setup, i), drive.world, number,
                                                         seed, " of opponent " + std::to_string(i)));
       continue;
     }
     const double share = settings.opponent_speed[i];
-    const sim::OpponentDriver driver = driver_of(settings, i);
-    if (driver == sim::OpponentDriver::pursuit) {
+    if (settings.opponent_driver == sim::OpponentDriver::pursuit) {
       std::vector<sim::PathPoint> slower = path;
       for (sim::PathPoint& point : slower) point.speed *= share;
       drive.drivers.emplace_back(number, sim::PurePursuit(std::move(slower)));
@@ -251,7 +247,8 @@ void add_opponents(CarDrive& drive, const LapSetup& setup, std::uint64_t seed,
     }
     if (!line) line = std::make_shared<const sim::RacingLine>(path, *setup.environment->track, car, parked);
     const RandomKey key{solver_seed(seed, "opponents"), static_cast<std::uint64_t>(i)};
-    drive.drivers.emplace_back(number, sim::RacingOpponent(line, number, driver, share, key));
+    drive.drivers.emplace_back(number,
+                               sim::RacingOpponent(line, number, settings.opponent_driver, share, key));
   }
 }
 

@@ -79,7 +79,6 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
     r.finished += row->finished;
     r.timeouts += row->timeout;
     r.collisions += row->collisions;
-    r.impassable += row->impassable;
     successes += row->success;
     r.solve_max = std::max(r.solve_max, row->solve_max);
   }

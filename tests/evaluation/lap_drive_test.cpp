@@ -33,11 +33,10 @@ TEST(LapDrive, AnOpponentKeepsItsPlannerWhenTheControllerOfTheCarChanges) {
 }
 
 TEST(LapDrive, ACopyGoesOnWithTheSameBits) {
-  // Every kind of driver, and sensors with localiser and tracker.
+  // Drivers with a planner and without, and sensors with localiser and tracker.
   const LapSettings among_all{.obstacles = 1,
                               .opponents = 3,
-                              .opponent_driver = sim::OpponentDriver::pursuit,
-                              .erratic_opponents = 1,
+                              .opponent_driver = sim::OpponentDriver::erratic,
                               .planning_opponents = 1,
                               .opponent_gap = 3,
                               .localised = true,

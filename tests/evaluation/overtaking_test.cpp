@@ -127,18 +127,13 @@ LapResult lap_with(const LapSettings& settings, std::uint64_t seed = 1) {
   return run_lap(setup_with(settings), seed);
 }
 
-TEST(Overtaking, OpponentsOfEveryKindAreInALapAndItRepeats) {
+TEST(Overtaking, OpponentsAreInALapAndItRepeats) {
   const LapSettings settings{.obstacles = 2,
                              .opponents = 3,
                              .opponent_speed = PerInput{0.5, 0.6, 0.7},
-                             .opponent_driver = sim::OpponentDriver::racing,
-                             .blocking_opponents = 1,
-                             .erratic_opponents = 1,
+                             .opponent_driver = sim::OpponentDriver::erratic,
                              .opponent_gap = 3,
                              .tracking = TrackingMode::exact};
-  EXPECT_EQ(driver_of(settings, 0), sim::OpponentDriver::blocking);
-  EXPECT_EQ(driver_of(settings, 1), sim::OpponentDriver::erratic);
-  EXPECT_EQ(driver_of(settings, 2), sim::OpponentDriver::racing);
   const LapResult first = lap_with(settings), again = lap_with(settings), other = lap_with(settings, 2);
   EXPECT_EQ(std::bit_cast<std::uint64_t>(first.state_cost), std::bit_cast<std::uint64_t>(again.state_cost));
   EXPECT_EQ(first.time, again.time);
@@ -210,10 +205,7 @@ TEST(Overtaking, ALapCanHaveSeveralRounds) {
 
 TEST(Overtaking, SettingsThatDoNotFitAreRefused) {
   EXPECT_THROW(lap_with({.opponents = 2, .opponent_speed = PerInput{0.5, 0.6, 0.7}}), std::invalid_argument);
-  EXPECT_THROW(lap_with({.opponents = 1, .blocking_opponents = 1, .erratic_opponents = 1}),
-               std::invalid_argument);
-  EXPECT_THROW(lap_with({.opponents = 2, .erratic_opponents = 1, .planning_opponents = 2}),
-               std::invalid_argument);
+  EXPECT_THROW(lap_with({.opponents = 1, .planning_opponents = 2}), std::invalid_argument);
   EXPECT_THROW(lap_with({.opponents = 5, .planning_opponents = 5}), std::invalid_argument);
   EXPECT_THROW(lap_with({.rounds = 0}), std::invalid_argument);
 }

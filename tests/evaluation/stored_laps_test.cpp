@@ -29,7 +29,6 @@ LapRow row(int experiment, int lap) {
   r.finished = true;
   r.state_cost = 0.1 + 0.2;
   r.collision_cost = 1e-300;
-  r.impassable = 2;
   r.time = 1.0 / 3;
   r.min_clearance = -0.0125;
   r.collision_points = "1.250:-3.000 0.500:2.125";

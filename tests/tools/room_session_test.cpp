@@ -1,4 +1,4 @@
-// A navigator in its room on the page: ghost, fork and undo.
+// A navigator in its room on the page: ghost and undo.
 #include <gtest/gtest.h>
 
 #include "tools/live_view/subjects.hpp"
@@ -13,40 +13,31 @@ class RoomSession : public ::testing::Test, protected view::PausedSession {
 };
 
 TEST_F(RoomSession, AGhostNavigatesInARoomOfItsOwn) {
-  step(4);
-  tell({R"({"do": "ghost", "method": "mppi"})"});
+  step_to(4);
+  say({R"({"do": "ghost", "method": "mppi"})"});
   EXPECT_EQ(ghost_figure("x", 4), figure("x", 4));
-  step(16);
+  step_to(20);
   const double x = figure("x", 20), ghost = ghost_figure("x", 20);
   EXPECT_GT(ghost, ghost_figure("x", 4) + 0.1) << "it moves";
   EXPECT_NE(ghost, x);
-  tell({R"({"do": "seek", "tick": 10})"});
-  step(10);
+  say({R"({"do": "seek", "tick": 10})"});
+  step_to(20);
   EXPECT_EQ(figure("x", 20), x);
   EXPECT_EQ(ghost_figure("x", 20), ghost) << "both are driven again exactly";
 }
 
-TEST_F(RoomSession, AForkLeavesTheNavigatorAsItWasAsAGhost) {
-  step(10);
-  tell({R"({"do": "fork", "method": "svg_mppi", "set": ["problem.max_forward=0.1"]})"});
-  step(20);
-  EXPECT_LT(figure("state.forward, m/s", 30), 0.12);
-  EXPECT_GT(ghost_figure("state.forward, m/s", 30), 0.2);
-  EXPECT_EQ(last("state")["ghost_label"], "svg_mppi as before");
-}
-
 TEST_F(RoomSession, UndoPutsThePalletBackAndTheMethod) {
-  step(4);
+  step_to(4);
   const auto bodies = [&] {
     const std::string shown = frame(4);
     return std::string(view::FrameReader(shown).block(view::Block::bodies));
   };
   const std::string before = bodies();
-  tell({R"({"do": "move", "body": 1, "x": 0, "y": 99})"});
+  say({R"({"do": "move", "body": 1, "x": 0, "y": 99})"});
   EXPECT_NE(bodies(), before);
-  tell({R"({"do": "method", "method": "mppi"})"});
+  say({R"({"do": "method", "method": "mppi"})"});
   EXPECT_EQ(last("state")["method"], "mppi");
-  tell({R"({"do": "undo"})", R"({"do": "undo"})"});
+  say({R"({"do": "undo"})", R"({"do": "undo"})"});
   EXPECT_EQ(last("state")["method"], "svg_mppi");
   EXPECT_EQ(last("options")["undo"], 0);
   EXPECT_EQ(last("options")["redo"], 2);

@@ -24,46 +24,57 @@ using nlohmann::json;
 /// A session of any subject with one page, paused at its first step.
 class PausedSession {
  public:
-  explicit PausedSession(std::unique_ptr<Subject> subject) : session_(std::move(subject), server_) {
-    session_.turn({});
-    tell({R"({"do": "pause"})"});
+  explicit PausedSession(std::unique_ptr<Subject> subject, SessionOptions options = {})
+      : session_(std::move(subject), server_, std::move(options)) {
+    session_.turn();
+    tell({{"do", "pause"}});
   }
 
-  /// Sends commands, which arrive together, and turns the session `turns` times.
-  void tell(const std::vector<std::string>& commands, int turns = 1) {
+  /// Sends commands, which arrive together, and lets the session execute them.
+  void say(const std::vector<std::string>& commands) {
     const auto before = server_.counters().messages;
     for (const std::string& command : commands) client_.send_message(command);
     for (int i = 0; i < 5000 && server_.counters().messages < before + commands.size(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    for (int i = 0; i < turns; ++i) session_.turn({});
+    do session_.turn();
+    while (session_.is_busy());
   }
+  void tell(const json& command) { say({command.dump()}); }
   /// Drives some steps from the one that is shown.
-  void step(int steps) { tell({R"({"do": "step", "ticks": )" + std::to_string(steps) + "}"}, steps); }
+  void step(int steps) { tell({{"do", "step"}, {"ticks", steps}}); }
+  /// Drives from the step that is shown up to another; its frame.
+  std::string step_to(int tick) {
+    step(tick - last("state")["tick"].get<int>());
+    return frame(tick);
+  }
   /// A figure of a step; NaN if the step is not known.
   double figure(const std::string& name, int tick) {
-    const std::string at = std::to_string(tick);
-    tell({R"({"do": "past", "from": )" + at + R"(, "to": )" + at + "}"});
+    tell({{"do", "past"}, {"from", tick}, {"to", tick}});
     const std::string message = next_binary(Block::past);
     return message.empty() ? none : value(name, FrameReader(message).block(Block::past));
   }
   /// The frame of a step, which is then shown.
   std::string frame(int tick) {
     figure("tick", tick);  // the page has read what came before
-    tell({R"({"do": "seek", "tick": )" + std::to_string(tick) + "}"});
+    tell({{"do", "seek"}, {"tick", tick}});
     std::string frame;
     do frame = next_binary(Block::scalars);
-    while (!frame.empty() && value("tick", FrameReader(frame).block(Block::scalars)) != tick);
+    while (!frame.empty() && scalar(frame, "tick") != tick);
     return frame;
+  }
+  /// A figure of a frame.
+  double scalar(std::string_view frame, const std::string& name) {
+    return value(name, FrameReader(frame).block(Block::scalars));
   }
   /// A figure of the ghost in a step, which is then shown; NaN if there is no ghost.
   double ghost_figure(const std::string& name, int tick) {
     const std::string frame = this->frame(tick);
     const std::string_view ghost = FrameReader(frame).block(Block::ghost_frame);
-    return ghost.empty() ? none : value(name, FrameReader(ghost).block(Block::scalars));
+    return ghost.empty() ? none : scalar(ghost, name);
   }
   /// The last message of a type, while the drive is paused.
   json last(const char* type) {
-    tell({R"({"do": "pause"})"});
+    tell({{"do", "pause"}});
     figure("tick", 0);
     return last_[type];
   }
@@ -76,7 +87,7 @@ class PausedSession {
     return "none";
   }
 
- private:
+ protected:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
   /// Reads until a binary message comes that begins with a block.
@@ -85,6 +96,7 @@ class PausedSession {
       std::string message = client_.next_message();
       if (message.empty()) return message;
       if (message.starts_with("SLV1")) {
+        if (message[4] == static_cast<char>(Block::scalars)) shown_ = message;
         if (message[4] == static_cast<char>(first)) return message;
         continue;
       }
@@ -104,6 +116,7 @@ class PausedSession {
   testing::PageClient client_{server_};
   Session session_;
   std::map<std::string, json> last_;  ///< the last message of each type
+  std::string shown_;                 ///< the last frame
 };
 
 }  // namespace slalom::view

@@ -39,91 +39,91 @@ class OwnProblem : public ::testing::Test, protected PausedSession {
 };
 
 TEST_F(OwnProblem, ACommandWithAWrongValueChangesNothing) {
-  tell({R"({"do": "rate", "rate": 1e9})"});
+  say({R"({"do": "rate", "rate": 1e9})"});
   EXPECT_EQ(last("error")["message"], "rate: must be 0 for the maximum speed, or in [0.001, 100]");
   EXPECT_EQ(last("state")["rate"], 1);
   step(3);
-  tell({R"({"do": "seek", "tick": 1})", R"({"do": "step", "ticks": "many"})"});
+  say({R"({"do": "seek", "tick": 1})", R"({"do": "step", "ticks": "many"})"});
   EXPECT_EQ(last("state")["newest"], 3);
   EXPECT_EQ(last("state")["tick"], 1);
 }
 
 TEST_F(OwnProblem, StepsAddUpAndAPauseEndsThem) {
-  tell({R"({"do": "step", "ticks": 3})", R"({"do": "step", "ticks": 4})"}, 9);
+  say({R"({"do": "step", "ticks": 3})", R"({"do": "step", "ticks": 4})"});
   EXPECT_EQ(last("state")["newest"], 7);
-  tell({R"({"do": "step", "ticks": 3})", R"({"do": "pause"})"}, 3);
+  say({R"({"do": "step", "ticks": 3})", R"({"do": "pause"})"});
   EXPECT_EQ(last("state")["newest"], 7);
 }
 
 TEST_F(OwnProblem, OptionsAreThoseOfTheStepThatIsShown) {
   step(3);
-  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})"});
+  say({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})"});
   step(3);
-  tell({R"({"do": "method", "method": "mppi"})"});
+  say({R"({"do": "method", "method": "mppi"})"});
   EXPECT_EQ(option("mppi", "samples"), "64");
-  tell({R"({"do": "seek", "tick": 4})"});
+  say({R"({"do": "seek", "tick": 4})"});
   EXPECT_EQ(option("svg_mppi", "samples"), "64");
   EXPECT_EQ(last("state")["method"], "svg_mppi");
-  tell({R"({"do": "seek", "tick": 1})"});
+  say({R"({"do": "seek", "tick": 1})"});
   EXPECT_EQ(option("svg_mppi", "samples"), "128");
-  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "4194304"})"});
+  say({R"({"do": "set", "key": "svg_mppi.samples", "value": "4194304"})"});
   EXPECT_NE(last("error")["message"].get<std::string>().find("in the live view"), std::string::npos);
 }
 
 TEST_F(OwnProblem, TheNumberOfCollisionsIsThatOfTheStep) {
-  tell({R"({"do": "place_car", "x": 2.5, "y": 0})"});
+  say({R"({"do": "place_car", "x": 2.5, "y": 0})"});
   step(3);
   EXPECT_EQ(figure("contacts", 0), 1);
   EXPECT_EQ(figure("contacts", 3), 4);
-  tell({R"({"do": "seek", "tick": 2})"});
-  tell({R"({"do": "step"})"});
+  say({R"({"do": "seek", "tick": 2})"});
+  say({R"({"do": "step"})"});
   EXPECT_EQ(figure("contacts", 3), 4);
 }
 
 TEST_F(OwnProblem, AnotherDurationOfStepsBeginsAnew) {
   step(5);
   const json before = last("state");
-  tell({R"({"do": "set", "key": "problem.dt", "value": "0.2"})"});
+  say({R"({"do": "set", "key": "problem.dt", "value": "0.2"})"});
   const json state = last("state");
   EXPECT_EQ(state["control_period"], 0.2);
   EXPECT_EQ(state["newest"], 0);
   EXPECT_EQ(state["paused"], true);
   EXPECT_EQ(state["generation"], before["generation"].get<int>() + 1);
-  tell({R"({"do": "step"})"});
+  say({R"({"do": "step"})"});
   EXPECT_EQ(figure("time", 1), 0.2);
 }
 
 TEST_F(OwnProblem, AChangeThatFailsChangesNothing) {
   step(3);
   const double cost = figure("minimum_cost", 3);
-  tell({R"({"do": "move", "body": 1, "x": 99, "y": 0})"});
+  say({R"({"do": "move", "body": 1, "x": 99, "y": 0})"});
   EXPECT_EQ(last("error")["message"], "the disc is too far away");
   EXPECT_EQ(last("state")["edited"], false);
   EXPECT_EQ(figure("minimum_cost", 3), cost);
-  tell({R"({"do": "move", "body": 2, "x": 1, "y": 0})"});
+  say({R"({"do": "move", "body": 2, "x": 1, "y": 0})"});
   EXPECT_EQ(last("error")["message"], "body: must be a shape of the scene");
-  tell({R"({"do": "step"})"});
+  say({R"({"do": "step"})"});
   EXPECT_EQ(figure("tick", 4), 4);
 }
 
 TEST_F(OwnProblem, OnlyTheLastStepOfADragIsPlannedFor) {
   const std::string move = R"({"do": "move", "body": 1, "y": 1, "drag": 7, "x": )";
-  tell({move + "3}", move + "3.5}", move + "4}"});
+  say({move + "3}", move + "3.5}", move + "4}"});
   EXPECT_EQ(last("state")["edited"], true);
   EXPECT_EQ(moves, 1);
   const std::string place = R"({"do": "place_car", "y": 0, "x": )";
-  tell({place + "-90}", place + "-1}"});
+  say({place + "-90}", place + "-1}"});
   EXPECT_EQ(figure("x", 0), -1);
   EXPECT_GT(last("state")["bounds"][0], -10) << "the first place was not drawn";
 }
 
 TEST_F(OwnProblem, ResetsWhatWasChangedAlsoWithAnotherMethod) {
-  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})"});
-  tell({R"({"do": "set", "key": "svg_mppi.samples", "value": "-5"})"});
+  say({R"({"do": "set", "key": "svg_mppi.samples", "value": "64"})"});
+  say({R"({"do": "set", "key": "svg_mppi.samples", "value": "-5"})"});
   EXPECT_EQ(last("error")["message"], "svg_mppi.samples: '-5' must be in [1, 4194304]");
-  tell({R"({"do": "set", "key": "problem.goal_x", "value": "6"})"});
-  tell({R"({"do": "method", "method": "mppi"})"});
-  tell({R"({"do": "reset_options"})"});
+  say({R"({"do": "set", "key": "problem.goal_x", "value": "6"})"});
+  say({R"({"do": "method", "method": "mppi"})"});
+  say({R"({"do": "reset_options"})"});
   EXPECT_EQ(option("mppi", "samples"), "128");
   EXPECT_EQ(option("problem", "goal_x"), "8");
   EXPECT_EQ(last("options")["changed"], json::array());
@@ -134,7 +134,7 @@ TEST_F(OwnProblem, AGhostDrivesBesideOnTheSameScene) {
   const auto can = last("hello")["can"];
   EXPECT_NE(std::ranges::find(can, "ghost"), can.end());
   step(3);
-  tell({R"({"do": "ghost", "method": "mppi"})"});
+  say({R"({"do": "ghost", "method": "mppi"})"});
   EXPECT_EQ(last("state")["ghost"], "mppi");
   EXPECT_EQ(ghost_figure("x", 3), figure("x", 3)) << "it starts where the robot is";
   step(6);
@@ -142,27 +142,27 @@ TEST_F(OwnProblem, AGhostDrivesBesideOnTheSameScene) {
   EXPECT_NE(ghost, x);
   const json methods = last("hello")["methods"];
   EXPECT_EQ(methods[static_cast<std::size_t>(ghost_figure("method", 9))], "mppi");
-  tell({R"({"do": "place_car", "x": -1, "y": 0})"});
+  say({R"({"do": "place_car", "x": -1, "y": 0})"});
   EXPECT_EQ(figure("x", 9), -1);
   EXPECT_EQ(ghost_figure("x", 9), ghost) << "only the robot is put elsewhere";
-  tell({R"({"do": "move", "body": 1, "x": 3, "y": 1})"});
+  say({R"({"do": "move", "body": 1, "x": 3, "y": 1})"});
   EXPECT_EQ(moves, 2) << "the disc in both scenes";
-  tell({R"({"do": "seek", "tick": 6})"});
+  say({R"({"do": "seek", "tick": 6})"});
   step(3);
   EXPECT_EQ(figure("x", 9), x);
   EXPECT_EQ(ghost_figure("x", 9), ghost) << "both are driven again exactly";
-  tell({R"({"do": "restart"})"}, 2);
+  say({R"({"do": "restart"})"});
   EXPECT_EQ(last("state")["ghost"], "mppi");
   EXPECT_EQ(ghost_figure("x", 0), figure("x", 0));
-  tell({R"({"do": "ghost", "method": ""})"});
+  say({R"({"do": "ghost", "method": ""})"});
   EXPECT_TRUE(std::isnan(ghost_figure("x", 0)));
 }
 
 TEST_F(OwnProblem, AForkContinuesWithOtherOptionsBesideWhatDroveBefore) {
   step(3);
   const double x = (step(4), figure("x", 7));
-  tell({R"({"do": "seek", "tick": 3})",
-        R"({"do": "fork", "method": "svg_mppi", "set": ["samples=64", "problem.goal_x=-8"]})"});
+  say({R"({"do": "seek", "tick": 3})",
+       R"({"do": "fork", "method": "svg_mppi", "set": ["samples=64", "problem.goal_x=-8"]})"});
   EXPECT_EQ(last("state")["ghost_label"], "svg_mppi as before");
   const double samples = figure("samples", 3);
   EXPECT_EQ(option("problem", "goal_x"), "-8");
@@ -170,9 +170,9 @@ TEST_F(OwnProblem, AForkContinuesWithOtherOptionsBesideWhatDroveBefore) {
   EXPECT_EQ(ghost_figure("samples", 7), 2 * samples);
   EXPECT_EQ(last("state")["newest"], 7);
   EXPECT_NE(figure("x", 7), x);
-  tell({R"({"do": "fork", "method": "svg_mppi", "set": ["problem.dt=0.2"]})"});
+  say({R"({"do": "fork", "method": "svg_mppi", "set": ["problem.dt=0.2"]})"});
   EXPECT_EQ(last("error")["message"], "fork: the control period cannot change during a drive");
-  tell({R"({"do": "undo"})"});
+  say({R"({"do": "undo"})"});
   EXPECT_EQ(option("problem", "goal_x"), "8");
   EXPECT_EQ(option("svg_mppi", "samples"), "128");
 }
@@ -180,23 +180,23 @@ TEST_F(OwnProblem, AForkContinuesWithOtherOptionsBesideWhatDroveBefore) {
 TEST_F(OwnProblem, UndoesAndRedoesOptionsMethodsAndObstacles) {
   const std::string move = R"({"do": "move", "body": 1, "y": 1, "drag": 7, "x": )";
   const double before = figure("minimum_cost", 0);
-  tell({move + "3}"});
-  tell({move + "2}"});
+  say({move + "3}"});
+  say({move + "2}"});
   const double moved = figure("minimum_cost", 0);
-  tell({R"({"do": "set", "key": "problem.goal_x", "value": "6"})"});
-  tell({R"({"do": "method", "method": "mppi"})"});
+  say({R"({"do": "set", "key": "problem.goal_x", "value": "6"})"});
+  say({R"({"do": "method", "method": "mppi"})"});
   EXPECT_EQ(last("options")["undo"], 3) << "a drag is one change";
-  tell({R"({"do": "undo"})"});
+  say({R"({"do": "undo"})"});
   EXPECT_EQ(last("state")["method"], "svg_mppi");
   EXPECT_EQ(option("problem", "goal_x"), "6");
-  tell({R"({"do": "undo"})"});
+  say({R"({"do": "undo"})"});
   EXPECT_EQ(option("problem", "goal_x"), "8");
-  tell({R"({"do": "undo"})"});
+  say({R"({"do": "undo"})"});
   EXPECT_EQ(last("options")["undo"], 0);
-  tell({R"({"do": "redo"})", R"({"do": "redo"})"});
+  say({R"({"do": "redo"})", R"({"do": "redo"})"});
   EXPECT_EQ(option("problem", "goal_x"), "6");
   EXPECT_NE(moved, before);
-  tell({R"({"do": "undo"})", R"({"do": "undo"})", R"({"do": "undo"})"});
+  say({R"({"do": "undo"})", R"({"do": "undo"})", R"({"do": "undo"})"});
   EXPECT_EQ(last("error")["message"], "nothing to undo");
 }
 

@@ -1,36 +1,88 @@
-// Commands to a session: the drive of the command line, going back exactly, edits, options.
-#include "view/session_fixture.hpp"
-
+// A session of a car: the drive of the command line, going back exactly, edits, and the introduction.
 #include <cmath>
 
-#include "view/protocol/frame_reader.hpp"
+#include "view/car/car_subject.hpp"
+#include "view/paused_session.hpp"
+#include "view/recording/drive_files.hpp"
 
 namespace slalom::view {
 namespace {
 
+vehicle::Configuration small() {
+  vehicle::Configuration configuration;
+  for (const char* method : {"svg_mppi", "mppi"})
+    for (const auto& [key, value] : {std::pair{"samples", "128"},
+                                     {"horizon", "14"},
+                                     {"variance", "0.05"},
+                                     {"input_min", "-0.4"},
+                                     {"input_max", "0.4"},
+                                     {"temperature", "3"}})
+      vehicle::set_option(configuration, key, value, method);
+  vehicle::set_option(configuration, "svg_mppi.batches", "1");
+  return configuration;
+}
+
+std::shared_ptr<const evaluation::Environment> environment_of(const std::string& course) {
+  return evaluation::load_environment(SLALOM_COURSES "/" + course, evaluation::Protocol::true_physics, {});
+}
+
+SessionOptions session_options() {
+  SessionOptions options;
+  options.scenario = {.course = "stag", .method = "svg_mppi", .config = "default", .seed = 4, .obstacles = 2};
+  options.load = [](const ScenarioNames& names) {
+    return car_subject(
+        {environment_of(names.course), {small(), names.method}, {.obstacles = names.obstacles}}, names.seed);
+  };
+  add_files(options, {});
+  options.choices.courses = {"stag", "eel"};
+  options.choices.methods = {"svg_mppi", "mppi"};
+  options.choices.configurations = {"default"};
+  return options;
+}
+
+class ViewSession : public ::testing::Test, protected PausedSession {
+ protected:
+  explicit ViewSession(SessionOptions options = session_options())
+      : PausedSession(options.load(options.scenario), options) {}
+
+  std::string error() { return last("error")["message"]; }
+  /// A disc in front of the car as a frame shows it.
+  json disc_ahead(const std::string& frame) {
+    const double yaw = scalar(frame, "yaw");
+    return {{"do", "add"},
+            {"kind", "disc"},
+            {"x", scalar(frame, "x") + 1.5 * std::cos(yaw)},
+            {"y", scalar(frame, "y") + 1.5 * std::sin(yaw)},
+            {"length", 0.3}};
+  }
+  /// The figures of a frame that follow from states, obstacles and options.
+  std::vector<double> facts(const std::string& frame) {
+    std::vector<double> all;
+    for (const char* name : {"x", "y", "yaw", "speed", "samples", "minimum_cost", "expected_cost",
+                             "command_steer", "collided_share"})
+      all.push_back(scalar(frame, name));
+    return all;
+  }
+};
+
 TEST_F(ViewSession, FirstMessagesHoldWhatThePageNeeds) {
-  const json hello = next("hello");
+  const json hello = last("hello");
   EXPECT_EQ(hello["protocol"], 2);
   EXPECT_EQ(hello["terms"].size(), 3u);
   EXPECT_GT(hello["body"]["front"], 0) << "a car has wheels";
   EXPECT_EQ(hello["scalars"].size(), car_scalars().size());
   EXPECT_EQ(hello["courses"], (json{"stag", "eel"}));
-  const json options = next("options");
-  ASSERT_EQ(options["sections"][0]["name"], "svg_mppi");
-  bool samples = false;
-  for (const json& each : options["sections"][0]["options"])
-    if (each["name"] == "samples") {
-      samples = true;
-      EXPECT_EQ(each["value"], "128");
-      EXPECT_EQ(each["type"], "integer");
-      EXPECT_EQ(each["min"], 1);
-      EXPECT_EQ(each["symbol"], "K");
-    }
-  EXPECT_TRUE(samples);
+  const json section = last("options")["sections"][0];
+  ASSERT_EQ(section["name"], "svg_mppi");
+  const auto samples =
+      std::ranges::find(section["options"], "samples", [](const json& o) { return o["name"]; });
+  ASSERT_NE(samples, section["options"].end());
+  const json wanted{{"value", "128"}, {"type", "integer"}, {"min", 1}, {"symbol", "K"}};
+  for (const auto& [key, value] : wanted.items()) EXPECT_EQ((*samples)[key], value) << key;
 }
 
 TEST_F(ViewSession, TellsTheSymptomOfTheSolver) {
-  const json symptoms = next("hello")["symptoms"];
+  const json symptoms = last("hello")["symptoms"];
   EXPECT_EQ(scalar(step_to(30), "symptom"), 0);
   tell({{"do", "set"}, {"key", "svg_mppi.temperature"}, {"value", "1e-6"}});
   const auto symptom = static_cast<std::size_t>(scalar(step_to(60), "symptom"));
@@ -48,18 +100,6 @@ TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   run_lap(setup, 4, [&](const evaluation::ControlStep& tick) { x.push_back(tick.seen.pose.x); });
   EXPECT_EQ(x5, x[5]);
   EXPECT_EQ(x60, x[60]);
-}
-
-TEST_F(ViewSession, RestoresAnEarlierStateExactly) {
-  step_to(20);
-  tell({{"do", "add"}, {"kind", "disc"}, {"x", 0}, {"y", 0}, {"length", 0.2}});
-  const std::string before = step_to(60);
-  tell({{"do", "seek"}, {"tick", 30}});
-  EXPECT_EQ(scalar(frame(30), "tick"), 30);
-  const std::string again = step_to(60);
-  // Wall-clock figures differ; what happened does not.
-  for (const char* name : {"x", "y", "yaw", "speed", "command_steer", "minimum_cost", "effective_samples"})
-    EXPECT_EQ(scalar(before, name), scalar(again, name)) << name;
 }
 
 TEST_F(ViewSession, GoesBackToTheStateOfEveryAction) {
@@ -86,22 +126,7 @@ TEST_F(ViewSession, GoesBackToTheStateOfEveryAction) {
   EXPECT_EQ(scalar(step_to(58), "samples"), 128) << "before the option was set";
   tell({{"do", "seek"}, {"tick", 45}});
   EXPECT_TRUE(FrameReader(step_to(46)).block(Block::ghost_frame).empty()) << "before the ghost";
-  EXPECT_EQ(last_state_ticks()["ghost"], "");
-}
-
-TEST_F(ViewSession, SetsUndoesAndForks) {
-  step_to(10);
-  tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});
-  EXPECT_EQ(scalar(step_to(11), "samples"), 64);
-  tell({{"do", "undo"}});
-  EXPECT_EQ(scalar(step_to(12), "samples"), 128);
-  tell({{"do", "fork"}, {"method", "mppi"}});
-  const std::string forked = step_to(20);
-  EXPECT_EQ(scalar(forked, "method"), 1);
-  tell({{"do", "set"}, {"key", "mppi.samples"}, {"value", "0"}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("must be in"), std::string::npos);
-  tell({{"do", "set"}, {"key", "mppi.samples"}, {"value", "4000000"}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("in the live view"), std::string::npos);
+  EXPECT_EQ(last("state")["ghost"], "");
 }
 
 TEST_F(ViewSession, UndoesChangesOfBodies) {
@@ -125,32 +150,6 @@ TEST_F(ViewSession, UndoesChangesOfBodies) {
   EXPECT_EQ(bodies(15), added) << "a drag is one change";
   tell({{"do", "undo"}});
   EXPECT_EQ(bodies(16), before);
-  tell({{"do", "redo"}});
-  EXPECT_EQ(bodies(17), added);
-  tell({{"do", "seek"}, {"tick", 9}});
-  tell({{"do", "step"}, {"ticks", 1}});
-  tell({{"do", "undo"}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("nothing to undo"), std::string::npos)
-      << "going back has undone the rest";
-}
-
-TEST_F(ViewSession, SendsThePastThatIsAskedFor) {
-  step_to(30);
-  tell({{"do", "past"}, {"from", 10}, {"to", 12}, {"id", 4}});
-  std::string message;
-  do message = client_.next_message();
-  while (message.rfind("SLV1", 0) != 0 || message[4] != static_cast<char>(Block::past));
-  PayloadReader past(FrameReader(message).block(Block::past));
-  for (int tick = 10; tick <= 12; ++tick)
-    for (const std::string& name : car_scalars()) {
-      const double value = past.get<double>();
-      if (name == "tick") {
-        EXPECT_EQ(value, tick);
-      }
-    }
-  EXPECT_EQ(next("done")["id"], 4);
-  tell({{"do", "past"}, {"from", "x"}, {"to", 12}, {"id", 5}});
-  EXPECT_EQ(next("error")["id"], 5);
 }
 
 TEST_F(ViewSession, ShowsTheStatesOfTrajectoriesWithTwoInputs) {
@@ -169,152 +168,181 @@ TEST_F(ViewSession, ShowsTheStatesOfTrajectoriesWithTwoInputs) {
 }
 
 TEST_F(ViewSession, RejectsUnknownCommandsAndContinues) {
-  const char* const bad[] = {"",
-                             "{",
-                             "[1,2]",
-                             "null",
-                             "{\"do\":5}",
-                             "{\"do\":\"fly\"}",
-                             "{\"do\":\"seek\",\"tick\":\"x\"}",
-                             "{\"do\":\"add\",\"kind\":\"disc\",\"x\":1e999,\"y\":0}",
-                             "{\"do\":\"add\",\"kind\":\"moon\",\"x\":1,\"y\":0}",
-                             "{\"do\":\"rate\",\"rate\":-1}",
-                             "{\"do\":\"rate\",\"rate\":1e-300}",
-                             "\xff\xfe"};
-  const auto before = session_.refused();
-  for (const char* text : bad) say(text);
-  EXPECT_GE(session_.refused() - before, std::size(bad) - 2)
-      << "text that is not UTF-8 ends the connection instead";
+  const std::vector<std::string> bad{"",
+                                     "{",
+                                     "[1,2]",
+                                     "null",
+                                     R"({"do":5})",
+                                     R"({"do":"fly"})",
+                                     R"({"do":"seek","tick":"x"})",
+                                     R"({"do":"past","from":"x","to":12})",
+                                     R"({"do":"add","kind":"disc","x":1e999,"y":0})",
+                                     R"({"do":"add","kind":"moon","x":1,"y":0})",
+                                     R"({"do":"rate","rate":-1})",
+                                     R"({"do":"rate","rate":1e-300})"};
+  say(bad);
+  EXPECT_EQ(session_.refused(), bad.size());
 }
 
 TEST_F(ViewSession, APauseShowsTheNewestTickHoweverFastTheDriveIs) {
   tell({{"do", "rate"}, {"rate", 0}});
   tell({{"do", "play"}});
   for (int turn = 0; turn < 50; ++turn) session_.turn();
-  tell({{"do", "pause"}});
-  tell({{"do", "no such command"}});
-  double shown = -1, newest = -2;
-  for (bool ended = false; !ended;) {
-    const std::string message = client_.next_message();
-    ASSERT_FALSE(message.empty());
-    if (message.rfind("SLV1", 0) == 0) {
-      if (message[4] == 1) shown = scalar(message, "tick");
-      continue;
-    }
-    const json parsed = json::parse(message);
-    if (parsed["type"] == "state") newest = parsed["newest"];
-    ended = parsed["type"] == "error";
-  }
+  const int newest = last("state")["newest"];
   EXPECT_GE(newest, 50);
-  if (shown < newest) {  // messages overtake frames
-    EXPECT_FALSE(frame(static_cast<int>(newest)).empty());
-  }
+  if (scalar(shown_, "tick") < newest) next_binary(Block::scalars);  // messages overtake frames
+  EXPECT_EQ(scalar(shown_, "tick"), newest);
 }
 
-/// The figures of a frame that follow from states, obstacles and options.
-std::vector<double> facts(const std::string& frame) {
-  std::vector<double> all;
-  for (const char* name : {"x", "y", "yaw", "speed", "samples", "minimum_cost", "expected_cost",
-                           "command_steer", "collided_share"})
-    all.push_back(scalar(frame, name));
-  return all;
-}
-
-class ViewSessionPaused : public ViewSession {
- protected:
-  /// The frame that the last command made of a tick.
-  std::string answer(int tick) {
-    tell({{"do", "past"}, {"from", tick}, {"to", tick}, {"id", 77}});
-    next("done");
-    return frame(tick);
-  }
-  /// A disc in front of the car as a frame shows it.
-  json disc_ahead(const std::string& frame) const {
-    const double yaw = scalar(frame, "yaw");
-    return {{"do", "add"},
-            {"kind", "disc"},
-            {"x", scalar(frame, "x") + 1.5 * std::cos(yaw)},
-            {"y", scalar(frame, "y") + 1.5 * std::sin(yaw)},
-            {"length", 0.3}};
-  }
-};
-
-TEST_F(ViewSessionPaused, EveryChangeIsPlannedForAgainFromTheStateThatIsShown) {
+TEST_F(ViewSession, EveryChangeIsPlannedForAgainFromTheStateThatIsShown) {
   const std::string before = step_to(30);
   tell(disc_ahead(before));
-  const std::string added = answer(30);
+  const std::string added = frame(30);
   EXPECT_EQ(scalar(added, "x"), scalar(before, "x")) << "the car stays";
   EXPECT_EQ(scalar(added, "y"), scalar(before, "y"));
   EXPECT_GT(scalar(added, "collided_share"), scalar(before, "collided_share")) << "the solver saw the disc";
   EXPECT_LT(scalar(added, "clearance"), 1.5);
   tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});
-  EXPECT_EQ(scalar(answer(30), "samples"), 64);
+  EXPECT_EQ(scalar(frame(30), "samples"), 64);
   tell({{"do", "method"}, {"method", "mppi"}});
-  EXPECT_EQ(scalar(answer(30), "method"), 1);
+  EXPECT_EQ(scalar(frame(30), "method"), 1);
   tell({{"do", "undo"}});
-  EXPECT_EQ(scalar(answer(30), "method"), 0);
+  EXPECT_EQ(scalar(frame(30), "method"), 0);
   tell({{"do", "undo"}});
-  EXPECT_EQ(scalar(answer(30), "samples"), 128);
+  EXPECT_EQ(scalar(frame(30), "samples"), 128);
   tell({{"do", "ghost"}, {"method", "svg_mppi"}});
-  EXPECT_FALSE(FrameReader(answer(30)).block(Block::ghost_frame).empty());
-  EXPECT_EQ(last_state_ticks()["tick"], 30);
+  EXPECT_FALSE(FrameReader(frame(30)).block(Block::ghost_frame).empty());
+  EXPECT_EQ(last("state")["tick"], 30);
 }
 
-TEST_F(ViewSessionPaused, WhatIsShownIsWhatIsDriven) {
+TEST_F(ViewSession, WhatIsShownIsWhatIsDriven) {
   const std::string before = step_to(30);
   tell(disc_ahead(before));
-  const auto added = facts(answer(30)), driven = facts(step_to(40));
+  const auto added = facts(frame(30)), driven = facts(step_to(40));
   tell({{"do", "seek"}, {"tick", 30}});
   EXPECT_EQ(facts(frame(30)), added);
   EXPECT_EQ(facts(step_to(40)), driven) << "the stored drive has the change";
   tell({{"do", "seek"}, {"tick", 20}});
   tell(disc_ahead(frame(20)));
-  EXPECT_GT(scalar(answer(20), "collided_share"), 0);
-  EXPECT_EQ(last_state_ticks()["newest"], 20) << "a change of an earlier tick replaces what followed";
+  EXPECT_GT(scalar(frame(20), "collided_share"), 0);
+  EXPECT_EQ(last("state")["newest"], 20) << "a change of an earlier tick replaces what followed";
   tell({{"do", "undo"}});
   EXPECT_EQ(facts(step_to(30)), facts(before));
-}
-
-TEST_F(ViewSessionPaused, AChangeJustBeforeAPauseIsShown) {
-  const std::string before = step_to(30);
-  tell({{"do", "rate"}, {"rate", 0.5}});
-  tell({{"do", "play"}});
-  tell(disc_ahead(before));
-  tell({{"do", "pause"}});
-  const int newest = last_state_ticks()["newest"];
-  tell({{"do", "seek"}, {"tick", newest}});
-  EXPECT_EQ(FrameReader(frame(newest)).block(Block::bodies).size(),
-            FrameReader(before).block(Block::bodies).size() + 24);
 }
 
 TEST_F(ViewSession, OneClientDrivesAndAnotherTakesOver) {
   testing::PageClient other(server_, 2);
   session_.turn();
-  EXPECT_EQ(next(other, "role")["drives"], false);
+  const auto next = [&](const char* type) {
+    json message = json::object();
+    for (std::string text; message.value("type", "") != type;) {
+      do text = other.next_message();
+      while (text.starts_with("SLV1"));
+      message = json::parse(text);
+    }
+    return message;
+  };
+  EXPECT_EQ(next("role")["drives"], false);
   const auto tell_from_other = [&](const json& command) {
     other.send_message(command.dump());
     server_.wait(std::chrono::seconds(5));
     session_.turn();
   };
   tell_from_other({{"do", "step"}, {"id", 1}});
-  EXPECT_NE(next(other, "error")["message"].get<std::string>().find("take over"), std::string::npos);
+  EXPECT_NE(next("error")["message"].get<std::string>().find("take over"), std::string::npos);
   tell_from_other({{"do", "past"}, {"from", 0}, {"to", 0}, {"id", 2}});
-  EXPECT_EQ(next(other, "done")["id"], 2);
+  EXPECT_EQ(next("done")["id"], 2);
   tell_from_other({{"do", "take_over"}});
-  EXPECT_EQ(next(other, "role")["drives"], true);
+  EXPECT_EQ(next("role")["drives"], true);
   tell_from_other({{"do", "step"}, {"id", 3}});
-  EXPECT_EQ(next(other, "done")["id"], 3);
+  EXPECT_EQ(next("done")["id"], 3);
   tell({{"do", "step"}, {"id", 4}});
-  EXPECT_EQ(next("error")["id"], 4);
+  figure("tick", 0);
+  EXPECT_EQ(last_["error"]["id"], 4);
 }
 
 TEST_F(ViewSession, LoadsOnlyListedCourses) {
   tell({{"do", "scenario"}, {"course", "/etc"}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("is unknown"), std::string::npos);
+  EXPECT_NE(error().find("is unknown"), std::string::npos);
   tell({{"do", "scenario"}, {"course", "eel"}, {"obstacles", 0}, {"seed", "9"}});
-  const json state = last_state_ticks();
+  const json state = last("state");
   EXPECT_EQ(state["course"], "eel");
   EXPECT_EQ(state["seed"], "9");
+}
+
+SessionOptions introduction() {
+  SessionOptions options = session_options();
+  options.scenario = {
+      .course = "stag", .method = "svg_mppi", .config = "default", .seed = 77, .obstacles = 1};
+  options.against = "mppi";
+  options.introduction = true;
+  return options;
+}
+
+class Introduction : public ViewSession {
+ protected:
+  Introduction() : ViewSession(introduction()) {}
+};
+
+/// The frame of the ghost within a frame.
+std::string_view ghost_of(const std::string& frame) {
+  return FrameReader(frame).block(Block::ghost_frame);
+}
+
+/// Returns the distance by which the parked car lies ahead of the car of a frame, m.
+double parked_ahead(std::string_view frame) {
+  PayloadReader bodies(FrameReader(frame).block(Block::bodies));
+  bodies.take(4 + 4);  // the count, and the number and kind of the car
+  const double x = bodies.f32(), y = bodies.f32(), yaw = bodies.f32();
+  bodies.take(2 * sizeof(float) + 4);
+  const double dx = bodies.f32() - x;
+  return std::cos(yaw) * dx + std::sin(yaw) * (bodies.f32() - y);
+}
+
+TEST_F(Introduction, FramesHoldWhatBothControllersConsider) {
+  const std::string both = step_to(3);
+  const std::string_view ghost = ghost_of(both);
+  ASSERT_FALSE(ghost.empty());
+  EXPECT_EQ(scalar(both, "method"), 0);
+  EXPECT_EQ(scalar(ghost, "method"), 1);
+  EXPECT_EQ(scalar(ghost, "tick"), 3) << "of the same control step";
+  const FrameReader reader(ghost);
+  for (const Block block : {Block::scan, Block::candidates, Block::nominal, Block::plan, Block::bodies})
+    EXPECT_FALSE(reader.block(block).empty()) << static_cast<int>(block);
+  // The car, then the parked car; both worlds have the same.
+  EXPECT_EQ(PayloadReader(reader.block(Block::bodies)).get<std::uint32_t>(), 2u);
+  EXPECT_EQ(reader.block(Block::bodies).substr(4 + 24),
+            FrameReader(both).block(Block::bodies).substr(4 + 24));
+  tell({{"do", "ghost"}, {"method", ""}});
+  EXPECT_TRUE(ghost_of(step_to(4)).empty());
+}
+
+TEST_F(Introduction, SlowsDownUntilBothCarsHavePassed) {
+  json state = last("state");
+  EXPECT_EQ(state["introduction"], true);
+  EXPECT_EQ(state["rate"], 0.5) << "nothing is near";
+  std::vector<double> rates{0.5};
+  bool has_passed = false;
+  for (int tick = 4; tick < 160 && rates.back() != 1; tick += 4) {
+    const std::string both = step_to(tick);
+    state = last("state");
+    if (state["rate"] != rates.back()) rates.push_back(state["rate"]);
+    has_passed = parked_ahead(both) < 0 && parked_ahead(ghost_of(both)) < 0;
+  }
+  EXPECT_EQ(rates, (std::vector<double>{0.5, 0.1, 1}));
+  EXPECT_TRUE(has_passed);
+  tell({{"do", "restart"}});
+  EXPECT_EQ(last("state")["rate"], 0.5) << "it is shown again";
+}
+
+TEST_F(Introduction, EndsWithAnotherMethodOrRate) {
+  tell({{"do", "method"}, {"method", "mppi"}});
+  EXPECT_EQ(last("state")["introduction"], false);
+  EXPECT_EQ(last("state")["rate"], 1) << "real time";
+  tell({{"do", "restart"}});
+  tell({{"do", "rate"}, {"rate", 2}});
+  step_to(30);
+  EXPECT_EQ(last("state")["rate"], 2);
 }
 
 }  // namespace

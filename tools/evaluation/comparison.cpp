@@ -69,7 +69,6 @@ Json result_json(const ExperimentResult& r) {
           {"collision_rate", r.collision_rate ? Json(*r.collision_rate) : Json(nullptr)},
           {"collision_rate_ci", interval_json(r.collision_rate_ci)},
           {"collision_rate_bootstrap_ci", interval_json(r.collision_rate_bootstrap_ci)},
-          {"impassable", r.impassable},
           {"time_mean", r.time_mean},
           {"time_ci", of_many(r.finished, r.time_ci)},
           {"ms_mean", r.ms_mean},

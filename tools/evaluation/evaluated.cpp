@@ -104,17 +104,6 @@ void print_tracking(const std::string& label, const TrackingFigures& t, int laps
 /// Names the laps in which a collision could not be avoided. Laps of the same number have the same obstacles:
 /// those of one experiment speak for all.
 void print_hopeless_laps(const Evaluated& evaluated, std::FILE* out) {
-  std::vector<int> laps;
-  int impassable = 0, experiment = -1;
-  for (const LapRow& row : evaluated.rows) {
-    if (row.impassable == 0 || (experiment >= 0 && row.experiment != experiment)) continue;
-    experiment = row.experiment;
-    impassable += row.impassable;
-    laps.push_back(row.lap);
-  }
-  if (impassable > 0)
-    std::fprintf(out, "a car of this width cannot pass %d of the obstacles, in laps %s\n", impassable,
-                 listed(laps).c_str());
   if (evaluated.results.empty()) return;
   const std::vector<int> begun = evaluated.laps_begun_in_contact(evaluated.results.front().experiment);
   if (!begun.empty())

@@ -11,10 +11,9 @@ namespace slalom::view {
 namespace {
 
 constexpr std::size_t most_candidates = 160, least_candidates = 20;
-constexpr std::size_t most_step_costs = 100000;  // values in a frame
-constexpr int unknown_place = 255;               // code of a candidate that collides, but not where
-constexpr float nudge = 0.01f;                   // change of an input, for the derivative of the plan
-constexpr double course_room = 1.5;              // m beside the line of a course
+constexpr std::size_t most_points = 50000;  // number of points of all candidates
+constexpr float nudge = 0.01f;              // change of an input, for the derivative of the plan
+constexpr double course_room = 1.5;         // m beside the line of a course
 
 using Poses = std::span<const maps::Pose>;
 
@@ -76,8 +75,7 @@ class StepEncoder {
   void add_candidates() {
     const SequenceBatch* batch = solve_.samples;
     if (!batch || solve_.costs.empty()) return;
-    const std::size_t most = std::clamp(most_step_costs / std::max<std::size_t>(1, points_ * terms_),
-                                        least_candidates, most_candidates);
+    const std::size_t most = std::clamp(most_points / points_, least_candidates, most_candidates);
     const auto samples = static_cast<std::size_t>(batch->samples());
     const std::size_t count = std::min(most, samples);
     for (std::size_t i = 0; i < count; ++i) {
@@ -177,17 +175,9 @@ class StepEncoder {
     to_.begin(Block::covariance);  // variances of the first input
     for (std::size_t i = 0; i < solve_.variances.size(); i += inputs_) to_.put(solve_.variances[i]);
     to_.end();
-    put_inputs(to_, solve_, inputs_);
-    put_effective_samples(to_, solve_);
-    std::vector<double> costs = rolled_.costs;  // those of plan and candidates
-    const auto block = static_cast<std::ptrdiff_t>(points_ * terms_);
-    costs.erase(costs.begin() + block, costs.begin() + 2 * block);
-    costs.resize((1 + candidates_.size()) * points_ * terms_);
-    put_step_costs(to_, costs, terms_, points_);
   }
 
-  /// Writes candidates: each term of their costs, the solver's cost, the weight, and 1 + the first state that
-  /// collides.
+  /// Writes candidates: each term of their costs, the solver's cost, the weight, and whether they collide.
   void put_candidates(double reach) {
     to_.begin(Block::candidates);
     to_.put(static_cast<std::uint16_t>(candidates_.size()));
@@ -204,9 +194,7 @@ class StepEncoder {
       const std::size_t sample = candidates_[i];
       to_.put(solve_.costs[sample]);
       to_.put(sample < solve_.weights.size() ? solve_.weights[sample] : 0.0f);
-      const int at = rolled_.collisions[first + i];
-      const int place = at < 0 ? unknown_place : std::min(1 + at, unknown_place - 1);
-      collided += static_cast<char>(solve_.collided[sample] ? place : 0);
+      collided += static_cast<char>(solve_.collided[sample] != 0);
     }
     to_.append(collided);
     to_.pad();

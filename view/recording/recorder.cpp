@@ -70,11 +70,9 @@ Recorder::Recorder(std::ostream& stream, RecorderOptions options)
     channels_.push_back(writer_.add_channel(topic, "json", id));
   };
   const std::pair<const char*, const char*> topics[] = {
-      {"/tf", "foxglove.FrameTransform"},      {"/map", "foxglove.Grid"},
-      {"/course", "foxglove.SceneUpdate"},     {"/scan", "foxglove.LaserScan"},
-      {"/cost_map", "foxglove.Grid"},          {"/cars", "foxglove.SceneUpdate"},
-      {"/candidates", "foxglove.SceneUpdate"}, {"/guides", "foxglove.SceneUpdate"},
-      {"/plan", "foxglove.SceneUpdate"}};
+      {"/tf", "foxglove.FrameTransform"},  {"/map", "foxglove.Grid"},
+      {"/course", "foxglove.SceneUpdate"}, {"/scan", "foxglove.LaserScan"},
+      {"/cars", "foxglove.SceneUpdate"},   {"/plan", "foxglove.SceneUpdate"}};
   for (const auto& [topic, schema] : topics) add_channel(topic, schema, schemas.at(schema));
   add_channel("/tick", "slalom.Tick", figures_schema(false));
   if (options_.wall_clock) add_channel("/wall_clock", "slalom.WallClock", figures_schema(true));
@@ -170,20 +168,10 @@ void Recorder::add_frame(std::string_view frame) {
   replay_.add_frame(options_.wall_clock ? std::string(frame) : without_wall_clock(frame, reader));
 
   add_tick(reader, scalars);
-  if (options_.everything) {
+  if (options_.everything)
     add_scene(reader);
-    add_cost_map(reader);
-    add_guides(reader);
-  } else if (steps_++ % small_scene_stride == 0) {
+  else if (steps_++ % small_scene_stride == 0)
     add_scene(FrameReader(small_frame(frame)));
-  }
-}
-
-void Recorder::add_scene(const FrameReader& reader) {
-  add_scan(reader);
-  add_cars(reader);
-  add_candidates(reader);
-  add_plan(reader);
 }
 
 void Recorder::finish() {

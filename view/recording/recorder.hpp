@@ -43,7 +43,7 @@ class Recorder {
 
  private:
   /// The channels, in the order in which they are added.
-  enum class Topic { transform, map, course, scan, cost_map, cars, candidates, guides, plan, tick, times };
+  enum class Topic { transform, map, course, scan, cars, plan, tick, times };
 
   void add(Topic topic, const Json& message);
   void attach(const std::string& segment);
@@ -52,10 +52,7 @@ class Recorder {
   void add_tick(const FrameReader& reader, const std::vector<double>& scalars);
   void add_scene(const FrameReader& reader);
   void add_scan(const FrameReader& reader);
-  void add_cost_map(const FrameReader& reader);
   void add_cars(const FrameReader& reader);
-  void add_candidates(const FrameReader& reader);
-  void add_guides(const FrameReader& reader);
   void add_plan(const FrameReader& reader);
 
   RecorderOptions options_;

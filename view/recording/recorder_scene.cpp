@@ -1,5 +1,4 @@
 // The conversion of a control step to Foxglove messages.
-#include <algorithm>
 #include <cmath>
 
 #include "view/recording/recorder.hpp"
@@ -9,24 +8,18 @@ namespace {
 
 using foxglove::Color;
 
-constexpr std::size_t max_candidates = 40;  // in Foxglove's messages; those of the page have all
 constexpr Color car_color{0.95, 0.96, 0.98, 1}, ghost_color{0.78, 0.61, 1, 0.7},
-    plan_color{0.1, 0.8, 0.65, 1}, nominal_color{0.6, 0.65, 0.7, 0.9}, guide_color{0.8, 0.35, 0.85, 0.9},
-    obstacle_color{0.91, 0.63, 0.23, 1}, hit_color{1, 0.35, 0.21, 1}, collided_color{1, 0.35, 0.21, 0.35};
+    plan_color{0.1, 0.8, 0.65, 1}, nominal_color{0.6, 0.65, 0.7, 0.9}, obstacle_color{0.91, 0.63, 0.23, 1},
+    hit_color{1, 0.35, 0.21, 1};
 constexpr double car_height = 0.15, obstacle_height = 0.25;  // m
 
-/// The colour of a cost between the best (0) and the worst (1): yellow, green, blue.
-Color cost_color(double share) {
-  constexpr double stops[3][3] = {{0.93, 0.89, 0.52}, {0.1, 0.66, 0.62}, {0.16, 0.27, 0.6}};
-  const double at = 2 * std::clamp(share, 0.0, 1.0);
-  const auto i = at < 1 ? 0u : 1u;
-  const double f = at - i;
-  Color color{0, 0, 0, 0.8 - 0.3 * share};
-  for (std::size_t k = 0; k < 3; ++k) color[k] = (1 - f) * stops[i][k] + f * stops[i + 1][k];
-  return color;
-}
-
 }  // namespace
+
+void Recorder::add_scene(const FrameReader& reader) {
+  add_scan(reader);
+  add_cars(reader);
+  add_plan(reader);
+}
 
 void Recorder::add_scan(const FrameReader& reader) {
   const std::string_view block = reader.block(Block::scan);
@@ -38,28 +31,6 @@ void Recorder::add_scan(const FrameReader& reader) {
   add(Topic::transform, foxglove::frame_transform(time_, "lidar", sensor));
   add(Topic::scan,
       foxglove::laser_scan(time_, "lidar", options_.lidar_angle_min, options_.lidar_angle_increment, ranges));
-}
-
-void Recorder::add_cost_map(const FrameReader& reader) {
-  const std::string_view block = reader.block(Block::cost_map);
-  if (block.empty()) return;
-  PayloadReader payload(block);
-  const maps::Pose robot = payload.pose();
-  const std::size_t rows = payload.get<std::uint16_t>(), columns = payload.get<std::uint16_t>();
-  const double resolution = payload.f32(), centre_x = payload.f32(), centre_y = payload.f32();
-  // Cells come with the largest x and y first; a grid's begin with the smallest, x along a row.
-  std::string cells(rows * columns, '\0');
-  unsigned bits = 0;
-  for (std::size_t i = 0; i < rows * columns; ++i) {
-    if (i % 8 == 0) bits = payload.get<std::uint8_t>();
-    const std::size_t row = i / columns, column = i % columns;
-    if (bits >> (i % 8) & 1u) cells[(columns - 1 - column) * rows + (rows - 1 - row)] = 100;
-  }
-  const double u = centre_x - 0.5 * resolution * static_cast<double>(rows),
-               v = centre_y - 0.5 * resolution * static_cast<double>(columns);
-  const double c = std::cos(robot.yaw), s = std::sin(robot.yaw);
-  add(Topic::cost_map, foxglove::grid(time_, {robot.x + c * u - s * v, robot.y + s * u + c * v, robot.yaw},
-                                      static_cast<std::uint32_t>(rows), resolution, "cost", cells));
 }
 
 void Recorder::add_cars(const FrameReader& reader) {
@@ -113,56 +84,6 @@ void Recorder::add_cars(const FrameReader& reader) {
     scene.line(plan, ghost_color, 2);
   }
   add(Topic::cars, scene.message());
-}
-
-void Recorder::add_candidates(const FrameReader& reader) {
-  foxglove::Scene scene(time_);
-  scene.begin("candidates");
-  if (const auto block = reader.block(Block::candidates); !block.empty()) {
-    PayloadReader payload(block);
-    const std::size_t count = payload.get<std::uint16_t>(), length = payload.get<std::uint16_t>();
-    std::vector<double> costs(count), sorted;
-    for (double& cost : costs) {
-      payload.take(3 * sizeof(float));
-      cost = payload.f32();
-      payload.take(sizeof(float));
-    }
-    const std::string_view collided = payload.take(count);
-    payload.align();
-    const auto points = payload.points(count * length);
-    for (std::size_t i = 0; i < count; ++i)
-      if (collided[i] == 0) sorted.push_back(costs[i]);
-    std::sort(sorted.begin(), sorted.end());
-    const double low = sorted.empty() ? 0 : sorted.front(),
-                 high = sorted.empty() ? 1 : std::max(low + 1e-9, sorted[sorted.size() * 9 / 10]);
-    const std::size_t shown = std::min(max_candidates, count);
-    for (std::size_t k = 0; k < shown; ++k) {
-      const std::size_t i = k * count / shown;
-      const Color color = collided[i] != 0 ? collided_color : cost_color((costs[i] - low) / (high - low));
-      scene.line(std::span(points).subspan(i * length, length), color, 1);
-    }
-  }
-  add(Topic::candidates, scene.message());
-}
-
-void Recorder::add_guides(const FrameReader& reader) {
-  foxglove::Scene scene(time_);
-  scene.begin("guides");
-  if (const auto block = reader.block(Block::guides); !block.empty()) {
-    PayloadReader payload(block);
-    const std::size_t guides = payload.get<std::uint16_t>(), iterations = payload.get<std::uint16_t>();
-    const std::size_t length = payload.get<std::uint16_t>();
-    payload.get<std::uint16_t>();
-    const auto points = payload.points(guides * iterations * length);
-    std::vector<maps::Point> ends(iterations);
-    for (std::size_t i = 0; i < guides; ++i) {
-      for (std::size_t k = 0; k < iterations; ++k) ends[k] = points[(k * guides + i + 1) * length - 1];
-      const std::size_t last = ((iterations - 1) * guides + i) * length;
-      scene.line(std::span(points).subspan(last, length), guide_color, 2);
-      scene.line(ends, {guide_color[0], guide_color[1], guide_color[2], 0.5}, 1);
-    }
-  }
-  add(Topic::guides, scene.message());
 }
 
 void Recorder::add_plan(const FrameReader& reader) {

@@ -20,7 +20,6 @@ struct LapFigures {
   bool success = false, finished = false, timeout = false;
   int collisions = 0, collided_bodies = 0;
   bool hit_wall = false;
-  int impassable = 0;
   double time = 0;  ///< s
   int steps = 0;
   double state_cost = 0, collision_cost = 0, input_error = 0;
@@ -48,7 +47,6 @@ void visit_figures(Figures& f, Visit&& visit) {
   visit(f.collisions, Figure{"collisions", "", "collisions as the protocol counts them"});
   visit(f.collided_bodies, Figure{"collided_bodies", "", "different bodies hit, all walls as one"});
   visit(f.hit_wall, Figure{"hit_wall", "", "the car hit a wall"});
-  visit(f.impassable, Figure{"impassable", "", "obstacles that a car of this width cannot pass"});
   visit(f.time, Figure{"time", "s", "time of the lap, or until it was stopped"});
   visit(f.steps, Figure{"steps", "", "control steps"});
   visit(f.state_cost, Figure{"state_cost", "", "mean cost of distance and yaw error"});

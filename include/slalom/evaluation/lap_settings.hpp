@@ -58,8 +58,6 @@ struct LapSettings {
   int opponents = 0;
   PerInput opponent_speed = 0.5;
   sim::OpponentDriver opponent_driver = sim::OpponentDriver::pursuit;
-  int blocking_opponents = 0;
-  int erratic_opponents = 0;
   int planning_opponents = 0;
   double opponent_gap = 0;
   int rounds = 1;
@@ -82,14 +80,9 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.opponents, {"opponents", "", "cars that drive along the path; closed courses only", 0, 16});
   visit(o.opponent_speed,
         {"opponent_speed", "", "fraction of the path's speed: one value, or one for each opponent", 0.01, 1});
-  visit(o.opponent_driver,
-        {"opponent_driver", "", "driver of the opponents that are neither blocking, erratic nor planning"});
-  visit(o.blocking_opponents, {"blocking_opponents", "",
-                               "number of opponents that block, from the first ahead of the car on", 0, 16});
-  visit(o.erratic_opponents,
-        {"erratic_opponents", "", "number of erratic opponents, after the blocking ones", 0, 16});
+  visit(o.opponent_driver, {"opponent_driver", "", "driver of the opponents without a planner"});
   visit(o.planning_opponents,
-        {"planning_opponents", "", "number of opponents with a planner of their own, after the erratic ones",
+        {"planning_opponents", "", "number of opponents with a planner, from the first ahead of the car on",
          0, most_planning_opponents});
   visit(o.opponent_gap, {"opponent_gap", "m",
                          "distance between cars at the start; 0: equal distances around the course", 0, 100});
@@ -113,13 +106,9 @@ void visit_options(Options& o, Visit&& visit) {
 /// steering of the configuration, without the lag of the servo; the middle of its body is its centre of
 /// gravity. The friction is that of the settings, since it is a property of the floor.
 sim::CarParameters car_of(const LapSettings& settings, const vehicle::Configuration& configuration);
-/// Whether opponent `index` (from 0, in the order in which they start ahead of the car) has a planner.
-bool has_planner(const LapSettings& settings, int index) noexcept;
 /// Returns the sensors and actuators of a real car, if the lap has them: `hardware`, or with `localised`
 /// HardwareConditions::sensors.
 std::optional<HardwareConditions> hardware_of(const LapSettings& settings);
-/// Returns the driver of opponent `index`, which has no planner.
-sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept;
 
 /// Sets the option that `key` names, for instance "world.friction" or "localiser.particles", from text.
 /// Returns false if `key` begins with neither "world." nor "localiser.". Throws std::invalid_argument naming

@@ -18,7 +18,6 @@ struct ExperimentResult {
   int experiment = 0;                                   ///< index
   int laps = 0, finished = 0, timeouts = 0;             ///< numbers of laps
   int collisions = 0;                                   ///< as the protocol counts them
-  int impassable = 0;                                   ///< obstacles of all laps in impassable_obstacles
   double ms_mean = 0;                                   ///< MS: mean over laps of the mean sequence cost
   Interval ms_ci;                                       ///< bootstrap over laps; see fewest_laps
   double state_cost_mean = 0, collision_cost_mean = 0;  ///< over laps

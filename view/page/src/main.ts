@@ -5,7 +5,6 @@ import * as introduction from "./introduction";
 import "./keys";
 import { draw, isReplay, page, scalar } from "./page";
 import "./panes/charts";
-import * as inspect from "./panes/inspect";
 import { showPane } from "./panes/tabs";
 import { past } from "./past";
 import "./readout";
@@ -31,5 +30,5 @@ requestAnimationFrame(turn);
 
 // For tests, and for debugging in the console: the news, and the modules.
 const figures = { scalar, waiting: () => waiting, isReplay };
-const modules = { past, bestLap, inspect, introduction, layers, scene, stage, send, ask };
+const modules = { past, bestLap, introduction, layers, scene, stage, send, ask };
 Object.assign(window, { slalom: Object.assign(Object.create(page), figures, modules) });

@@ -18,7 +18,7 @@ interface News extends Texts {
   connection: { isOpen: boolean; attempts: number };
   forgotten: true; // another drive has begun: nothing is known of its past
   cursor: number | undefined; // the tick under the pointer, over a chart or the slider
-  shown: "charts" | "options" | "inspect" | "laps"; // pane
+  shown: "charts" | "options" | "laps"; // pane
   theme: Theme;
   drawn: true; // draw the page now
 }

@@ -62,7 +62,7 @@ const blocks = {
   },
   /**
    * `terms`: of each trajectory its costs by term, the solver's cost and the weight, `width` values.
-   * `collided`: 0, or 1 + the index of the first state that collides; 255 if that is not known.
+   * `collided`: 1 if it collides, else 0.
    */
   candidates: (r: Reader) => {
     const size = r.end - r.at;
@@ -73,25 +73,6 @@ const blocks = {
     r.align();
     return { count, points, width, terms, collided, xy: r.points(count * points) };
   },
-  /** The costs of the plan and of each candidate, [trajectory][point][term], to a byte's precision. */
-  stepCosts: (r: Reader) => {
-    const [terms, points] = [r.u16(), r.u16()];
-    const curves = Math.floor((r.end - r.at) / (8 + points));
-    const costs = new Float32Array(curves * points);
-    for (let i = 0; i < curves; ++i) {
-      const [low, high] = r.f32s(2);
-      for (let p = 0; p < points; ++p)
-        costs[(Math.floor(i / terms) * points + p) * terms + (i % terms)] =
-          low + ((high - low) * r.u8()) / 255;
-    }
-    return { terms, points, costs };
-  },
-  /** Inputs of each step, [sequence][step][input]: the plan, the nominal sequence, its guide at first. */
-  inputs: (r: Reader) => {
-    const [steps, inputs] = [r.u16(), r.u16()];
-    return { steps, inputs, values: r.f32s((r.end - r.at) / 4) };
-  },
-  effectiveSamples: (r: Reader) => r.f32s((r.end - r.at) / 4), // temperature, effective sample size, ...
   lines: (r: Reader) => r.lines(), // to follow
   figure: (r: Reader) => r.lines(), // the body of a problem that is not a car
   polygons: (r: Reader) => r.lines(),
@@ -156,7 +137,7 @@ const blocks = {
 /** The names of the blocks by their kinds; "-" where there is none. */
 const kinds =
   "- scalars scan costMap candidates guides nominal plan bodies covariance - - others figure " +
-  "polygons - stepCosts inputs effectiveSamples lines grid path past - - - - - - - file";
+  "polygons - - - - lines grid path past - - - - - - - file";
 const names = kinds.split(" ") as (keyof typeof blocks)[];
 export type Blocks = { [Name in keyof typeof blocks]: ReturnType<(typeof blocks)[Name]> };
 

@@ -81,12 +81,6 @@ export class Tab {
       assert.ok(gap > 0.98, `the plan passes the disc at ${gap} of its radius`);
     }
   }
-  /** Chooses the candidate of a rank by cost. */
-  async choose(rank) {
-    await this.page.fill("#rank", String(rank));
-    await this.page.press("#rank", "Tab");
-  }
-
   /** Starts the drive again and waits until the page has the state of the new one. */
   async restart() {
     await this.until(() => window.slalom?.state);

@@ -70,7 +70,7 @@ const known: Strip[] = [
  * The colours of the lines of a chart, with their dashes. Lines can be told apart with any colour vision: they
  * differ in lightness, too, and some are dashed.
  */
-export const looks: [colour: string, dash?: number[]][] = [
+const looks: [colour: string, dash?: number[]][] = [
   ["accent"],
   ["text", dash],
   ["blue"],

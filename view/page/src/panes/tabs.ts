@@ -1,7 +1,7 @@
 import { get } from "../dom";
 import { tell } from "../page";
 
-export type Pane = "charts" | "options" | "inspect" | "laps";
+export type Pane = "charts" | "options" | "laps";
 
 const list = get("tabs");
 const tabs = [...list.querySelectorAll<HTMLElement>('[role="tab"]')];

@@ -1,63 +1,9 @@
-import { page } from "../page";
-import type { Body, Candidates, Frame } from "../protocol";
+import type { Candidates } from "../protocol";
 import { theme } from "../theme";
 import { costTerms, term } from "./layers";
 import type { Painter } from "./painter";
 import { rampColour, type Rgba } from "./palette";
-import { drawCross, faded } from "./shapes";
-
-const unknown = 255; // a candidate that collides, but it is not known where
-
-/** The index of the point at which a candidate collides; undefined if it does not, or if it is not known. */
-export function collisionPoint({ candidates }: Frame, i: number): number | undefined {
-  const at = candidates?.collided[i] || unknown;
-  return at < unknown ? at - 1 : undefined;
-}
-
-const kindNames = ["", "a parked car", "a box", "a pole", "another car", "somebody"];
-
-/** Names what a candidate meets at one of its points: a body whose edge is within reach, or a wall. */
-export function bodyHit({ bodies, candidates: c }: Frame, i: number, point: number): string {
-  const [x, y] = c!.xy.subarray(2 * (i * c!.points + point));
-  const { length } = page.hello!.body;
-  const reach = 1.1 * length; // m, from the rear axle of a car to its front
-  const distance = (b: Body) => {
-    const [cos, sin, dx, dy] = [Math.cos(b.yaw), Math.sin(b.yaw), x - b.x, y - b.y];
-    if (b.kind === 3 || b.kind === 5) return Math.hypot(dx, dy) - b.length / 2;
-    const u = Math.abs(cos * dx + sin * dy) - b.length / 2;
-    const v = Math.abs(cos * dy - sin * dx) - b.width / 2;
-    return Math.hypot(Math.max(0, u), Math.max(0, v));
-  };
-  const nearest = bodies.filter((b) => b.kind > 0 && b.kind < 6).sort((a, b) => distance(a) - distance(b))[0];
-  if (nearest && distance(nearest) < reach) return kindNames[nearest.kind];
-  return page.scene?.grid ? "a wall" : "";
-}
-
-/** The candidate that passes nearest to a point of the map frame, within `reach` (m); -1 if there is none. */
-export function candidateAt({ candidates: c }: Frame, x: number, y: number, reach: number): number {
-  let found = -1;
-  for (let k = 0; c && k < c.count * c.points; ++k) {
-    if (k % c.points === 0) continue;
-    const [ax, ay, bx, by] = c.xy.subarray(2 * k - 2, 2 * k + 2);
-    const length = (bx - ax) ** 2 + (by - ay) ** 2;
-    const along = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / (length || 1);
-    const share = Math.min(1, Math.max(0, along));
-    const distance = Math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y);
-    if (distance < reach) [reach, found] = [distance, Math.floor(k / c.points)];
-  }
-  return found;
-}
-
-/** Draws the candidate that is chosen, and a cross where it collides. */
-export function drawChosen(painter: Painter, frame: Frame, i: number, cross: number) {
-  const c = frame.candidates!;
-  painter.polyline(c.xy, i * c.points, c.points, theme.ground, 6);
-  painter.polyline(c.xy, i * c.points, c.points, theme.selected, 3);
-  const at = collisionPoint(frame, i);
-  if (at === undefined) return;
-  const [x, y] = c.xy.subarray(2 * (i * c.points + at));
-  drawCross(painter, { x, y }, cross);
-}
+import { faded } from "./shapes";
 
 /** Costs of the candidates' first and last colour. */
 export let costRange: [number, number] = [0, 1];

@@ -1,13 +1,10 @@
 import { send } from "../connection";
 import { all, get, press } from "../dom";
 import { can, drivenOf, isReplay, on, page, redraw } from "../page";
-import { choose, chosen } from "../panes/inspect";
 import type { Body } from "../protocol";
-import { candidateAt } from "./candidates";
-import { visible } from "./layers";
 import { camera, hold, placeOf } from "./stage";
 
-// Mouse, pen and fingers on the scene: pan, zoom, pinch, place, drag, delete, choose.
+// Mouse, pen and fingers on the scene: pan, zoom, pinch, place, drag, delete.
 
 /** The body that a click places, or none. */
 export type Tool = "disc" | "box" | "car" | "pan";
@@ -15,7 +12,7 @@ export type Tool = "disc" | "box" | "car" | "pan";
 const slack = 5; // pixels that a click may move
 const gap = 40; // ms between two messages of a drag
 const longPress = 600; // ms that a finger rests on an obstacle to delete it
-const reach = 8; // pixels beside a body or a candidate that still mean it
+const reach = 8; // pixels beside a body that still mean it
 
 let tool: Tool = "disc";
 /** The number of the body that is selected; -1 if there is none. */
@@ -55,15 +52,6 @@ function remove(body: Body | undefined) {
   if (!body || body.kind === 0 || !can("add")) return false;
   send({ do: "remove", body: body.id });
   return true;
-}
-
-/** Chooses the candidate at a point of the map frame; whether there was one to choose or to leave. */
-function chooseAt(x: number, y: number): boolean {
-  const { frame } = page;
-  const isShown = tool === "pan" && frame && visible.has("candidates");
-  const candidate = isShown ? candidateAt(frame, x, y, reach / camera.zoom) : -1;
-  if (candidate >= 0 || chosen >= 0) choose(candidate);
-  return candidate >= 0;
 }
 
 function drop(x: number, y: number) {
@@ -169,7 +157,7 @@ canvas.onpointerup = canvas.onpointercancel = (e) => {
   if (!start || pointers.size) return;
   const [x, y] = camera.toMap(p.x, p.y);
   if (dragged && moved) moveTo(dragged, p);
-  else if (!moved && e.type === "pointerup" && !chooseAt(x, y) && !dragged) drop(x, y);
+  else if (!moved && e.type === "pointerup" && !dragged) drop(x, y);
   start = dragged = undefined;
   redraw();
 };

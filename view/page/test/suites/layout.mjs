@@ -62,7 +62,7 @@ export default async function (h) {
       await h.drawn();
       const panels = await page.evaluate(covering);
       if (panels.length) found.push(`${width}: ${panels} on the fitted course`);
-      for (const pane of ["options", "laps", "inspect", "charts"]) {
+      for (const pane of ["options", "laps", "charts"]) {
         await h.press("tab-" + pane);
         await check(`${width}, ${pane}`, smallest);
       }

@@ -1,4 +1,4 @@
-// A problem of the user's own on the page, and the inspection of candidates.
+// A problem of the user's own on the page.
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
 
@@ -72,45 +72,6 @@ export default async function (h) {
     await look.until(() => slalom.state.method === "svg_mppi");
   });
 
-  await h.test("a click on a candidate shows its rank, weight, cost by term and collision", async () => {
-    const middle = await page.evaluate(() => {
-      const c = slalom.frame.candidates;
-      const i = c.collided.findIndex((v) => v > 8);
-      const k = Math.max(0, i) * c.points + Math.round(0.7 * c.points);
-      return { x: c.xy[2 * k], y: c.xy[2 * k + 1] };
-    });
-    await page.mouse.click(...(await look.placeOf(middle)));
-    await page.locator("#pane-inspect").waitFor();
-    const text = await page.textContent("#inspect-text");
-    assert.match(text, /^Rank \d+ of \d+ by cost, weight [\d.e-]+ %\. It (does not collide|collides)/);
-    const rows = await page.locator("#inspect-terms tr").allTextContents();
-    assert.ok(rows.length >= 2 && rows.at(-1).startsWith("total"), rows.join());
-    assert.equal(await page.locator("#inspect-charts .chart:visible canvas").count(), 6);
-    // By rank: the cost of the candidate is the sum of its terms, as the solver has it, but for float32.
-    await look.choose(1);
-    const [sum, cost] = await page.evaluate(() => {
-      const { candidates: c } = slalom.frame;
-      const i = slalom.inspect.chosen;
-      const terms = c.terms.slice(c.width * i, c.width * (i + 1) - 2);
-      return [terms.reduce((a, b) => a + b), c.terms[c.width * (i + 1) - 2]];
-    });
-    assert.ok(Math.abs(sum - cost) < 1e-3 * cost, `${sum} is ${cost}`);
-  });
-
-  await h.test("a candidate chosen while driving stays, and is forgotten with a new plan", async () => {
-    await look.send({ do: "rate", rate: 0 });
-    await look.restart();
-    await look.until(() => !slalom.state.paused && slalom.scalar("tick") > 5);
-    await look.choose(3);
-    await look.isPaused();
-    await look.drawn();
-    assert.match(await page.textContent("#inspect-text"), /^Rank 3 of/);
-    assert.ok(await page.evaluate(() => slalom.inspect.chosen >= 0));
-    await look.send({ do: "set", key: "problem.goal_y", value: "1" });
-    await look.until(() => slalom.inspect.chosen < 0);
-    await look.send({ do: "rate", rate: 1 });
-  });
-
   await h.test("charts hide lines, zoom, and have a logarithmic axis", async () => {
     await page.click("#tab-charts");
     const line = page.locator("#charts button.value").first();
@@ -175,44 +136,4 @@ export default async function (h) {
   });
   await page.close();
   await server.stop();
-
-  await h.test("a candidate of a car can be chosen by its rank, and its collision is marked", async () => {
-    await h.pause();
-    await h.page.click("#tab-inspect");
-    await h.choose(3);
-    await h.says("inspect-text", "Rank 3 of");
-    const rows = await h.page.locator("#inspect-terms tr").allTextContents();
-    const terms = rows.map((text) => text.replace(/[\d.–-].*/, ""));
-    assert.deepEqual(terms, ["distance", "yaw", "collision", "total"]);
-    // One that collides: the costs over the horizon are those of its terms, to a byte's precision.
-    const rank = await h.page.evaluate(() => {
-      const c = slalom.frame.candidates;
-      const cost = (i) => c.terms[c.width * (i + 1) - 2];
-      const order = Array.from({ length: c.count }, (_, i) => i).sort((a, b) => cost(a) - cost(b));
-      return 1 + order.findIndex((i) => c.collided[i] > 1);
-    });
-    assert.ok(rank > 0, "a candidate collides");
-    await h.choose(rank);
-    await h.says("inspect-text", "It collides with ");
-    const says = /^Rank \d+ of .* It collides with (a parked car|a wall) after [\d.]+ s, at the cross\.$/;
-    assert.match(await h.page.textContent("#inspect-text"), says);
-    const differences = await h.page.evaluate(() => {
-      const { candidates: c, stepCosts: s } = slalom.frame;
-      const i = slalom.inspect.chosen;
-      return [0, 1, 2].map((k) => {
-        const at = (p) => s.costs[((1 + i) * s.points + p) * s.terms + k];
-        const values = Array.from({ length: s.points }, (_, p) => at(p));
-        const sum = values.reduce((a, b) => a + b);
-        return Math.abs(sum - c.terms[c.width * i + k]) - (s.points / 510) * Math.max(...values);
-      });
-    });
-    for (const each of differences) assert.ok(each < 1e-4, differences.join());
-    const effective = await h.page.evaluate(() => [...slalom.frame.effectiveSamples]);
-    const [temperature, size] = [await h.scalar("temperature"), await h.scalar("effective_samples")];
-    const at = effective.findIndex((v, i) => i % 2 === 0 && Math.abs(v - temperature) < 1e-4 * v);
-    assert.ok(Math.abs(effective[at + 1] - size) < 0.01 * size, `${effective} at ${temperature}: ${size}`);
-    assert.equal(await h.page.locator("#inspect-charts .chart:visible canvas").count(), 6);
-    await h.page.click("#tab-charts");
-    await h.play();
-  });
 }
