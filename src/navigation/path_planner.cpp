@@ -70,6 +70,32 @@ double PathPlanner::cost_to(const maps::Point& point) const noexcept {
   return cell < 0 ? std::numeric_limits<double>::infinity() : grid_.cost(cell);
 }
 
+PathPlanner::Way PathPlanner::way_off(const Costmap& costmap, const maps::Point& point,
+                                      double most) const noexcept {
+  Way best{{}, std::numeric_limits<double>::infinity()};
+  const double margin = half_width_ + 3 * geometry_.resolution;
+  const double half_x = 0.5 * geometry_.length_x() - margin, half_y = 0.5 * geometry_.length_y() - margin;
+  const auto try_from = [&](double x, double y) {
+    const maps::Point from{geometry_.center_x + x, geometry_.center_y + y};
+    const double away = distance(from, point), cost = cost_to(from) + away;
+    if (cost >= std::min(most, best.cost)) return;
+    for (double along = 0; along < away; along += geometry_.resolution) {
+      const double share = along / away;
+      const maps::Point here{from.x + share * (point.x - from.x), from.y + share * (point.y - from.y)};
+      if (knows(costmap, here) && !has_room(costmap, here)) return;
+    }
+    best = {from, cost};
+  };
+  for (double t = -1; t < 1;
+       t += 2 * geometry_.resolution / std::max({half_x, half_y, geometry_.resolution})) {
+    for (const double side : {-1.0, 1.0}) {
+      try_from(side * half_x, t * half_y);
+      try_from(t * half_x, side * half_y);
+    }
+  }
+  return best;
+}
+
 std::span<const maps::Point> PathPlanner::path_to(const maps::Point& point) noexcept {
   return grid_.path_to(grid_.cell_at(point), spacing);
 }

@@ -241,11 +241,18 @@ TEST(Footprint, TheOutlineHasNoGaps) {
   }
 }
 
-TEST(Footprint, WithoutARimIsTheSameShapeButSmaller) {
-  const Footprint inner = Footprint::rectangle(0.5, 0.3, 0.6).without_rim(0.06);
-  EXPECT_NEAR(inner.half_width(), 0.24, 1e-12);
-  EXPECT_NEAR(inner.circumscribed_radius(), 0.8 * std::hypot(0.5, 0.3), 1e-12);
-  EXPECT_NEAR(Footprint::rectangle(0.5, 0.3, 0.6).without_rim(1).half_width(), 0.06, 1e-12);
+TEST(Footprint, WithoutARimEverySideIsAsMuchNearer) {
+  const Footprint long_nose = Footprint::rectangle(0.9, 0.2, 0.5), inner = long_nose.without_rim(0.06);
+  EXPECT_NEAR(inner.half_width(), 0.19, 1e-12);
+  EXPECT_NEAR(inner.circumscribed_radius(), std::hypot(0.84, 0.19), 1e-12);
+  EXPECT_NEAR(long_nose.without_rim(1).half_width(), 0.05, 1e-12);
+  RandomStream random({2, 0});
+  for (int shape = 0; shape < 100; ++shape) {
+    const Footprint body = random_footprint(random);
+    const std::vector<Footprint> bodies = body.without_rims(0.02);
+    for (std::size_t i = 1; i < bodies.size(); ++i)
+      for (const Point& vertex : bodies[i].vertices()) EXPECT_TRUE(body.contains(vertex)) << shape;
+  }
 }
 
 TEST(Footprint, RejectsInvalidOutlines) {

@@ -36,6 +36,14 @@ class PathPlanner {
   bool search_from(const maps::Point& start) noexcept;
   /// The cost of a way to a position, m of free space; infinite if there is none.
   double cost_to(const maps::Point& point) const noexcept;
+  /// A way, and its end if it is followed by a straight line off the costmap.
+  struct Way {
+    maps::Point end;  ///< m
+    double cost = 0;  ///< m of free space, with that line; infinite if there is none
+  };
+  /// The cheapest way to a position off the costmap: to the edge of the costmap, and straight on, with room
+  /// as far as the costmap shows. None that costs `most` or more.
+  Way way_off(const Costmap& costmap, const maps::Point& point, double most) const noexcept;
   /// The way to a position that can be reached, without that position itself. Valid until the next call.
   std::span<const maps::Point> path_to(const maps::Point& point) noexcept;
 
