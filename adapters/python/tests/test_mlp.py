@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 import slalom
@@ -40,6 +42,10 @@ def test_mistakes_are_named():
         train_mlp(np.zeros((3, 1)), np.zeros((2, 1)))
     with pytest.raises(ValueError, match="must be finite"):
         train_mlp(np.full((3, 1), np.nan), np.zeros((3, 1)))
+    for mistake in [{"hidden": (0,)}, {"hidden": (8, -1)}, {"learning_rate": math.nan}, {"learning_rate": 0}, {"batch": 0},
+                    {"epochs": 1.5}]:
+        with pytest.raises(ValueError, match=f"train_mlp: {next(iter(mistake))}: .* must be"):
+            train_mlp(np.zeros((3, 1)), np.zeros((3, 1)), **mistake)
     with pytest.raises(ValueError, match="residual"):
         train_mlp(np.zeros((3, 1)), np.zeros((3, 2)), residual=True)
 
