@@ -1,5 +1,4 @@
 import "./style.css";
-import * as bestLap from "./best_lap";
 import { acknowledge, ask, connect, send, waiting } from "./connection";
 import * as introduction from "./introduction";
 import "./keys";
@@ -30,5 +29,5 @@ requestAnimationFrame(turn);
 
 // For tests, and for debugging in the console: the news, and the modules.
 const figures = { scalar, waiting: () => waiting, isReplay };
-const modules = { past, bestLap, introduction, layers, scene, stage, send, ask };
+const modules = { past, introduction, layers, scene, stage, send, ask };
 Object.assign(window, { slalom: Object.assign(Object.create(page), figures, modules) });

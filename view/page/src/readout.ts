@@ -1,4 +1,3 @@
-import { behindBest, bestNumber } from "./best_lap";
 import { all, get } from "./dom";
 import { methodOf, on, page, scalar } from "./page";
 import type { Hello } from "./protocol";
@@ -23,9 +22,6 @@ function showFigures() {
     show(each, Number.isFinite(value) ? value.toFixed(Number(each.dataset.digits)) : undefined);
   }
   get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
-  const behind = behindBest();
-  show(get("best"), behind === undefined ? undefined : signed(behind, 2));
-  get("best-label").textContent = `to best lap (${bestNumber()})`;
   const ghost = page.frame?.ghostFrame?.scalars;
   const driven = (of?: Float64Array) => scalar("lap", of) + scalar("progress", of); // laps
   const ahead = ghost && page.state ? (driven() - driven(ghost)) * page.state.length : NaN;

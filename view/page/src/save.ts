@@ -15,11 +15,7 @@ const item = (id: string, act: () => void) =>
     saveMenu.close();
     act();
   });
-for (const format of ["png", "svg"] as const)
-  item("save-" + format, () => {
-    const name = `${fileName()}.${format}`;
-    void picture(format).then((blob) => download(name, blob, blob.type));
-  });
+item("save-png", () => void picture().then((blob) => download(`${fileName()}.png`, blob, blob.type)));
 for (const what of ["replay", "recording"])
   item("save-" + what, () => {
     toast(`Saving a ${what} of the last minute …`);

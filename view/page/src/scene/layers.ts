@@ -17,7 +17,7 @@ export const layers = [
   ["obstacles", "Obstacles", "parked cars, boxes, poles and people", "obstacle"],
   ["opponents", "Opponents", "other cars; outlines and dots: where the planner expects them", "opponent"],
   ["modes", "Caption", "which way around the next obstacle the samples and the plan take", "nominal"],
-  ["ghost", "Ghost", "the second controller, in a world of its own; as an outline, the best lap", "ghost"],
+  ["ghost", "Ghost", "the second controller, in a world of its own", "ghost"],
 ] as const;
 export type Layer = (typeof layers)[number][0];
 

@@ -3,16 +3,7 @@ import type { Pose } from "../protocol";
 import type { Camera } from "./camera";
 import { css, type Rgba } from "./palette";
 
-/** A canvas, with as much of it as pictures need. */
-export type Pen = Pick<
-  CanvasRenderingContext2D,
-  | ("fillStyle" | "strokeStyle" | "lineWidth" | "lineJoin" | "imageSmoothingQuality" | "font")
-  | ("save" | "restore" | "scale" | "rotate" | "translate" | "clip" | "fill" | "stroke")
-  | ("beginPath" | "closePath" | "moveTo" | "lineTo" | "arc" | "rect" | "fillRect" | "fillText")
-> & {
-  setTransform(a: number, b: number, c: number, d: number, e: number, f: number): void;
-  drawImage(image: CanvasImageSource, x: number, y: number, width: number, height: number): void;
-};
+export type Pen = CanvasRenderingContext2D;
 
 /** Draws lines and shapes in the order of the calls. Positions are in m (map frame), widths in pixels. */
 export class Painter {

@@ -10,7 +10,6 @@ import { Painter, type Pen } from "./painter";
 import { css, rampColour } from "./palette";
 import { drawScene, size } from "./scene";
 import { camera, ghostCamera, isSideBySide } from "./stage";
-import { SvgPen } from "./svg_pen";
 
 const margin = 14; // pixels, as all lengths here
 const line = 22;
@@ -112,8 +111,8 @@ function drawLaneTitle(pen: Pen, text: string, { left, top, middleX }: Camera) {
   if (left) pen.fillRect(left, 0, 1, 1e4);
 }
 
-/** Draws the scene with its names, captions, scale and the meaning of its colours below. */
-export async function picture(format: "png" | "svg"): Promise<Blob> {
+/** Draws the scene with its names, captions, scale and the meaning of its colours below, as a PNG of twice the size. */
+export async function picture(): Promise<Blob> {
   const [width, height] = size();
   const time = `${(scalar("tick") * period()).toFixed(2)} s`;
   const title = [...titleParts(), time, counted(scalar("contacts"), "collision")];
@@ -131,9 +130,9 @@ export async function picture(format: "png" | "svg"): Promise<Blob> {
   });
   end += margin;
 
-  const ratio = format === "png" ? 2 : 1;
+  const ratio = 2;
   const canvas = make("canvas", { width: ratio * width, height: ratio * end });
-  const pen = format === "png" ? canvas.getContext("2d")! : new SvgPen(width, end);
+  const pen = canvas.getContext("2d")!;
   drawScene(new Painter(pen, ratio));
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   if (isSideBySide())
@@ -143,6 +142,5 @@ export async function picture(format: "png" | "svg"): Promise<Blob> {
   pen.fillStyle = themed("--panel");
   pen.fillRect(0, height, width, end - height);
   for (const { item, x, y } of rows.flat()) item.draw(pen, x, y);
-  if (pen instanceof SvgPen) return new Blob([pen.text()], { type: "image/svg+xml" });
   return new Promise((done) => canvas.toBlob((blob) => done(blob!), "image/png"));
 }

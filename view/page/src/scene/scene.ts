@@ -1,4 +1,3 @@
-import { bestPose } from "../best_lap";
 import { get } from "../dom";
 import { marks } from "../introduction";
 import { drivenOf, on, page } from "../page";
@@ -63,7 +62,6 @@ function drawLane(painter: Painter, camera: Camera, frame: Frame | undefined, dr
   show("nominal", frame.nominal, (_, { xy, points }) => painter.dashed(xy, points, theme.nominal, 1.6));
   show("plan", frame.plan, draw.drawPlan);
   if (!isSideBySide()) show("ghost", frame.ghostFrame, shapes.drawGhost);
-  if (!isGhost) show("ghost", bestPose(), (_, pose) => shapes.drawOutline(painter, pose, theme.driven));
   const probe = page.cursor === undefined ? undefined : past.pose(page.cursor);
   if (probe) shapes.drawOutline(painter, probe, theme.selected);
   shapes.drawDriven(painter, frame, theme.car);

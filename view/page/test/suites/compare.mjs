@@ -1,4 +1,4 @@
-// Two controllers: forks, ghosts, and the best lap.
+// Two controllers: forks and ghosts.
 import assert from "node:assert/strict";
 
 export default async function (h) {
@@ -52,30 +52,6 @@ export default async function (h) {
     assert.ok(speed > 0.5, `the ghost drives at ${speed} m/s`);
     await h.send({ do: "ghost", method: "" });
     await h.until(() => slalom.state.ghost === "");
-    await h.play();
-  });
-
-  await h.test("the best lap drives along, and the readout has the time behind it", async () => {
-    await h.restart();
-    await h.pause();
-    for (let turns = 0; turns < 12 && !(await h.state()).laps.length; ++turns) await h.step(150);
-    const [first] = (await h.state()).laps;
-    assert.equal(first.lap, 1);
-    assert.equal(first.contacts, 0, "the seed's drive has no collision in its first lap");
-    await h.step(20);
-    await h.until(() => slalom.bestLap.bestNumber() === 1);
-    const [behind, gap] = await page.evaluate(() => {
-      const best = slalom.bestLap.bestPose();
-      return [
-        slalom.bestLap.behindBest(),
-        Math.hypot(best.x - slalom.scalar("x"), best.y - slalom.scalar("y")),
-      ];
-    });
-    assert.ok(behind < 0, "a lap that begins at speed is ahead of one that began at rest");
-    assert.ok(gap > 0.5, `the best lap is ${gap} m away`);
-    assert.equal(await page.isVisible("#best"), true);
-    await h.seek(100); // in the best lap itself
-    assert.equal(await page.evaluate(() => document.getElementById("best").firstChild.textContent), "+0.00");
     await h.play();
   });
 }

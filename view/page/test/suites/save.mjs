@@ -3,26 +3,6 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 
-/** The shares of the pixels of a PNG and of an SVG that have the colour of the plan; runs in the page. */
-async function share([png, svg]) {
-  const shares = [];
-  for (const url of ["data:image/png;base64," + png, "data:image/svg+xml;utf8," + encodeURIComponent(svg)]) {
-    const image = new Image();
-    image.src = url;
-    await image.decode();
-    const canvas = Object.assign(document.createElement("canvas"), { width: 1280, height: 720 });
-    const pen = canvas.getContext("2d");
-    pen.drawImage(image, 0, 0, 1280, 720);
-    const { data } = pen.getImageData(0, 0, 1280, 720);
-    const plan = slalom.theme.plan.map((v) => 255 * v);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4)
-      count += [0, 1, 2].every((k) => Math.abs(data[i + k] - plan[k]) < 30);
-    shares.push(count / (1280 * 720));
-  }
-  return shares;
-}
-
 export default async function (h) {
   const { page } = h;
 
@@ -47,24 +27,13 @@ export default async function (h) {
     return path;
   }
 
-  await h.test("saves a picture of twice the size, and an SVG, with names and scale", async () => {
+  await h.test("saves a picture of twice the size, with its legend", async () => {
     await h.pause();
     const [width, height] = await page.evaluate(() => slalom.scene.size());
     const png = readFileSync(await saved("#save-png"));
     assert.equal(png.subarray(1, 4).toString(), "PNG");
     assert.equal(png.readUInt32BE(16), 2 * width);
     assert.ok(png.readUInt32BE(20) > 2 * height + 60, "the legend is below the scene");
-    const svg = await saved("#save-svg");
-    const drawing = readFileSync(svg, "utf8");
-    const time = `${((await h.scalar("tick")) * 0.025).toFixed(2)} s`;
-    for (const text of ["stag", "svg_mppi", "seed ", time, " m<", "Driven line", "Candidates, by total cost"])
-      assert.ok(drawing.includes(text), text);
-    const look = (await h.open("file://" + svg, { viewport: { width: 400, height: 300 } })).page;
-    assert.equal(await look.locator("parsererror").count(), 0);
-    // Both drawings show the same: as large a share of their pixels has the colour of the plan.
-    const shares = await page.evaluate(share, [png.toString("base64"), drawing]);
-    assert.ok(shares[0] > 0.0005 && Math.abs(shares[1] / shares[0] - 1) < 0.2, `plan: ${shares}`);
-    await look.close();
     await h.play();
   });
 
