@@ -91,7 +91,6 @@ TEST_P(EveryModel, MotionDoesNotDependOnTheStartPose) {
 }
 
 TEST_P(EveryModel, ACoastingCarGainsNoEnergy) {
-  options_.coast = Coast::roll;
   Plant plant({}, options_, 0.01);
   const CarParameters car;
   plant.reset({.steer = 0.2, .speed = 6});

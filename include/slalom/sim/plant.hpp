@@ -8,17 +8,6 @@
 
 namespace slalom::sim {
 
-/// The behaviour of a car in a step without a usable command.
-enum class Coast {
-  roll,    ///< the wheels keep their angle, no drive and no brake
-  brake,   ///< the wheels keep their angle, the car brakes to a stop
-  repeat,  ///< the last command still holds (of a fresh car: stand still)
-};
-inline const char* const* enum_names(Coast) {
-  static constexpr const char* names[] = {"roll", "brake", "repeat", nullptr};
-  return names;
-}
-
 /// The low-level control between a command and the model's input. `visit_options` of PlantOptions describes
 /// the gains.
 struct ActuationOptions {
@@ -42,7 +31,6 @@ struct PlantOptions {
   DynamicsOptions dynamics{};        ///< car dynamics
   ActuationOptions actuation{};      ///< conversion of commands to steering and acceleration
   double steering_dead_time = 0.02;  ///< rounded to whole time steps
-  Coast coast = Coast::roll;
   bool gym = false;  ///< as f1tenth_gym: the yaw is brought to [0, 2 pi] by at most one turn per step
 };
 
@@ -57,7 +45,6 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.actuation.speed_gain, {"speed_gain", "1/s", "acceleration per error of speed", 1e-9, 1e9});
   visit(o.actuation.brake_gain,
         {"brake_gain", "1/s", "acceleration per error of speed when braking", 1e-9, 1e9});
-  visit(o.coast, {"coast", "", "behaviour of a car without a usable command"});
 }
 
 /// One car without a world round it: model, low-level control and steering dead time.
@@ -71,7 +58,8 @@ class Plant {
   /// Moves by one time step. With a command that is not finite it coasts.
   void step(const Command& command) noexcept;
 
-  void coast() noexcept;  ///< moves by one time step without a command
+  /// Moves by one time step without a command: the wheels keep their angle, no drive and no brake.
+  void coast() noexcept;
 
   const CarState& state() const noexcept { return state_; }  ///< current state
 
@@ -91,7 +79,6 @@ class Plant {
   PlantOptions options_;
   double time_step_;
   CarState state_;
-  Command last_;
   double applied_ = 0;
   std::vector<double> on_the_way_;  ///< ring of steering commands, the oldest at next_
   std::size_t next_ = 0;

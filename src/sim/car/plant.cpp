@@ -58,7 +58,6 @@ Plant::Plant(const CarParameters& car, const PlantOptions& options, double time_
 
 void Plant::reset(const CarState& state) noexcept {
   state_ = state;
-  last_ = {};
   applied_ = 0;
   next_ = 0;
   std::fill(on_the_way_.begin(), on_the_way_.end(), 0.0);
@@ -79,21 +78,15 @@ void Plant::move(const DriveInput& input) noexcept {
 
 void Plant::step(const Command& command) noexcept {
   if (!std::isfinite(command.steer) || !std::isfinite(command.speed)) return coast();
-  last_ = command;
   applied_ = delayed(command.steer);
   move({steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_),
         acceleration_towards(car_, options_.actuation, state_.speed, command.speed)});
 }
 
 void Plant::coast() noexcept {
-  if (options_.coast == Coast::repeat) return step(last_);
   // Commands under way still arrive; after them the wheels stay as they are.
   applied_ = delayed(state_.steer);
-  DriveInput input{steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_), 0};
-  if (options_.coast == Coast::brake)
-    input.acceleration =
-        std::clamp(-state_.speed / time_step_, -car_.acceleration_max, car_.acceleration_max);
-  move(input);
+  move({steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_), 0});
 }
 
 }  // namespace slalom::sim
