@@ -44,30 +44,6 @@ TEST(GymDynamics, KinematicDerivatives) {
   });
 }
 
-TEST(GymDynamics, SteeringLimit) {
-  compare_rows("steering_constraint", 0, [](const GoldenRow& row, Comparison& compared) {
-    compared.absolute(row,
-                      {{"sv_out", limit_steer_rate(CarParameters{}, row.real("delta"), row.real("sv_in"))}});
-  });
-}
-
-TEST(GymDynamics, AccelerationLimit) {
-  compare_rows("accl_constraints", 2.3e-16, [](const GoldenRow& row, Comparison& compared) {
-    compared.relative(
-        row, {{"accl_out", limit_acceleration(CarParameters{}, row.real("v"), row.real("accl_in"))}});
-  });
-}
-
-TEST(GymDynamics, LowLevelControl) {
-  compare_rows("pid", 4.5e-16, [](const GoldenRow& row, Comparison& compared) {
-    const CarParameters car;
-    compared.relative(
-        row,
-        {{"accl", acceleration_towards(car, gym_actuation, row.real("v"), row.real("speed_cmd"))},
-         {"sv", steer_rate_towards(car, gym_actuation, row.real("delta"), row.real("steer_cmd"), 0.01)}});
-  });
-}
-
 TEST(GymDynamics, Trajectories) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
   const GoldenTable sensitivity(folder / "trajectory_sensitivity.csv");

@@ -33,39 +33,12 @@ Box box_of(const GoldenRow& row, const std::string& suffix = "") {
   return box;
 }
 
-TEST(GymRules, Vertices) {
-  compare_rows("vertices", 1e-9, [](const GoldenRow& row, Comparison& compared) {
-    const auto [rl, rr, fr, fl] = corners(box_of(row));
-    compared.absolute(row, {{"rl_x", rl.x}, {"rl_y", rl.y}, {"rr_x", rr.x}, {"rr_y", rr.y}});
-    compared.absolute(row, {{"fr_x", fr.x}, {"fr_y", fr.y}, {"fl_x", fl.x}, {"fl_y", fl.y}});
-  });
-}
-
 TEST(GymRules, PairCollisions) {
   compare_rows("gjk_pairs", 1e-9, [](const GoldenRow& row, Comparison& compared) {
     const double gap = signed_gap(box_of(row, "1"), box_of(row, "2"));
     EXPECT_EQ(gap <= 0, row.integer("collide") == 1) << "case " << row.text("case");
     compared.absolute(row, {{"sat_signed_gap", gap}});
   });
-}
-
-TEST(GymRules, CollisionsOfMany) {
-  SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  const GoldenTable table(folder / "collision_multiple.csv");
-  Comparison compared("collision_multiple");
-  visit_cases(table, [&](std::size_t begin, std::size_t end) {
-    compared.next_case();
-    for (std::size_t i = begin; i < end; ++i) {
-      int partner = -1;
-      // The last pair in the order (0,1), (0,2), ..., (1,2), ... that has i in it and collides.
-      for (std::size_t j = begin; j < end; ++j)
-        if (j != i && signed_gap(box_of(table[i]), box_of(table[j])) <= 0)
-          partner = static_cast<int>(j - begin);
-      compared.absolute(table[i], {{"collision", partner >= 0}, {"collision_idx", partner}});
-    }
-  });
-  EXPECT_GT(compared.cases(), 0);
-  EXPECT_EQ(compared.worst(), 0);
 }
 
 TEST(GymRules, NumpyDraws) {

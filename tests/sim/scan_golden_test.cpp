@@ -31,21 +31,6 @@ TEST_P(GymScan, Lidar) {
 
 INSTANTIATE_TEST_SUITE_P(Maps, GymScan, ::testing::Values("berlin", "skirk"));
 
-TEST(GymLidar, DistanceLookup) {
-  SLALOM_GOLDEN_FOLDER(folder, "simulator");
-  std::unordered_map<std::string, Track> tracks;
-  compare_rows("dt_lookup", 1e-9, [&](const GoldenRow& row, Comparison& compared) {
-    const std::string map = row.text("map");
-    if (!tracks.count(map)) tracks.emplace(map, gym_track(folder, map));
-    const Track& track = tracks.at(map);
-    const maps::Point point{row.real("x"), row.real("y")}, cell = track.to_cells(point);
-    compared.absolute(row, {{"dt", track.gym_distance(point)}});
-    const bool inside = track.contains(cell);
-    EXPECT_EQ(inside ? static_cast<int>(cell.y) : -1, row.integer("row"));
-    EXPECT_EQ(inside ? static_cast<int>(cell.x) : -1, row.integer("col"));
-  });
-}
-
 TEST(GymLidar, RayCast) {
   const Lidar lidar(gym_lidar());
   std::vector<double> ranges;

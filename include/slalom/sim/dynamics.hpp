@@ -42,13 +42,7 @@ struct DynamicsOptions {
 /// Speed (m/s) below which single_track and saturating fall back to the kinematic model.
 inline constexpr double kinematic_below = 0.5;
 
-/// The steering rate that the actuator allows: none further outwards at its limit.
-double limit_steer_rate(const CarParameters& car, double steer, double steer_rate) noexcept;
-
-/// The acceleration that motor and brakes allow: none beyond the limits of speed, less above switch_speed.
-double limit_acceleration(const CarParameters& car, double speed, double acceleration) noexcept;
-
-/// d(state)/dt under the input as limit_steer_rate and limit_acceleration cut it; each field is the
+/// d(state)/dt under the input, which the limits of actuator, motor and brakes cut; each field is the
 /// derivative of the state's field of that name.
 CarState derivative(const CarParameters& car, const DynamicsOptions& options, const CarState& state,
                     const DriveInput& input) noexcept;

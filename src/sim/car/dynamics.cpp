@@ -109,6 +109,21 @@ CarState integrate(const CarParameters& car, const DynamicsOptions& options, con
   return plus(s, dt / 6, plus(plus(plus(k1, 2, k2), 2, k3), 1, k4));
 }
 
+/// The steering rate that the actuator allows: none further outwards at its limit.
+double limit_steer_rate(const CarParameters& car, double steer, double rate) {
+  if ((steer <= car.steer_min && rate <= 0) || (steer >= car.steer_max && rate >= 0)) return 0;
+  return std::clamp(rate, -car.steer_rate_max, car.steer_rate_max);
+}
+
+/// The acceleration that motor and brakes allow: none beyond the limits of speed, less above switch_speed.
+double limit_acceleration(const CarParameters& car, double speed, double acceleration) {
+  if ((speed <= car.speed_min && acceleration <= 0) || (speed >= car.speed_max && acceleration >= 0))
+    return 0;
+  const double drive =
+      speed > car.switch_speed ? car.acceleration_max * car.switch_speed / speed : car.acceleration_max;
+  return std::clamp(acceleration, -car.acceleration_max, drive);
+}
+
 }  // namespace
 
 CarParameters CarParameters::full_scale() {
@@ -128,19 +143,6 @@ CarParameters CarParameters::full_scale() {
   car.length = 4.508;
   car.width = 1.610;
   return car;
-}
-
-double limit_steer_rate(const CarParameters& car, double steer, double rate) noexcept {
-  if ((steer <= car.steer_min && rate <= 0) || (steer >= car.steer_max && rate >= 0)) return 0;
-  return std::clamp(rate, -car.steer_rate_max, car.steer_rate_max);
-}
-
-double limit_acceleration(const CarParameters& car, double speed, double acceleration) noexcept {
-  if ((speed <= car.speed_min && acceleration <= 0) || (speed >= car.speed_max && acceleration >= 0))
-    return 0;
-  const double drive =
-      speed > car.switch_speed ? car.acceleration_max * car.switch_speed / speed : car.acceleration_max;
-  return std::clamp(acceleration, -car.acceleration_max, drive);
 }
 
 CarState derivative(const CarParameters& car, const DynamicsOptions& options, const CarState& s,
