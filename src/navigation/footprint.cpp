@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/numbers/count.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -132,9 +132,10 @@ std::vector<Point> Footprint::outline_points(double spacing) const {
   std::vector<Point> points;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const Point &a = vertices_[i], &b = vertices_[(i + 1) % vertices_.size()];
-    const int parts = std::max(1, saturate_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / spacing)));
-    for (int k = 0; k < parts; ++k) {
-      const double share = static_cast<double>(k) / parts;
+    const std::size_t parts =
+        std::max<std::size_t>(1, count(distance(a, b), spacing, 1e4, "footprint: a side"));
+    for (std::size_t k = 0; k < parts; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(parts);
       points.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
     }
   }

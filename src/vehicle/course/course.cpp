@@ -177,6 +177,8 @@ void complete_course(Course& course, std::optional<bool> closed) {
   }
   const Waypoint &first = course.waypoints.front(), &last = course.waypoints.back();
   course.length = last.arc_length + (course.closed ? distance(last, first) : 0);
+  if (!(course.length >= 0.1))
+    throw std::invalid_argument("waypoints: " + to_text(course.length) + " m long; must be at least 0.1 m");
   course.start = {first.x, first.y, first.yaw};
   if (course.obstacle_path.empty())
     for (const Waypoint& point : course.waypoints) course.obstacle_path.push_back({point.x, point.y});
@@ -198,7 +200,11 @@ Course load_course(const fs::path& folder, maps::MapRule rule) {
     course.obstacle_path = detail::read_points(points);
   const fs::path file = folder / course_file;
   const detail::CourseFile said = fs::exists(file) ? detail::read_course_file(file) : detail::CourseFile{};
-  complete_course(course, said.closed);
+  try {
+    complete_course(course, said.closed);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(line.string(), 0, error.what());
+  }
   course.name = said.name.value_or(course.name);
   course.description = said.description.value_or("");
   course.start = said.start.value_or(course.start);
