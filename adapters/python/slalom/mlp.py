@@ -68,6 +68,10 @@ class Mlp:
         result: Array = y + x[:, :y.shape[1]] if self.residual else y
         return result
 
+    def __repr__(self) -> str:
+        sizes = [self.layers[0][0].shape[1], *(len(biases) for _, biases in self.layers)]
+        return (f"<slalom.mlp.Mlp {' -> '.join(map(str, sizes))}, {self.activation}{', residual' if self.residual else ''}>")
+
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the network to a file for `slalom::load_mlp` and `Mlp.load`."""
         arrays = {"activation": np.array(self.activation), "residual": np.array(self.residual)}
