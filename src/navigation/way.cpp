@@ -223,6 +223,7 @@ bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t c
   }
   if (best == path.size()) return false;
   const std::span<const maps::Point> way = planner_.path_to(end);
+  if (way.empty()) return false;
   poses_.clear();
   for (const maps::Point& point : way) poses_.push_back({point.x, point.y, 0});
   const std::size_t joint = poses_.size();

@@ -38,5 +38,13 @@ TEST(GettingOn, LeavesACellUnderItsBody) {
   }
 }
 
+TEST(GettingOn, LeavesAZoneThatIsSwitchedOnOverIt) {
+  Drive drive(BaseKind::differential);
+  drive.restart_fast();
+  drive.start({3, 3, 0}, {{3, 3, 0}, {8, 3, 0}});
+  drive.block(2.4, 2.3, 3.7, 3.6);
+  EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached);
+}
+
 }  // namespace
 }  // namespace slalom::navigation::getting_on_test

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <type_traits>
 #include <utility>
 
 #include "slalom/core/network/mlp.hpp"
@@ -9,7 +8,10 @@
 
 namespace slalom::python {
 
-struct NoField {};
+/// In place of a field. It has a value, since bytes between members would be copied to a GPU unset.
+struct NoField {
+  double unused = 0;
+};
 
 /// The problem of slalom.MlpProblem: the dynamics of a network and a cost of few parts. `Walls` and `Mapped`
 /// are a slalom::maps::Field, or NoField.
@@ -67,8 +69,9 @@ struct NetworkStruct {
         hit = hit || square(x.value[0] - T(discs[i])) + square(x.value[1] - T(discs[i + 1])) <
                          T(discs[i + 2] * discs[i + 2]);
     }
-    if constexpr (!std::is_empty_v<Walls>) hit = hit || walls.value(x.value[0], x.value[1]) < T(clearance);
-    if constexpr (!std::is_empty_v<Mapped>)
+    if constexpr (requires(const Walls& w) { w.geometry(); })
+      hit = hit || walls.value(x.value[0], x.value[1]) < T(clearance);
+    if constexpr (requires(const Mapped& m) { m.geometry(); })
       cost = cost + T(field_weight) * field.value(x.value[0], x.value[1]);
     return {cost + select(hit, T(disc_weight), T(0)), hit};
   }

@@ -65,15 +65,14 @@ RacingCar racing_car(const Configuration& configuration) {
   const auto& tyres = vehicle.own_of<SingleTrackOptions>();
   constexpr double longest_model_car = 1;  // m, wheelbase
   RacingCar car = vehicle.wheelbase() > longest_model_car ? passenger_car() : RacingCar{};
-  const double grip = tyres.friction * tyres.usable_grip * gravity;
   car.name = "configured";
   car.width = vehicle.body.width;
   car.margin = 3 * vehicle.body.margin;
   car.wheelbase = vehicle.wheelbase();
   car.max_steering = configuration.planner.steer_limit;
   car.max_steering_rate = tyres.steer_rate;
-  car.limits = {car.limits.top_speed, grip, std::min(vehicle.max_acceleration, grip),
-                std::min(vehicle.max_deceleration, grip)};
+  car.limits = grip_limits(tyres.friction * tyres.usable_grip, car.limits.top_speed, vehicle.max_acceleration,
+                           vehicle.max_deceleration);
   car.power = vehicle.max_acceleration * tyres.switch_speed;
   return car;
 }
