@@ -24,9 +24,14 @@ class CMakeBuild(build_ext):
         if self.inplace:
             sys.exit("an editable install is not supported: build with CMake and set PYTHONPATH (docs/python.md)")
         driving = "ON" if os.environ.get("SLALOM_DRIVING", "0") == "1" else "OFF"
-        settings = {"CMAKE_BUILD_TYPE": "Release", "PYTHON_EXECUTABLE": sys.executable, "SLALOM_BUILD_TOOLS": "OFF",
-                    "SLALOM_PYTHON_DIR": ".", "SLALOM_PYTHON_WHEEL": "ON",
+        settings = {"CMAKE_BUILD_TYPE": "Release", "PYTHON_EXECUTABLE": sys.executable, "Python_EXECUTABLE": sys.executable,
+                    "SLALOM_BUILD_TOOLS": "OFF", "SLALOM_PYTHON_DIR": ".", "SLALOM_PYTHON_WHEEL": "ON",
                     **{f"SLALOM_BUILD_{layer}": driving for layer in ("NAVIGATION", "TRACKING", "VEHICLE", "SIM")}}
+        try:
+            import pybind11  # of the index; otherwise CMake finds that of the system
+            settings["pybind11_DIR"] = pybind11.get_cmake_dir()
+        except ImportError:
+            pass
         generator = ["-G", "Ninja"] if shutil.which("ninja") else []
         cmake = os.environ.get("CMAKE", "cmake")
         subprocess.run([cmake, "-S", ROOT, "-B", build, *generator, *(f"-D{k}={v}" for k, v in settings.items()),
@@ -48,5 +53,6 @@ setup(
     py_modules=[],
     ext_modules=[Extension("slalom._slalom", sources=[])],  # built by CMake; its name makes the wheel one of this platform
     cmdclass={"build_ext": CMakeBuild},
+    setup_requires=[] if shutil.which(os.environ.get("CMAKE", "cmake")) else ["cmake>=3.22", "ninja"],
     options={"bdist_wheel": platform_of_wheel()},
 )

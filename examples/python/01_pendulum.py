@@ -26,16 +26,12 @@ def terminal_cost(x):
 pendulum = slalom.Problem(dynamics, cost, terminal_cost, states=2, inputs=1, dt=float(DT))
 
 
-def stands(controller):
+def stands(method, seed):
     """Whether the pendulum is upright 6 s after it started hanging down."""
-    x = np.array([np.pi, 0.0])
-    for _ in range(300):
-        x = controller.problem.step(x, controller.solve(x, elapsed=float(DT)).inputs[0])
-    return np.cos(x[0]) > 0.995 and abs(x[1]) < 0.5
+    controller = method(pendulum, horizon=60, samples=1024, input_min=-5, input_max=5, seed=seed)
+    angle, rate = slalom.run(pendulum, controller, [np.pi, 0], steps=300).states[-1]
+    return np.cos(angle) > 0.995 and abs(rate) < 0.5
 
 
-common = dict(horizon=60, samples=1024, temperature=0.2, input_min=-5, input_max=5)
-mppi = succeeded("mppi", lambda seed: stands(slalom.Mppi(pendulum, **common, variance=4, seed=seed)))
-svg_mppi = succeeded("svg_mppi", lambda seed: stands(slalom.SvgMppi(
-    pendulum, **common, gradient_variance=1, variance_min=1, variance_max=4, seed=seed)))
+mppi, svg_mppi = (succeeded(method.__name__, lambda seed: stands(method, seed)) for method in (slalom.Mppi, slalom.SvgMppi))
 report("the pendulum is upright", mppi, svg_mppi, 20)

@@ -68,11 +68,8 @@ def holds(dynamics, seed):
     problem = slalom.Problem(dynamics, cost, lambda s: 2 * np.sum((s[:, :2] - GOAL) ** 2, axis=1), states=4, inputs=2,
                              dt=DT, input_min=-2, input_max=2)
     controller = slalom.Mppi(problem, horizon=20, samples=256, temperature=0.1, variance=1, seed=seed)
-    s, places = np.zeros((1, 4)), []
-    for _ in range(80):
-        s = river(s, controller.solve(s[0], elapsed=DT).inputs[:1])
-        places.append(s[0, :2])
-    return np.hypot(*(places[-20:] - GOAL).T).max() < 0.3
+    drive = slalom.run(problem, controller, np.zeros(4), 80, plant=lambda s, u: river(s[None], u[None])[0])
+    return np.hypot(*(drive.states[-20:, :2] - GOAL).T).max() < 0.3
 
 
 without, with_network = (succeeded(f.__name__, lambda seed: holds(f, seed)) for f in (without_water, learned))

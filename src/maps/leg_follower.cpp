@@ -26,7 +26,6 @@ LegOptions LegOptions::of(double length, double curvature) {
 }
 
 void LegFollower::begin(const Pose& vehicle, double turn) noexcept {
-  begun_ = true;
   standing_ = 0;
   turn_left_ = turn;
   last_yaw_ = vehicle.yaw;

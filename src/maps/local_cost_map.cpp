@@ -105,7 +105,7 @@ ScanReport LocalCostMap::take_points(const LaserScanView& scan, Use&& use) noexc
              right = -static_cast<float>(options_.footprint.right - options_.body_inset);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
-    if (!(range >= scan.range_min && range < scan.range_max)) {
+    if (!(range > 0 && range >= scan.range_min && range < scan.range_max)) {
       ++report.invalid;
       continue;
     }

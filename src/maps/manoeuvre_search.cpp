@@ -30,13 +30,10 @@ ManoeuvreSearch::ManoeuvreSearch(const ManoeuvreOptions& options)
   for (const int gear : {1, -1})
     for (const int turn : {0, 1, -1}) {
       if (gear < 0 && !options.can_reverse) continue;
-      if (options.radius > 0) {
-        moves_.push_back({{gear * options.step, turn * gear * options.step / options.radius}});
-      } else if (turn == 0) {
-        moves_.push_back({{gear * options.step, 0}});
-      } else if (gear > 0) {
-        moves_.push_back({{0, turn * sector}});
-      }
+      const double radius = options.radius > 0 ? options.radius : options.bend;
+      if (turn == 0 || radius > 0)
+        moves_.push_back({{gear * options.step, turn == 0 ? 0 : turn * gear * options.step / radius}});
+      if (turn != 0 && gear > 0 && options.radius == 0) moves_.push_back({{0, turn * sector}});
     }
   for (Move& move : moves_) {
     move.middle = after({}, move.arc, 0.5);

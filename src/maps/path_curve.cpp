@@ -154,6 +154,15 @@ void PathCurve::next_leg() noexcept {
   nearest_ = legs_[++leg_].first;
 }
 
+bool PathCurve::join_legs() noexcept {
+  const auto at = legs_.begin() + static_cast<std::ptrdiff_t>(leg_);
+  if (legs_.end() - at < 3 || !at[1].turns || at[2].turns || at->backward != at[2].backward) return false;
+  at->last = at[2].last;
+  at->yaw = at[2].yaw;
+  legs_.erase(at + 1, at + 3);
+  return true;
+}
+
 void PathCurve::place(const Point& vehicle) noexcept {
   double least = std::numeric_limits<double>::infinity();
   for (const Pose& point : points_) least = std::min(least, distance(vehicle, position(point)));

@@ -20,14 +20,19 @@ void check_reference_path(std::span<const ReferencePoint> path) {
   detail::require(path.size() >= 3, "reference path: number of points", path.size(), "at least 3");
   detail::require(path.size() <= 10000000, "reference path: number of points", path.size(),
                   "at most 10000000");
+  double length = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Pose pose{path[i].x, path[i].y, path[i].yaw};
     const bool is_speed = std::isfinite(path[i].speed) && path[i].speed >= 0;
+    if (i > 0) length += std::hypot(pose.x - path[i - 1].x, pose.y - path[i - 1].y);
     if (is_plausible(pose) && is_speed) continue;
     const std::string where = "reference path: point " + std::to_string(i);
     check_pose(where, pose);
     detail::require(is_speed, (where + ": speed").c_str(), path[i].speed, "finite and not negative");
   }
+  const double density = static_cast<double>(path.size()) / length;
+  detail::require(length >= 0.1, "reference path: length", length, "at least 0.1 m");
+  detail::require(density <= 1e4, "reference path: points a metre", density, "at most 10000");
 }
 
 ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
@@ -11,7 +10,6 @@ namespace slalom::navigation::detail {
 namespace {
 
 constexpr double wrong_way = std::numbers::pi / 3;  // rad from the path, from which the robot first turns
-constexpr double longest_change = 3;                // m of path that a manoeuvre may replace
 constexpr std::size_t most_goals = 30;              // poses, as goals of a search
 
 /// The length of a body, m.
@@ -23,6 +21,7 @@ maps::ManoeuvreOptions search_options(const NavigatorOptions& options, const Foo
   const bool turns = turns_on_the_spot(options.base);
   maps::ManoeuvreOptions made = maps::ManoeuvreOptions::of(
       length_of(footprint), turns ? 0 : 1.1 * options.base.min_turning_radius);  // the rest corrects
+  if (turns) made.bend = 10 * made.step;  // bends away from a wall beside which there is no room to turn
   made.can_reverse = options.base.max_reverse > 0;
   return made;
 }
@@ -36,11 +35,7 @@ class CostmapRoom final : public maps::BodyRoom {
   double at(const maps::Pose& pose) const noexcept override {
     const maps::Point place = maps::transform(from_, {pose.x, pose.y});
     const maps::Pose here{place.x, place.y, from_.yaw + pose.yaw + turn_};
-    double room = std::numeric_limits<double>::infinity();
-    for (const Footprint::Part& part : footprint_.parts()) {
-      const maps::Point middle = maps::transform(here, part.middle);
-      room = std::min(room, costmap_.distance(middle.x, middle.y) - part.contained);
-    }
+    const double room = costmap_.distance(place.x, place.y) - footprint_.half_width();
     return costmap_.collides(footprint_, here) ? std::min(room, -1e-3) : std::max(room, 0.0);
   }
 
@@ -59,10 +54,12 @@ Approach::Approach(const NavigatorOptions& options, const Footprint& footprint)
 }
 
 /// The turn to a yaw on which the body is free, the shorter one if both are; 0 if neither is.
-double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& costmap) const noexcept {
+double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& costmap,
+                           double rate) const noexcept {
   constexpr double step = 0.1;  // rad between the poses that are checked
-  const double shorter = maps::wrap_angle(yaw - robot.yaw);
-  const double longer = shorter - std::copysign(2 * std::numbers::pi, shorter);
+  double shorter = maps::wrap_angle(yaw - robot.yaw);
+  double longer = shorter - std::copysign(2 * std::numbers::pi, shorter);
+  if (rate * shorter < 0 && std::abs(shorter) > std::numbers::pi - wrong_way) std::swap(shorter, longer);
   for (const double turn : {shorter, longer}) {
     const int steps = saturate_cast<int>(std::ceil(std::abs(turn) / step));
     int i = 1;
@@ -72,8 +69,9 @@ double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& c
   return 0;
 }
 
-double Approach::turn_to(const maps::Pose& robot, double yaw, const Costmap& costmap) const noexcept {
-  const double turn = free_turn(robot, yaw, costmap);
+double Approach::turn_to(const maps::Pose& robot, double yaw, const Costmap& costmap,
+                         double rate) const noexcept {
+  const double turn = free_turn(robot, yaw, costmap, rate);
   return turn != 0 ? turn : maps::wrap_angle(yaw - robot.yaw);
 }
 
@@ -96,14 +94,13 @@ bool Approach::search(const PathGuide& guide, const maps::Pose& from, std::size_
   return true;
 }
 
-/// Goes from a pose that faces another way than the path to a point of the path ahead.
-void Approach::join(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
+bool Approach::join(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
                     std::vector<maps::Pose>& buffer) noexcept {
   const auto points = guide.points();
-  const std::size_t last = std::min(guide.leg().last, guide.nearest() + guide.points_for(longest_change));
-  if (!search(guide, robot, guide.nearest(), last, false, costmap)) return;
+  const std::size_t last = std::min(points.size() - 1, guide.nearest() + guide.points_for(longest_change));
+  if (!search(guide, robot, guide.nearest(), last, false, costmap)) return false;
   const auto way = search_.poses();
-  if (way.size() + points.size() > buffer.capacity()) return;
+  if (way.size() + points.size() > buffer.capacity()) return false;
   buffer.clear();
   for (const maps::Pose& pose : way.first(way.size() - 1)) {
     const maps::Point place = maps::transform(robot, {pose.x, pose.y});
@@ -111,16 +108,19 @@ void Approach::join(PathGuide& guide, const maps::Pose& robot, const Costmap& co
   }
   buffer.insert(buffer.end(), points.begin() + joint_, points.end());
   buffer.back() = guide.goal();
+  end_ = guide.step() * static_cast<double>(points.size() - 1 - joint_);
   guide.set(buffer, turns_on_the_spot(options_.base));
+  begin_ = guide.remaining();
+  return true;
 }
 
-/// Replaces the end of the path by a manoeuvre into the goal's heading.
 void Approach::face_goal(PathGuide& guide, const Costmap& costmap, std::vector<maps::Pose>& buffer) noexcept {
   const auto points = guide.points();
   const maps::Pose& goal = guide.goal();
   const std::size_t most = guide.points_for(longest_change), last = points.size() - 1;
-  const std::size_t first =
-      std::max({guide.legs().back().first, guide.nearest(), last > most ? last - most : 0});
+  const auto legs = guide.legs();
+  const maps::PathLeg& arrival = legs[legs.size() - (legs.back().turns && legs.size() > 1 ? 2 : 1)];
+  const std::size_t first = std::max({arrival.first, guide.nearest(), last > most ? last - most : 0});
   if (first == last || !search(guide, goal, first, last - 1, true, costmap)) return;
   const auto way = search_.poses();
   if (joint_ + way.size() > buffer.capacity()) return;
@@ -130,16 +130,31 @@ void Approach::face_goal(PathGuide& guide, const Costmap& costmap, std::vector<m
         maps::transform({goal.x, goal.y, goal.yaw + std::numbers::pi}, {way[i].x, way[i].y});
     buffer.push_back({place.x, place.y, goal.yaw + way[i].yaw});
   }
-  guide.set(buffer, false);
+  const maps::Point here = position(points[guide.nearest()]);
+  begin_ = -guide.step() * static_cast<double>(joint_);
+  guide.set(buffer, turns_on_the_spot(options_.base));
+  begin_ += guide.remaining();
+  end_ = 0;
+  guide.place(here);
 }
 
 void Approach::place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
                      std::vector<maps::Pose>& buffer) noexcept {
   if (guide.step() == 0 && distance(position(robot), position(guide.goal())) > 0.5 * options_.goal_distance) {
-    set_straight(buffer, robot, guide.goal(), options_.base);  // a path of one pose
+    buffer.assign({robot, guide.goal()});  // a path of one pose
+    if (options_.base.max_reverse == 0) set_yaws(buffer, options_.base);
     guide.set(buffer, turns_on_the_spot(options_.base));
   }
   guide.place(position(robot));
+  if (guide.remaining() <= options_.goal_distance &&
+      distance(position(robot), position(guide.goal())) <= options_.goal_distance) {
+    // Near its end a path has no direction.
+    while (!guide.on_last_leg()) guide.next_leg();
+    if (turns_on_the_spot(options_.base) && !guide.leg().turns &&
+        std::abs(maps::wrap_angle(guide.goal().yaw - robot.yaw)) > options_.goal_angle)
+      guide.turn_first(guide.goal().yaw);
+    return;
+  }
   if (options_.base.kind == BaseKind::omnidirectional || options_.base.max_turn == 0) return;
   // The direction of the path a little ahead.
   const auto direction = [&] {
@@ -159,7 +174,6 @@ void Approach::place(PathGuide& guide, const maps::Pose& robot, const Costmap& c
   if (options_.base.kind == BaseKind::ackermann &&
       std::abs(maps::wrap_angle(guide.goal().yaw - guide.legs().back().yaw)) > 0.5 * options_.goal_angle) {
     face_goal(guide, costmap, buffer);
-    guide.place(position(robot));
   }
 }
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/proposals.hpp"
 #include "slalom/solvers/trajectories.hpp"
 
 namespace slalom::navigation::detail {
@@ -107,20 +109,29 @@ class BaseModelOf final : public BaseModel {
       : controller_(NavigationEvaluator<Base>(NavigationProblem<Base>(options.base, options.costs, footprint,
                                                                       resolution, options.time_step)),
                     solver),
-        plan_(controller_.solver().horizon() + 1) {}
+        plan_(controller_.solver().horizon() + 1) {
+    if (!controller_.solver().takes_proposals()) return;
+    // Braking, reversing, and turns either way.
+    const BaseOptions& base = options.base;
+    const double way = steers<Base> ? base.max_forward : 0;
+    proposals_.emplace(controller_, 6);
+    for (const double forward : {way, -base.max_reverse})
+      for (const double turn : {base.max_turn, -base.max_turn, 0.0}) {
+        const auto input = Base::input({turn == 0 ? std::min(forward, 0.0) : forward, 0, turn});
+        proposals_->add({&input, 1});
+      }
+  }
   std::unique_ptr<BaseModel> clone() const override { return std::make_unique<BaseModelOf>(*this); }
 
   void solve(const NavigationMaps& maps, const maps::Pose& pose, const Velocity& velocity,
              double elapsed) noexcept override {
     controller_.evaluator().set_maps(maps);
     origin_ = maps.origin;
-    Input<double, Base::inputs> before = Base::input(velocity);
-    for (int i = 0; i < Base::inputs; ++i) {
-      before[i] = std::clamp(before[i], controller_.bounds().low[i], controller_.bounds().high[i]);
-    }
-    const auto plan =
-        controller_.solve({pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, before},
-                          {.elapsed = elapsed});
+    SolveRequest request{.elapsed = elapsed};
+    if (proposals_) request.proposals = *proposals_;
+    const auto plan = controller_.solve(
+        {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, Base::input(velocity)},
+        request);
     command_ = controller_.problem().velocity(plan.states[1].before);
     for (std::size_t i = 0; i < plan_.size(); ++i)
       plan_[i] = {plan.states[i].x + maps.origin.x, plan.states[i].y + maps.origin.y, plan.states[i].yaw};
@@ -149,6 +160,7 @@ class BaseModelOf final : public BaseModel {
   using State = typename NavigationEvaluator<Base>::State;
 
   Controller<NavigationEvaluator<Base>> controller_;
+  std::optional<Proposals<NavigationEvaluator<Base>>> proposals_;  ///< plans that every solve weighs
   maps::Point origin_;  ///< m, map frame, where the states of the last plan begin
   Velocity command_;
   std::vector<maps::Pose> plan_;

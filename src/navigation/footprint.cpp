@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/numbers/count.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -17,6 +17,14 @@ using maps::Point;
 /// Twice the area of a triangle; above 0 if its corners run counter-clockwise.
 double turn(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// The distance of a point from the line between `a` and `b`.
+double distance_to_segment(const Point& point, const Point& a, const Point& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+  const double share =
+      squared > 0 ? std::clamp(((point.x - a.x) * dx + (point.y - a.y) * dy) / squared, 0.0, 1.0) : 0;
+  return std::hypot(a.x + share * dx - point.x, a.y + share * dy - point.y);
 }
 
 bool cross(const Point& a, const Point& b, const Point& c, const Point& d) {
@@ -53,13 +61,6 @@ std::pair<Point, Point> bounds_of(const std::vector<Point>& points) {
 }
 
 }  // namespace
-
-double distance_to_segment(const Point& point, const Point& a, const Point& b) noexcept {
-  const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
-  const double share =
-      squared > 0 ? std::clamp(((point.x - a.x) * dx + (point.y - a.y) * dy) / squared, 0.0, 1.0) : 0;
-  return std::hypot(a.x + share * dx - point.x, a.y + share * dy - point.y);
-}
 
 Footprint::Footprint(std::span<const Point> vertices) : vertices_(vertices.begin(), vertices.end()) {
   check_vertices(vertices);
@@ -131,9 +132,10 @@ std::vector<Point> Footprint::outline_points(double spacing) const {
   std::vector<Point> points;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const Point &a = vertices_[i], &b = vertices_[(i + 1) % vertices_.size()];
-    const int parts = std::max(1, saturate_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / spacing)));
-    for (int k = 0; k < parts; ++k) {
-      const double share = static_cast<double>(k) / parts;
+    const std::size_t parts =
+        std::max<std::size_t>(1, count(distance(a, b), spacing, 1e4, "footprint: a side"));
+    for (std::size_t k = 0; k < parts; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(parts);
       points.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
     }
   }
@@ -141,10 +143,38 @@ std::vector<Point> Footprint::outline_points(double spacing) const {
 }
 
 Footprint Footprint::without_rim(double rim) const {
-  const double share = std::max(1 - rim / half_width_, 0.2);
+  const std::size_t n = vertices_.size();
+  double area = 0;
+  for (std::size_t i = 0; i < n; ++i) area += turn({0, 0}, vertices_[i], vertices_[(i + 1) % n]);
   std::vector<Point> inner = vertices_;
-  for (Point& vertex : inner) vertex = {share * vertex.x, share * vertex.y};
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point &before = vertices_[(i + n - 1) % n], &here = vertices_[i], &after = vertices_[(i + 1) % n];
+    const double a = std::atan2(here.y - before.y, here.x - before.x),
+                 b = std::atan2(after.y - here.y, after.x - here.x);
+    // Both sides that meet here move to their left, or to their right.
+    const double half = 0.5 * maps::wrap_angle(b - a), middle = a + half,
+                 way = std::copysign(rim, area) / std::max(std::cos(half), 0.2);
+    inner[i] = {here.x - way * std::sin(middle), here.y + way * std::cos(middle)};
+  }
+  const bool turned_over = std::any_of(inner.begin(), inner.end(), [&](const Point& p) {
+    return !contains(p) || distance_to_outline(p) < 0.99 * rim;
+  });
+  if (!turned_over) {
+    try {
+      return Footprint(inner);
+    } catch (const std::invalid_argument&) {  // nothing is left around the origin
+    }
+  }
+  const double share = std::max(1 - rim / half_width_, 0.2);
+  for (std::size_t i = 0; i < n; ++i) inner[i] = {share * vertices_[i].x, share * vertices_[i].y};
   return Footprint(inner);
+}
+
+std::vector<Footprint> Footprint::without_rims(double step) const {
+  std::vector<Footprint> bodies{*this};
+  for (int i = 1; i < 8; ++i) bodies.push_back(without_rim(i * step));
+  bodies.push_back(without_rim(half_width_));
+  return bodies;
 }
 
 }  // namespace slalom::navigation

@@ -17,7 +17,6 @@ namespace slalom::navigation {
 namespace {
 
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
-constexpr int first_solves = 5;         // solves of the first plan on a leg
 constexpr double least_command = 0.05;  // m/s and rad/s, of commands that move a robot
 constexpr double share_followed = 0.2;  // least share of a command that a robot follows
 constexpr double ignored_after = 0.8;   // s
@@ -35,25 +34,28 @@ double braking_time(const Velocity& v, const BaseOptions& base) {
   return std::max(std::abs(v.forward) / forward.deceleration, std::abs(v.left) / sideways.deceleration);
 }
 
-/// The velocity after braking for a while (s).
+/// The velocity after braking for a period (s).
 Velocity braked(const Velocity& v, const BaseOptions& base, double period) {
+  period = std::isfinite(period) ? std::clamp(period, 0.0, max_period) : 0;
   const double time = braking_time(v, base), kept = time > 0 ? std::max(1 - period / time, 0.0) : 0;
   const double turn = std::max(std::abs(v.turn) - axis_limits(base)[2].deceleration * period, 0.0);
   return {kept * v.forward, kept * v.left, std::copysign(turn, v.turn)};
 }
 
-/// The last step of an update: makes the command finite and moves it into the limits of the base. Counts the
-/// changed values in `corrections`. Commands in a dead band are 0.
-void check_result(NavigationResult& result, const BaseOptions& base) noexcept {
-  const auto check = [&](double& value, double least, double most, double dead_band) {
-    const double valid = std::clamp(std::isfinite(value) ? value : 0.0, least, most);
+/// The last step of an update: makes the command finite and moves it into the limits of the base; a robot
+/// that drives faster brakes to them. Counts the changed values in `corrections`. Commands in a dead band are
+/// 0.
+void check_result(NavigationResult& result, const BaseOptions& base, const Velocity& slowest) noexcept {
+  const auto check = [&](double& value, double least, double most, double dead_band, double braking) {
+    const double valid =
+        std::clamp(std::isfinite(value) ? value : 0.0, std::min(least, braking), std::max(most, braking));
     result.corrections += valid != value;
     value = std::abs(valid) < dead_band ? 0 : valid;
   };
   const double sideways = base.kind == BaseKind::omnidirectional ? base.max_sideways : 0;
-  check(result.command.forward, -base.max_reverse, base.max_forward, base.dead_band_forward);
-  check(result.command.left, -sideways, sideways, base.dead_band_sideways);
-  check(result.command.turn, -base.max_turn, base.max_turn, base.dead_band_turn);
+  check(result.command.forward, -base.max_reverse, base.max_forward, base.dead_band_forward, slowest.forward);
+  check(result.command.left, -sideways, sideways, base.dead_band_sideways, sideways > 0 ? slowest.left : 0);
+  check(result.command.turn, -base.max_turn, base.max_turn, base.dead_band_turn, slowest.turn);
 }
 
 }  // namespace
@@ -63,13 +65,15 @@ class Navigator::Implementation {
   Implementation(const Footprint& footprint, const NavigatorOptions& options, const SolverOptions& solver,
                  const Costmap& costmap)
       : options_((validate_options(options, "navigator"), options)),
-        footprint_(footprint),
-        core_(footprint.without_rim(0.5 * costmap.geometry().resolution)),
+        bodies_(footprint.without_rims(0.5 * costmap.geometry().resolution)),
         geometry_(costmap.geometry()),
         model_(detail::make_base_model(options, footprint, geometry_.resolution, solver)),
         way_(options, footprint, geometry_,
              model_->plan().size() * options.time_step *
-                 std::max({options.base.max_forward, options.base.max_reverse, options.base.max_sideways})),
+                     std::max(
+                         {options.base.max_forward, options.base.max_reverse, options.base.max_sideways}) +
+                 options.base.max_forward * 0.5 *
+                     braking_time({options.base.max_forward, 0, 0}, options.base)),
         delay_(options.base),
         others_(footprint, options, model_->plan().size() - 1) {}
 
@@ -82,15 +86,15 @@ class Navigator::Implementation {
  private:
   friend Navigator;
   bool fits(const Costmap& costmap) const noexcept;
+  Velocity believe(const Velocity& told) noexcept;
   bool watch_commands(const Velocity& velocity, double elapsed) noexcept;
-  double room_at(const Costmap& costmap, const maps::Pose& pose) const noexcept;
   bool plan_collides(const Costmap& costmap, const Velocity& velocity) const noexcept;
   NavigationResult plan(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                         double elapsed) noexcept;
   NavigationResult stand(NavigationStatus status, const Velocity& velocity, double elapsed) const noexcept;
 
   NavigatorOptions options_;
-  Footprint footprint_, core_;
+  std::vector<Footprint> bodies_;  ///< by the rim that they lack
   maps::GridGeometry geometry_;
   Polymorphic<detail::BaseModel> model_;
   detail::Way way_;
@@ -100,6 +104,7 @@ class Navigator::Implementation {
   double since_solve_ = 0;  ///< s
   double ignored_for_ = 0;  ///< s for which the robot does not follow the commands
   Velocity command_;        ///< the last one
+  Velocity told_{Velocity::largest, Velocity::largest, Velocity::largest};  ///< in the last update
 };
 
 void Navigator::Implementation::reset(std::uint64_t seed) noexcept {
@@ -108,12 +113,26 @@ void Navigator::Implementation::reset(std::uint64_t seed) noexcept {
   delay_.clear();
   since_solve_ = ignored_for_ = 0;
   command_ = {};
+  told_ = {Velocity::largest, Velocity::largest, Velocity::largest};
   model_->reset(seed);
 }
 
 bool Navigator::Implementation::fits(const Costmap& costmap) const noexcept {
   const maps::GridGeometry& g = costmap.geometry();
   return g.rows == geometry_.rows && g.columns == geometry_.columns && g.resolution == geometry_.resolution;
+}
+
+/// The velocity that was told; a robot drives faster than its limits only if it did so before.
+Velocity Navigator::Implementation::believe(const Velocity& told) noexcept {
+  if (!plausible(told)) return told;
+  const auto axis = [](double now, double before, double limit) {
+    const double most = std::max(limit, std::abs(before));
+    return std::clamp(now, -most, most);
+  };
+  const BaseOptions& base = options_.base;
+  const Velocity before = std::exchange(told_, told);
+  return {axis(told.forward, before.forward, std::max(base.max_forward, base.max_reverse)),
+          axis(told.left, before.left, base.max_sideways), axis(told.turn, before.turn, base.max_turn)};
 }
 
 /// Whether the velocity has stayed near 0 for a while although the commands did not.
@@ -128,19 +147,9 @@ bool Navigator::Implementation::watch_commands(const Velocity& velocity, double 
   return ignored_for_ > ignored_after + delay_.longest();
 }
 
-/// The room of a body that overlaps an obstacle, m: the less, the deeper it is in it.
-double Navigator::Implementation::room_at(const Costmap& costmap, const maps::Pose& pose) const noexcept {
-  double room = std::numeric_limits<double>::infinity();
-  for (const Footprint::Part& part : footprint_.parts()) {
-    const maps::Point middle = maps::transform(pose, part.middle);
-    room = std::min(room, costmap.distance(middle.x, middle.y) - part.contained);
-  }
-  return room;
-}
-
-/// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that
-/// overlaps an obstacle already may leave it, but not go deeper into it: where it does so by less than half a
-/// cell, as scans may err, the body without such a rim must stay free.
+/// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that overlaps an
+/// obstacle already may leave it, but not go deeper into it: the body without the rim that overlaps must stay
+/// free. If even its core is in an obstacle, the plan must leave it.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
@@ -148,18 +157,14 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   const std::size_t last = std::min(
       plan.size() - 1, saturate_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
   if (others_.meet(plan, last)) return true;
-  if (maps_.overlaps && costmap.collides(core_, plan.front())) {
-    const double begin = room_at(costmap, plan.front());
-    return std::any_of(plan.begin() + 1, plan.begin() + last + 1,
-                       [&](const maps::Pose& pose) { return room_at(costmap, pose) < begin; });
-  }
-  const Footprint& body = maps_.overlaps ? core_ : footprint_;
+  const Footprint& body = bodies_[maps_.rim];
+  if (costmap.collides(body, plan.front())) return costmap.collides(body, plan.back());
   for (std::size_t i = 1; i <= last; ++i)
     if (costmap.collides(body, plan[i - 1], plan[i])) return true;
   // After the first step the robot can still stop: speed and yaw rate fall by their own limits.
   Velocity v = model_->command();
   maps::Pose at = plan.front();
-  const double step = options_.time_step;
+  const double step = std::max(options_.time_step, braking_time(v, options_.base) / longest_stop);
   for (int i = 0; i < longest_stop && (v.forward != 0 || v.left != 0 || v.turn != 0); ++i) {
     const double yaw = at.yaw + 0.5 * step * v.turn, c = std::cos(yaw), s = std::sin(yaw);
     const maps::Pose next{at.x + step * (c * v.forward - s * v.left),
@@ -177,7 +182,7 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
   NavigationResult result;
   result.status = status;
   if (!plausible(velocity)) return result;
-  result.command = braked(velocity, options_.base, std::clamp(elapsed, 0.0, max_period));
+  result.command = braked(velocity, options_.base, elapsed);
   return result;
 }
 
@@ -186,7 +191,7 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
                                                    std::span<const maps::PredictedObstacle> others) noexcept {
   if (!maps::is_plausible(now) || !plausible(told) || !(elapsed >= 0) || !std::isfinite(elapsed) ||
       !fits(costmap))
-    return stand(NavigationStatus::bad_input, told, std::isfinite(elapsed) ? elapsed : 0);
+    return stand(NavigationStatus::bad_input, told, elapsed);
   since_solve_ += elapsed;
   if (way_.empty() || costmap.geometry().row(now.x) < 0 || costmap.geometry().column(now.y) < 0)
     return stand(NavigationStatus::no_path, told, elapsed);
@@ -202,7 +207,7 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
     const bool is_there = way_.has_ended(now);
     return stand(is_there ? NavigationStatus::goal_reached : NavigationStatus::following, velocity, elapsed);
   }
-  const bool has_way = way_.keep(pose, velocity, costmap, others_, elapsed);
+  const bool has_way = way_.keep(pose, costmap, others_, elapsed);
   if (way_.is_stuck()) return stand(NavigationStatus::stuck, velocity, elapsed);
   if (!has_way) return stand(NavigationStatus::blocked, velocity, elapsed);
   way_.advance(pose, velocity, costmap, 0);
@@ -218,13 +223,12 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
   maps_.distances = costmap.distances();
   maps_.prices = costmap.prices();
   maps_.others = others_.view();
-  maps_.overlaps = costmap.collides(footprint_, pose);
+  maps_.rim = 0;
+  while (maps_.rim + 1 < static_cast<int>(bodies_.size()) && costmap.collides(bodies_[maps_.rim], pose))
+    ++maps_.rim;
   way_.write(pose, maps_);
-  // The plan of another leg is no use on this one: its first plan takes several solves.
-  for (int solves = way_.takes_leg() ? first_solves : 1; solves > 0; --solves) {
-    model_->solve(maps_, pose, velocity, since_solve_);
-    since_solve_ = 0;
-  }
+  model_->solve(maps_, pose, velocity, since_solve_);
+  since_solve_ = 0;
   NavigationResult result;
   if (plan_collides(costmap, velocity)) {
     result = stand(NavigationStatus::braking, velocity, elapsed);
@@ -254,8 +258,10 @@ void Navigator::set_path(std::span<const maps::Pose> path) {
 NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                                    double elapsed, std::span<const maps::PredictedObstacle> others) noexcept {
   Implementation& own = *implementation_;
-  NavigationResult result = own.update(pose, velocity, costmap, elapsed, others);
-  check_result(result, own.options_.base);
+  const Velocity believed = own.believe(velocity);
+  NavigationResult result = own.update(pose, believed, costmap, elapsed, others);
+  check_result(result, own.options_.base,
+               plausible(believed) ? braked(believed, own.options_.base, elapsed) : Velocity{});
   result.command = own.command_ = own.delay_.send(result.command);
   result.delay = own.delay_.longest();
   result.remaining = own.way_.remaining();

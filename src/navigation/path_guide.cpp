@@ -61,12 +61,6 @@ void set_yaws(std::span<maps::Pose> path, const BaseOptions& base) noexcept {
   }
 }
 
-void set_straight(std::vector<maps::Pose>& path, const maps::Pose& robot, const maps::Pose& goal,
-                  const BaseOptions& base) noexcept {
-  path.assign({robot, goal});
-  if (base.max_reverse == 0) path[0].yaw = direction(robot, goal);
-}
-
 PathGuide::PathGuide(double reach) : reach_(reach), cells_(1, max_points) {
   cells_.fill({0, 0, 0, 0});
 }

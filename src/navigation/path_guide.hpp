@@ -17,11 +17,6 @@ namespace slalom::navigation::detail {
 /// cannot reverse drives forward everywhere.
 void set_yaws(std::span<maps::Pose> path, const BaseOptions& base) noexcept;
 
-/// Sets the straight path from the robot to the goal, which it drives in reverse if it faces away and can.
-/// The path has room for two poses.
-void set_straight(std::vector<maps::Pose>& path, const maps::Pose& robot, const maps::Pose& goal,
-                  const BaseOptions& base) noexcept;
-
 inline maps::Point position(const maps::Pose& pose) {
   return {pose.x, pose.y};
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
+
 namespace slalom::navigation {
 namespace {
 
@@ -17,10 +19,11 @@ maps::Point corner_of(const maps::GridGeometry& geometry) {
 
 }  // namespace
 
-PathPlanner::PathPlanner(const maps::GridGeometry& geometry, double half_width)
+PathPlanner::PathPlanner(const maps::GridGeometry& geometry, double half_width, std::size_t most_points)
     : half_width_(half_width),
       geometry_(geometry),
-      grid_(geometry.rows, geometry.columns, geometry.resolution, max_points),
+      grid_(geometry.rows, geometry.columns, geometry.resolution, most_points),
+      most_points_(most_points),
       is_kept_(grid_.size()) {}
 
 bool PathPlanner::knows(const Costmap& costmap, const maps::Point& point) const noexcept {
@@ -60,7 +63,12 @@ void PathPlanner::read(const Costmap& costmap, std::span<const maps::Pose> kept,
 bool PathPlanner::search_from(const maps::Point& start) noexcept {
   const int from = grid_.cell_at(start);
   if (from < 0) return false;
-  grid_.open_around(start, nearby * half_width_);
+  // From within an obstacle, as in a zone that was switched on, as far as the nearest free place.
+  double reach = nearby * half_width_;
+  for (bool found = false; !found && reach < geometry_.length_x() + geometry_.length_y();
+       reach *= found ? 1 : 1.5)
+    grid_.visit_around(start, reach, [&](std::size_t cell) { found = found || grid_.prices()[cell] > 0; });
+  grid_.open_around(start, reach);
   grid_.spread(from);
   return true;
 }
@@ -70,18 +78,59 @@ double PathPlanner::cost_to(const maps::Point& point) const noexcept {
   return cell < 0 ? std::numeric_limits<double>::infinity() : grid_.cost(cell);
 }
 
+PathPlanner::Way PathPlanner::way_off(const Costmap& costmap, const maps::Point& point,
+                                      double most) const noexcept {
+  Way best{{}, std::numeric_limits<double>::infinity()};
+  const double margin = half_width_ + 3 * geometry_.resolution;
+  const double half_x = 0.5 * geometry_.length_x() - margin, half_y = 0.5 * geometry_.length_y() - margin;
+  const auto try_from = [&](double x, double y) {
+    const maps::Point from{geometry_.center_x + x, geometry_.center_y + y};
+    const double away = distance(from, point), cost = cost_to(from) + away;
+    if (cost >= std::min(most, best.cost)) return;
+    for (double along = 0; along < away; along += geometry_.resolution) {
+      const double share = along / away;
+      const maps::Point here{from.x + share * (point.x - from.x), from.y + share * (point.y - from.y)};
+      if (knows(costmap, here) && !has_room(costmap, here)) return;
+    }
+    best = {from, cost};
+  };
+  for (double t = -1; t < 1;
+       t += 2 * geometry_.resolution / std::max({half_x, half_y, geometry_.resolution})) {
+    for (const double side : {-1.0, 1.0}) {
+      try_from(side * half_x, t * half_y);
+      try_from(t * half_x, side * half_y);
+    }
+  }
+  return best;
+}
+
 std::span<const maps::Point> PathPlanner::path_to(const maps::Point& point) noexcept {
-  return grid_.path_to(grid_.cell_at(point), spacing);
+  const auto way = grid_.path_to(grid_.cell_at(point), spacing);
+  return way.size() < most_points_ ? way : way.first(0);
 }
 
 std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footprint, const maps::Pose& start,
                                   const maps::Pose& goal) {
-  PathPlanner planner(costmap.geometry(), footprint.half_width());
+  constexpr double straight = 0.2;  // m before the goal
+  const maps::GridGeometry& geometry = costmap.geometry();
+  const double cells =
+      static_cast<double>(geometry.rows) * geometry.columns;  // a way enters each once at most
+  const double most_points = cells * (geometry.resolution / PathPlanner::spacing + 1);
+  PathPlanner planner(geometry, footprint.half_width(), saturate_cast<std::size_t>(most_points) + 1);
   planner.read(costmap, {}, {});
   std::vector<maps::Pose> path;
   if (!planner.search_from({start.x, start.y}) || !std::isfinite(planner.cost_to({goal.x, goal.y})))
     return path;
   for (const maps::Point& point : planner.path_to({goal.x, goal.y})) path.push_back({point.x, point.y, 0});
+  // The last points are those of cells: straight to the goal, the path has no kink there.
+  std::size_t kept = path.size();
+  const auto from_goal = [&](std::size_t i) { return std::hypot(path[i].x - goal.x, path[i].y - goal.y); };
+  while (kept > 1 && from_goal(kept - 1) < straight) --kept;
+  for (std::size_t i = kept; i < path.size(); ++i) {
+    const double share = static_cast<double>(i - kept + 1) / static_cast<double>(path.size() - kept + 1);
+    path[i] = {path[kept - 1].x + share * (goal.x - path[kept - 1].x),
+               path[kept - 1].y + share * (goal.y - path[kept - 1].y), 0};
+  }
   path.push_back(goal);
   for (std::size_t i = 0; i + 1 < path.size(); ++i)
     path[i].yaw = std::atan2(path[i + 1].y - path[i].y, path[i + 1].x - path[i].x);

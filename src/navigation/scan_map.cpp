@@ -1,11 +1,13 @@
 #include "slalom/navigation/scan_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/laser_scan.hpp"
+#include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -26,6 +28,7 @@ ScanMap::ScanMap(maps::OccupancyGrid known) : known_(std::move(known)), seen_(kn
 }
 
 void ScanMap::add(const RangeScan& scan) noexcept {
+  if (!maps::is_plausible(scan.pose)) return;
   const std::size_t count = scan.ranges.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double range = scan.ranges[i];
@@ -43,9 +46,12 @@ void ScanMap::add(const RangeScan& scan) noexcept {
 
 /// Sets the cells along a beam free, or occupied where the map has a wall.
 void ScanMap::clear(const maps::Point& from, double cosine, double sine, double range) noexcept {
-  const double step = 0.5 * known_.resolution;
-  const int steps = saturate_cast<int>(std::floor(std::fmin(range / step, 1e6)));
-  for (int k = 0; k <= steps; ++k)
+  const double step = 0.5 * known_.resolution, along = known_.width * step, across = known_.height * step;
+  const maps::Point middle{known_.origin.x + along, known_.origin.y + across};
+  // The part of the beam that can be on the map.
+  const double away = maps::distance(from, middle), half = std::hypot(along, across) + step;
+  const double last = std::min(range, away + half) / step;
+  for (double k = std::max(std::floor((away - half) / step), 0.0); k <= last; ++k)
     visit_cell(seen_, {from.x + k * step * cosine, from.y + k * step * sine}, [&](int column, int row) {
       const bool is_wall = known_.at(column, row) == maps::Occupancy::occupied;
       seen_.at(column, row) = is_wall ? maps::Occupancy::occupied : maps::Occupancy::free;

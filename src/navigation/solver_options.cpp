@@ -60,12 +60,6 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   return options;
 }
 
-MppiOptions mppi_options(const BaseOptions& base) {
-  SolverOptions shared = solver_options(MppiOptions::method);
-  set_shared(shared, base);
-  return *shared.get_if<MppiOptions>();
-}
-
 SolverOptions method_options(std::string_view method, const BaseOptions& base) {
   if (method == SvgMppiOptions::method) return svg_mppi_options(base);
   SolverOptions options = solver_options(method);

@@ -14,10 +14,8 @@ namespace {
 
 constexpr double longest_path = 1e6;    // steps of a path
 constexpr double search_period = 0.1;   // s between searches while there is no way
-constexpr double nearest_unseen = 0.5;  // m, beside those of braking, before a closed place whose end is seen
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
-constexpr double near_goal = 1;         // m before the goal, where a robot without progress approaches anew
 constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place
 constexpr double around_joint = 0.2;    // m behind the end of a detour, where the path may have a corner
 constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
@@ -37,10 +35,22 @@ maps::RecoveryLengths recovery_lengths(const NavigatorOptions& options) {
           .relief = 0.5,
           .jump = std::numeric_limits<double>::infinity(),
           .standing = 0.02,
-          .stand_still = options.stuck_after,
+          .stand_still = 0.5 * options.stuck_after,
           .patience = options.stuck_after,
           .wait = 10,
           .attempts = 5};
+}
+
+/// Whether a path is the end of another one, within `close` (m).
+bool ends_alike(const maps::PathCurve& path, const maps::PathCurve& longer, double close) {
+  const auto points = path.points(), others = longer.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto k = saturate_cast<std::size_t>(std::round(i * path.step() / std::max(longer.step(), 1e-3)));
+    const maps::Pose &here = points[points.size() - 1 - i],
+                     &there = others[others.size() - 1 - std::min(k, others.size() - 1)];
+    if (distance(position(here), position(there)) > close || std::cos(here.yaw - there.yaw) < 0) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -58,13 +68,30 @@ Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps
 void Way::advance(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap,
                   double elapsed) noexcept {
   const auto turn = [&] {
-    return guide_.leg().turns ? approach_.turn_to(robot, guide_.leg().yaw, costmap) : 0;
+    return guide_.leg().turns ? approach_.turn_to(robot, guide_.leg().yaw, costmap, velocity.turn) : 0;
   };
   if (std::exchange(is_new_, false)) {
     approach_.place(guide_, robot, costmap, poses_);
     legs_.begin(robot, turn());
   }
-  legs_.update(guide_, robot, {std::hypot(velocity.forward, velocity.left), velocity.turn}, elapsed, turn);
+  const double speed = std::hypot(velocity.forward, velocity.left);
+  position_ = position(robot);
+  speed_ = speed + progress_turn * std::abs(velocity.turn);
+  legs_.update(guide_, robot, {speed, velocity.turn}, elapsed, turn);
+  make_room_for_turn(costmap);
+}
+
+/// Where there is no room for the next turn on the spot, the robot drives past the corner without it, and
+/// into the goal's heading by a manoeuvre.
+void Way::make_room_for_turn(const Costmap& costmap) noexcept {
+  const auto next = guide_.legs().subspan(&guide_.leg() - guide_.legs().data()).subspan(1);
+  if (next.empty() || !next[0].turns || next[0].first == checked_ ||
+      guide_.step() * (next[0].first - guide_.nearest()) > Approach::longest_change)
+    return;
+  checked_ = next[0].first;
+  const maps::Pose& corner = guide_.points()[checked_];
+  if (approach_.has_room_to_turn({corner.x, corner.y, guide_.leg().yaw}, next[0].yaw, costmap)) return;
+  if (!guide_.join_legs()) approach_.face_goal(guide_, costmap, poses_);
 }
 
 bool Way::has_ended(const maps::Pose& robot) noexcept {
@@ -79,30 +106,42 @@ void Way::set_path(std::span<const maps::Pose> path) {
     if (!maps::is_plausible(path[i])) maps::check_pose("path: pose " + std::to_string(i), path[i]);
     if (i > 0) length += distance(position(path[i]), position(path[i - 1]));
   }
-  const auto same = [](const maps::Pose& a, const maps::Pose& b) {
-    return a.x == b.x && a.y == b.y && a.yaw == b.yaw;
-  };
-  if (!guide_.empty() && !is_done_ && !is_stuck() &&
-      std::equal(path.begin(), path.end(), given_.begin(), given_.end(), same))
-    return;
-  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > min_rejoin) {
-    chosen_.clear();
-    closed_.forget_dead_ends();
-  }
   // A detour is at most as long as a path of the search, and goes on along the path.
   const double longest = length + 2 * PathPlanner::max_points * PathPlanner::spacing;
   const std::size_t most = count(longest, PathGuide::spacing, longest_path, "path") + path.size() + 8;
+  maps::PathCurve given;
+  given.reserve(most);
+  given.set(path, false);
+  if (is_followed(given)) return;
+  given_ = std::move(given);
+  const bool goes_on =
+      !guide_.empty() && distance(position(guide_.goal()), position(path.back())) <= min_rejoin;
+  if (!goes_on) {
+    chosen_.clear();
+    closed_.forget_dead_ends();
+    without_way_ = since_search_ = 0;
+  }
+  if (!goes_on || is_stuck() || is_done_) recovery_.reset();
   guide_.reserve(most);
   poses_.reserve(most);
   chosen_.reserve(most);
-  given_.assign(path.begin(), path.end());
   is_done_ = false;
   poses_.assign(path.begin(), path.end());
   set_yaws(poses_, options_.base);
   follow(poses_);
   detour_left_ = infinity;
-  without_way_ = since_search_ = 0;
-  recovery_.reset();
+}
+
+/// Whether a path changes nothing: it ends like the one that was given, or the robot is at its end, where no
+/// way is left to decide about.
+bool Way::is_followed(const maps::PathCurve& path) const noexcept {
+  if (guide_.empty() || is_stuck() || (is_done_ && stands())) return false;
+  const double near = 2 * options_.goal_distance;
+  if (distance(position(path.goal()), position(given_.goal())) > 0.1 * options_.goal_distance ||
+      std::abs(maps::wrap_angle(path.goal().yaw - given_.goal().yaw)) > 0.2 * options_.goal_angle)
+    return false;
+  return (guide_.remaining() <= near && distance(position_, position(guide_.goal())) <= near) ||
+         ends_alike(path, given_, std::max(0.5 * options_.goal_distance, PathGuide::spacing));
 }
 
 void Way::clear() noexcept {
@@ -119,9 +158,8 @@ void Way::clear() noexcept {
 /// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth` m.
 void Way::follow(std::span<const maps::Pose> path, double smooth) noexcept {
   guide_.set(path, turns_on_the_spot(options_.base), smooth);
-  is_new_ = true;
-  recovery_.watch_from(-infinity);
-  stop_ = no_stop;
+  is_new_ = is_other_ = true;
+  checked_ = stop_ = no_stop;
 }
 
 bool Way::ends_at(const maps::Pose& pose) const noexcept {
@@ -135,7 +173,10 @@ bool Way::ends_at(const maps::Pose& pose) const noexcept {
 /// The first closed point of the path within `look_ahead`; the number of points if there is none.
 std::size_t Way::first_closed(const Costmap& costmap) const noexcept {
   const std::size_t count = guide_.points().size();
-  const std::size_t last = std::min(count - 1, guide_.nearest() + guide_.points_for(options_.look_ahead));
+  const double braking = options_.base.max_forward * options_.base.max_forward /
+                         (2 * axis_limits(options_.base)[0].deceleration);
+  const std::size_t last =
+      std::min(count - 1, guide_.nearest() + guide_.points_for(options_.look_ahead + braking));
   for (std::size_t i = guide_.nearest(); i <= last; ++i)
     if (is_closed(costmap, i)) return i;
   return count;
@@ -155,34 +196,34 @@ bool Way::can_rejoin(const Costmap& costmap, std::size_t point) const noexcept {
   return true;
 }
 
-/// Whether the path leaves the costmap before a detour around its closed point could end, and the robot is
-/// more than `distance` (m) before that point.
-bool Way::opens_off_the_map(const Costmap& costmap, std::size_t closed, double distance) const noexcept {
-  if (guide_.step() * (closed - guide_.nearest()) <= distance) return false;
-  for (std::size_t i = closed + 1; i < guide_.points().size(); ++i) {
-    if (!planner_.knows(costmap, position(guide_.points()[i]))) return true;
-    if (can_rejoin(costmap, i)) return false;
-  }
-  return false;
-}
-
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
-/// of the path. Returns false and keeps the path if there is none that costs less than `most` (m).
+/// of the path. To points off the costmap it goes straight on from the edge. Returns false and keeps the path
+/// if there is none that costs less than `most` (m).
 bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept {
   planner_.read(costmap, chosen_, closed_.all());
   if (!planner_.search_from(position(pose))) return false;
   const std::span<const maps::Pose> path = guide_.points();
   double least = most;
   std::size_t best = path.size();
+  maps::Point end;
+  const std::size_t unseen_stride = guide_.points_for(min_rejoin), most_unseen = 6 * unseen_stride;
+  std::size_t unseen = 0;
   for (std::size_t i = closed + 1; i < path.size(); ++i) {
     const double left = guide_.step() * (path.size() - 1 - i);
-    const double cost = planner_.cost_to(position(path[i])) + left;
-    if (cost >= least || !can_rejoin(costmap, i)) continue;
-    least = cost;
+    const maps::Point here = position(path[i]);
+    if (left >= least || !can_rejoin(costmap, i)) continue;
+    const bool is_seen = planner_.knows(costmap, here);
+    if (!is_seen && (++unseen > most_unseen || unseen % unseen_stride != 1)) continue;
+    const auto way = is_seen ? PathPlanner::Way{here, planner_.cost_to(here)}
+                             : planner_.way_off(costmap, here, least - left);
+    if (way.cost + left >= least) continue;
+    least = way.cost + left;
     best = i;
+    end = way.end;
   }
   if (best == path.size()) return false;
-  const std::span<const maps::Point> way = planner_.path_to(position(path[best]));
+  const std::span<const maps::Point> way = planner_.path_to(end);
+  if (way.empty()) return false;
   poses_.clear();
   for (const maps::Point& point : way) poses_.push_back({point.x, point.y, 0});
   const std::size_t joint = poses_.size();
@@ -214,9 +255,9 @@ void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Ot
   closed_.end_meeting();
 }
 
-bool Way::keep(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap, const Others& others,
+bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& others,
                double elapsed) noexcept {
-  watch_progress(pose, velocity, others, elapsed);
+  watch_progress(pose, costmap, others, elapsed);
   stop_ = no_stop;
   if (!options_.find_detours) return true;
   const std::size_t closed = first_closed(costmap);
@@ -237,13 +278,6 @@ bool Way::keep(const maps::Pose& pose, const Velocity& velocity, const Costmap& 
     without_way_ = 0;
     return true;
   }
-  // A costmap that moves with the robot may show the end of the closed place once the robot is nearer.
-  const BaseOptions& base = options_.base;
-  const double braking = base.max_forward * base.max_forward / (2 * axis_limits(base)[0].deceleration);
-  if (opens_off_the_map(costmap, closed, nearest_unseen + braking)) {
-    without_way_ = least_period;
-    return true;
-  }
   without_way_ += std::max(elapsed, least_period);
   return without_way_ < options_.patience;
 }
@@ -258,33 +292,35 @@ bool Way::waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept {
   return true;
 }
 
-void Way::watch_progress(const maps::Pose& robot, const Velocity& velocity, const Others& others,
+void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
                          double elapsed) noexcept {
   const double left = guide_.remaining() + progress_turn * std::abs(legs_.turn_left());
-  recovery_.update({.arc = -left,
-                    .speed = std::hypot(velocity.forward, velocity.left),
+  if (std::exchange(is_other_, false)) other_ += left - left_;  // the progress goes on
+  left_ = left;
+  recovery_.update({.arc = other_ - left,
+                    .speed = speed_,
                     .waits = without_way_ > 0 || stop_ != no_stop || others.are_near(position(robot))},
                    elapsed);
-  if (recovery_.begins() && recovery_.retries() && !is_stuck()) try_another_way(robot);
+  if (recovery_.begins() && recovery_.retries() && !is_stuck()) try_another_way(robot, costmap);
 }
 
-/// Where the robot makes no progress, it goes on to the next leg, approaches the goal anew, or takes the
-/// place ahead for a dead end. Where there is no way, those that were dead ends may be open.
-void Way::try_another_way(const maps::Pose& robot) noexcept {
+/// Where the robot makes no progress, it searches a manoeuvre onto the path ahead; the next time, it takes
+/// the place ahead for a dead end. Where there is no way, those that were dead ends may be open.
+void Way::try_another_way(const maps::Pose& robot, const Costmap& costmap) noexcept {
   if (without_way_ > 0) {
     closed_.forget_dead_ends();
     without_way_ = 0;
-  } else if (guide_.leg().turns && !guide_.on_last_leg()) {
-    guide_.next_leg();
-    legs_.begin(robot);
-  } else if (guide_.remaining() < near_goal) {
-    set_straight(poses_, robot, guide_.goal(), options_.base);
+  } else if (guide_.remaining() < 2 * footprint_.circumscribed_radius()) {
+    poses_.assign({robot, guide_.goal()});
+    set_yaws(poses_, options_.base);
     follow(poses_);
+  } else if ((manoeuvres_ = !manoeuvres_) && approach_.join(guide_, robot, costmap, poses_)) {
+    is_new_ = is_other_ = true;
   } else {
-    const std::size_t ahead = guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);
-    const std::span<const maps::Pose> path = guide_.points();
-    closed_.add_dead_end(
-        {position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]), PathPlanner::dead_end_radius});
+    const std::size_t ahead =
+        guide_.nearest() + guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);
+    if (ahead < guide_.points().size())
+      closed_.add_dead_end({position(guide_.points()[ahead]), PathPlanner::dead_end_radius});
   }
 }
 

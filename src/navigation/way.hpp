@@ -29,8 +29,7 @@ class Way {
   void advance(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap,
                double elapsed) noexcept;
   /// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
-  bool keep(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap, const Others& others,
-            double elapsed) noexcept;
+  bool keep(const maps::Pose& robot, const Costmap& costmap, const Others& others, double elapsed) noexcept;
 
   /// Whether the robot is at the end of the path, within the tolerances. Then the same path may be set again.
   bool has_ended(const maps::Pose& robot) noexcept;
@@ -43,27 +42,29 @@ class Way {
     return stop_ != no_stop && guide_.nearest() + guide_.points_for(options_.goal_distance) >= stop_;
   }
 
-  bool takes_leg() noexcept { return legs_.takes_leg(); }  ///< whether there is a new leg since the last call
   double remaining() const noexcept { return guide_.remaining(); }                 ///< m
   std::span<const maps::Pose> points() const noexcept { return guide_.points(); }  ///< the path
   /// Sets the part of the path around the robot in `maps`.
   void write(const maps::Pose& robot, NavigationMaps& maps) noexcept {
     guide_.write(robot, legs_.turn_left(), stop_, maps);
+    maps.manoeuvres = approach_.manoeuvres(guide_);
   }
 
  private:
   std::size_t first_closed(const Costmap& costmap) const noexcept;
   bool is_closed(const Costmap& costmap, std::size_t point) const noexcept;
   bool can_rejoin(const Costmap& costmap, std::size_t point) const noexcept;
-  bool opens_off_the_map(const Costmap& costmap, std::size_t closed, double distance) const noexcept;
+  void make_room_for_turn(const Costmap& costmap) noexcept;
+  bool is_followed(const maps::PathCurve& path) const noexcept;
+  bool stands() const noexcept { return speed_ < recovery_.lengths().standing; }
   void follow(std::span<const maps::Pose> path, double smooth = 0) noexcept;
   bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
   void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
                      double elapsed) noexcept;
   bool waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept;
-  void watch_progress(const maps::Pose& robot, const Velocity& velocity, const Others& others,
+  void watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
                       double elapsed) noexcept;
-  void try_another_way(const maps::Pose& robot) noexcept;
+  void try_another_way(const maps::Pose& robot, const Costmap& costmap) noexcept;
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -74,7 +75,7 @@ class Way {
   Approach approach_;
   maps::LegFollower legs_;
   maps::Recovery recovery_;
-  ReservedVector<maps::Pose> given_;   ///< the path that was set
+  maps::PathCurve given_;              ///< the path that was set
   ReservedVector<maps::Pose> poses_;   ///< a path that is being made
   ReservedVector<maps::Pose> chosen_;  ///< the last detour, which later searches prefer
   maps::ClosedDiscs closed_;
@@ -83,8 +84,14 @@ class Way {
   double since_search_ = 0;        ///< s
   double since_meeting_ = 0;       ///< s
   bool is_new_ = true;             ///< the next update places the robot on the path
+  bool is_other_ = true;           ///< the path is another one than at the last look for progress
+  double left_ = 0, other_ = 0;    ///< m left of the path then; m by which it was longer than the first
   bool is_done_ = false;           ///< whether the end was reached
+  double speed_ = 0;               ///< m/s, of the robot; in a turn, too
+  maps::Point position_;           ///< m, of the robot
+  bool manoeuvres_ = false;        ///< whether a manoeuvre was the last try to get on
   std::size_t stop_ = no_stop;     ///< point of the path before an occupied goal
+  std::size_t checked_ = no_stop;  ///< point of the last turn whose room was checked
 };
 
 }  // namespace slalom::navigation::detail

@@ -238,10 +238,11 @@ void FeedbackGains::input_at(double t, std::span<const double> x, std::span<doub
   const double* const to = from + states_;
   const std::span<const double> gain = this->gain(k);
   for (int i = 0; i < inputs_; ++i) {
-    double input = plan_inputs_[count(k, inputs_) + count(i)];
+    const double planned = plan_inputs_[count(k, inputs_) + count(i)];
+    double input = planned;
     for (int j = 0; follow && j < states_; ++j)
       input += gain[count(i, states_) + count(j)] * (x[count(j)] - (from[j] + share * (to[j] - from[j])));
-    u[count(i)] = bounds_.nearest(count(i), input);
+    u[count(i)] = bounds_.nearest(count(i), std::isfinite(input) ? input : planned);
   }
 }
 

@@ -103,6 +103,7 @@ TEST_F(LocaliserCoreTest, AChangeOfOptionsKeepsTheStartThatWasTold) {
   core_.change({{"beams", "20"}});
   const std::vector<maps::Pose> some = core_.particles(50);
   ASSERT_FALSE(some.empty());
+  EXPECT_GT(core_.particles(std::numeric_limits<int>::max()).size(), some.size());
   for (const maps::Pose& each : some) {
     EXPECT_NEAR(each.x, 2, 1.5);
     EXPECT_NEAR(each.y, 1, 1.5);

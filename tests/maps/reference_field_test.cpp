@@ -230,6 +230,8 @@ TEST(ReferenceField, RejectsInvalidPaths) {
     path[4].x = bad;
     EXPECT_THROW(ReferenceField{path}, std::invalid_argument);
   }
+  EXPECT_THROW(ReferenceField(circle(100, 1e-3)), std::invalid_argument);
+  EXPECT_THROW(ReferenceField(circle(70000, 1)), std::invalid_argument);
   auto path = circle(10, 1);
   path[9].speed = -1;
   EXPECT_THROW(ReferenceField{path}, std::invalid_argument);

@@ -70,6 +70,35 @@ TEST(BaseLimits, ARobotWithWeakBrakesStopsBeforeAWallThatAppears) {
   EXPECT_NEAR(drive.velocity.forward, 0, 0.05);
 }
 
+TEST(BaseLimits, AFasterRobotBrakesToItsLimits) {
+  Drive drive({.base = {.max_forward = 0.4, .max_acceleration = 0.5}}, free_grid(0, 0, 20, 4));
+  drive.restart_fast();
+  drive.start({2, 2, 0}, {{1, 2, 0}, {18, 2, 0}});
+  drive.velocity.forward = 1.5;
+  for (double last = 1.5; last > 0.41; last = drive.velocity.forward) {
+    const NavigationResult result = drive.update();
+    ASSERT_NEAR(drive.velocity.forward, last - 0.5 * drive_period, 1e-5);
+    ASSERT_NEAR(maps::distance({result.plan[0].x, result.plan[0].y}, {result.plan[1].x, result.plan[1].y}),
+                drive_period * drive.velocity.forward, 1e-4)
+        << "plans begin with what is driven";
+  }
+}
+
+TEST(BaseLimits, StopsAtAGoalThatIsBeyondItsPlansWhenItMustBrake) {
+  Drive drive({.base = {.max_forward = 4.2, .max_turn = 1, .max_acceleration = 0.5}}, free_grid(0, 0, 50, 6),
+              0.7, 0.8);
+  drive.restart_fast();
+  drive.start({2, 3, 0}, {{2, 3, 0}, {46, 3, 0}});
+  double farthest = 0, fastest = 0;
+  for (int i = 0; i < 700 && drive.step() != NavigationStatus::goal_reached; ++i) {
+    farthest = std::max(farthest, drive.pose.x);
+    fastest = std::max(fastest, drive.velocity.forward);
+  }
+  EXPECT_LT(farthest, 46.2);
+  EXPECT_LT(drive.goal_distance(), 0.2);
+  EXPECT_GT(fastest, 3.9);
+}
+
 TEST(BaseLimits, CommandsLeaveTheDeadBandAtOnce) {
   for (const double heading : {2.5, -1.0}) {
     Drive drive(BaseKind::differential);

@@ -13,6 +13,7 @@
 #include "slalom/navigation/navigation_problem.hpp"
 #include "slalom/navigation/scan_map.hpp"
 #include "support/allocations.hpp"
+#include "support/promise.hpp"
 #include "support/thrown_words.hpp"
 
 namespace slalom::navigation::costmap_test {
@@ -240,11 +241,18 @@ TEST(Footprint, TheOutlineHasNoGaps) {
   }
 }
 
-TEST(Footprint, WithoutARimIsTheSameShapeButSmaller) {
-  const Footprint inner = Footprint::rectangle(0.5, 0.3, 0.6).without_rim(0.06);
-  EXPECT_NEAR(inner.half_width(), 0.24, 1e-12);
-  EXPECT_NEAR(inner.circumscribed_radius(), 0.8 * std::hypot(0.5, 0.3), 1e-12);
-  EXPECT_NEAR(Footprint::rectangle(0.5, 0.3, 0.6).without_rim(1).half_width(), 0.06, 1e-12);
+TEST(Footprint, WithoutARimEverySideIsAsMuchNearer) {
+  const Footprint long_nose = Footprint::rectangle(0.9, 0.2, 0.5), inner = long_nose.without_rim(0.06);
+  EXPECT_NEAR(inner.half_width(), 0.19, 1e-12);
+  EXPECT_NEAR(inner.circumscribed_radius(), std::hypot(0.84, 0.19), 1e-12);
+  EXPECT_NEAR(long_nose.without_rim(1).half_width(), 0.05, 1e-12);
+  RandomStream random({2, 0});
+  for (int shape = 0; shape < 100; ++shape) {
+    const Footprint body = random_footprint(random);
+    const std::vector<Footprint> bodies = body.without_rims(0.02);
+    for (std::size_t i = 1; i < bodies.size(); ++i)
+      for (const Point& vertex : bodies[i].vertices()) EXPECT_TRUE(body.contains(vertex)) << shape;
+  }
 }
 
 TEST(Footprint, RejectsInvalidOutlines) {
@@ -253,6 +261,7 @@ TEST(Footprint, RejectsInvalidOutlines) {
   EXPECT_THROW(make({{1, 0}, {0, 1}, {std::nan(""), 0}}), std::invalid_argument);
   EXPECT_THROW(make({{1, 1}, {2, 1}, {2, 2}, {1, 2}}), std::invalid_argument);        // origin outside
   EXPECT_THROW(make({{-1, -1}, {1, 1}, {1, -1}, {-1, 1.5}}), std::invalid_argument);  // sides cross
+  EXPECT_THROW(Footprint::rectangle(0.5, 0.3, 0.6).outline_points(1e-9), std::invalid_argument);
   expect_error_with<std::invalid_argument>({"vertex 1"}, [&] { make({{-1, -1}, {200, 0}, {0, 1}}); });
 }
 
@@ -287,6 +296,18 @@ TEST(ScanMap, NeverClearsWhatTheMapKnows) {
   ScanMap map(walled());
   const std::vector<double> ranges{8, 8, 8, 8};
   map.add({{0.01, 0.01, 0}, ranges, 8});
+  EXPECT_EQ(at(map, 1.55, 0.01), Occupancy::occupied);
+}
+
+TEST(ScanMap, AScanTakesNoLongerThanTheMapIsWide) {
+  ScanMap map(walled());
+  const std::vector<double> nothing(1000, 1e300);
+  for (const double most : {65533.0, 1e300, double{INFINITY}, double{NAN}})
+    for (const double x : {0.01, 1e7, 1e300, double{NAN}}) {
+      const testing::CallLimits limits;
+      map.add({{x, 0.01, 3.14159265}, nothing, most});
+      limits.check();
+    }
   EXPECT_EQ(at(map, 1.55, 0.01), Occupancy::occupied);
 }
 

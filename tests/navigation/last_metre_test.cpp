@@ -52,29 +52,5 @@ TEST(LastMetre, SaysThatItIsStuckWithoutTheSearchForDetours) {
   EXPECT_FALSE(drive.collided);
 }
 
-TEST(LastMetre, DrivesUpToAnOccupiedGoalAndWaits) {
-  Drive drive(BaseKind::differential);
-  drive.block(7.8, 2.8, 8.2, 3.2);
-  drive.start({1, 3, 0}, {{1, 3, 0}, {8, 3, 0}});
-  EXPECT_EQ(drive.drive(18), NavigationStatus::goal_occupied);
-  const double room = 7.8 - (drive.pose.x + 0.35);
-  EXPECT_GT(room, drive.options.goal_room - 0.05);
-  EXPECT_LT(room, drive.options.goal_room + 0.25);
-  drive.grid = free_grid(0, 0, 10, 6);
-  drive.costmap.update(drive.grid);
-  EXPECT_EQ(drive.drive(10), NavigationStatus::goal_reached);
-}
-
-TEST(LastMetre, ADelayThatIsNotToldIsEstimated) {
-  for (const int periods : {0, 12}) {
-    Drive drive(BaseKind::differential);
-    drive.delay_periods = periods;
-    drive.start({1, 3, 0.3}, {{1, 3, 0}, {9, 3, 0}});
-    EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached);
-    EXPECT_NEAR(drive.delay, periods * drive_period, 0.051);
-    EXPECT_EQ(drive.reversals, 0) << periods;
-  }
-}
-
 }  // namespace
 }  // namespace slalom::navigation::last_metre_test

@@ -55,13 +55,17 @@ inline Navigator make_navigator(const NavigatorOptions& options, const Costmap& 
 }
 
 /// Throws Finding unless a base with these limits may be sent this.
-inline void check(const NavigationResult& result, const BaseOptions& base) {
+inline void check(const NavigationResult& result, const BaseOptions& base, const Velocity& driven) {
   using testing::require;
   const Velocity& v = result.command;
-  require(v.forward >= -base.max_reverse && v.forward <= base.max_forward, "the speed is within its limits");
-  require(std::abs(v.left) <= (base.kind == BaseKind::omnidirectional ? base.max_sideways : 0),
-          "the sideways speed is within its limits");
-  require(std::abs(v.turn) <= base.max_turn, "the yaw rate is within its limits");
+  const auto within = [](double value, double least, double most, double now) {
+    return value >= std::min(least, now) && value <= std::max(most, now);  // or it brakes to them
+  };
+  const double sideways = base.kind == BaseKind::omnidirectional ? base.max_sideways : 0;
+  require(within(v.forward, -base.max_reverse, base.max_forward, driven.forward),
+          "the speed is within its limits");
+  require(within(v.left, -sideways, sideways, sideways > 0 ? driven.left : 0), "the sideways speed is, too");
+  require(within(v.turn, -base.max_turn, base.max_turn, driven.turn), "the yaw rate is within its limits");
   require(std::isfinite(result.remaining), "the remaining path is finite");
   for (const maps::Pose& each : result.plan)
     require(std::isfinite(each.x) && std::isfinite(each.y) && std::isfinite(each.yaw), "plans are finite");
@@ -122,7 +126,7 @@ inline void call_navigator(testing::Adversary& adversary, const Hall& hall, Navi
     const testing::CallLimits limits;
     const NavigationResult result = navigator.update(pose, velocity, costmap, elapsed, predicted);
     limits.check();
-    check(result, options.base);
+    check(result, options.base, velocity);
     ++tally.updates;
     ++tally.statuses[static_cast<int>(result.status)];
     tally.corrections += result.corrections;

@@ -97,19 +97,19 @@ TEST(Navigator, PassesAPalletOnThePathWithoutChangingItsSide) {
   EXPECT_FALSE(drive.collided);
 }
 
-/// Drives on a costmap of 6 x 6 m around the robot until the goal is reached or the way is blocked.
-NavigationStatus drive_with_a_moving_costmap(CheckedDrive& drive, double x0, double y0, double x1,
-                                             double y1) {
+/// Drives on a square costmap around the robot until the goal is reached or the way is blocked.
+NavigationStatus drive_with_a_moving_costmap(CheckedDrive& drive, double side, double x0, double y0,
+                                             double x1, double y1) {
   NavigationStatus status = NavigationStatus::following;
-  maps::OccupancyGrid seen = free_grid(0, 0, 6, 6);
+  maps::OccupancyGrid seen = free_grid(0, 0, side, side);
   drive.costmap = Costmap(seen.width, seen.height, seen.resolution);
   drive.restart_fast();
   const maps::Pose path[] = {{1, 0, 0}, {9, 0, 0}};
   drive.navigator->set_path(path);
   for (int i = 0; i < 800 && status != NavigationStatus::goal_reached && status != NavigationStatus::blocked;
        ++i) {
-    seen = free_grid(std::floor(drive.pose.x / 0.05) * 0.05 - 3, std::floor(drive.pose.y / 0.05) * 0.05 - 3,
-                     6, 6);
+    seen = free_grid(std::floor(drive.pose.x / 0.05) * 0.05 - side / 2,
+                     std::floor(drive.pose.y / 0.05) * 0.05 - side / 2, side, side);
     fill(seen, x0, y0, x1, y1);
     drive.costmap.update(seen);
     status = drive.step().status;
@@ -121,12 +121,17 @@ NavigationStatus drive_with_a_moving_costmap(CheckedDrive& drive, double x0, dou
 // At first the costmap shows where the pallet begins and not where it ends.
 TEST(Navigator, GoesOnWhileTheEndOfAnObstacleIsOffTheCostmap) {
   CheckedDrive drive;
-  EXPECT_EQ(drive_with_a_moving_costmap(drive, 4.5, -0.5, 5.5, 0.5), NavigationStatus::goal_reached);
+  EXPECT_EQ(drive_with_a_moving_costmap(drive, 6, 4.5, -0.5, 5.5, 0.5), NavigationStatus::goal_reached);
+}
+
+TEST(Navigator, ADetourMayEndAtTheEdgeOfTheCostmap) {
+  CheckedDrive drive;
+  EXPECT_EQ(drive_with_a_moving_costmap(drive, 3, 4.5, -0.8, 5.5, 0.9), NavigationStatus::goal_reached);
 }
 
 TEST(Navigator, IsBlockedByAWallThatIsLongerThanTheCostmapShows) {
   CheckedDrive drive;
-  EXPECT_EQ(drive_with_a_moving_costmap(drive, 4.5, -20, 5.5, 20), NavigationStatus::blocked);
+  EXPECT_EQ(drive_with_a_moving_costmap(drive, 6, 4.5, -20, 5.5, 20), NavigationStatus::blocked);
   EXPECT_LT(drive.pose.x, 4.5 - 0.35);
 }
 
@@ -269,17 +274,21 @@ TEST(NavigatorCheck, IgnoresAVelocityThatNoRobotHas) {
   }
 }
 
-TEST(NavigatorCheck, BrakesWithinTheLimitsOfTheBase) {
+TEST(NavigatorCheck, BrakesToTheLimitsOfTheBase) {
   const Hall hall;
   const NavigatorOptions options;
   Navigator navigator = make_navigator(options, hall.costmap);
   const NavigationResult result =
       navigator.update({-1.5, 0, 0}, {.forward = 4, .left = 1, .turn = -9}, hall.costmap, period);
   EXPECT_EQ(result.status, NavigationStatus::no_path);
-  EXPECT_EQ(result.command.forward, options.base.max_forward);
+  EXPECT_EQ(result.command.forward, 4 - period * options.base.max_acceleration);
   EXPECT_EQ(result.command.left, 0) << "a differential base does not move sideways";
-  EXPECT_EQ(result.command.turn, -options.base.max_turn);
-  EXPECT_EQ(result.corrections, 3);
+  EXPECT_EQ(result.command.turn, -9 + period * options.base.max_turn_acceleration);
+  EXPECT_EQ(result.corrections, 1);
+  navigator.update({-1.5, 0, 0}, {}, hall.costmap, period);
+  EXPECT_LE(navigator.update({-1.5, 0, 0}, {.forward = 4}, hall.costmap, period).command.forward,
+            options.base.max_forward)
+      << "once is an error of the odometry";
 }
 
 TEST(NavigatorCheck, EveryCommandIsValidForAnyInput) {

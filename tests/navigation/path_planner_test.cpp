@@ -54,6 +54,21 @@ TEST(PathPlanner, ThereIsNoPathThroughADoorThatIsTooNarrow) {
   EXPECT_TRUE(plan_path(costmap_of(two_doors()), body, {-1, 1, 0}, {7, 1, 0}).empty()) << "off the map";
 }
 
+TEST(PathPlanner, PathsHaveNoKinkAtTheGoalAndAreAsLongAsTheyMustBe) {
+  const Costmap costmap = costmap_of(free_grid(0, 0, 8, 6));
+  for (const maps::Pose& goal : {maps::Pose{6.01, 3.04, 0}, {6.04, 3.01, 0}, {6.02, 3.02, 0}}) {
+    const auto path = plan_path(costmap, body, {1, 3.02, 0}, goal);
+    for (const maps::Pose& pose : path) EXPECT_LT(std::abs(pose.yaw), 0.25) << goal.x << ", " << goal.y;
+  }
+  maps::OccupancyGrid shelves = free_grid(0, 0, 40, 21);
+  for (int i = 1; i < 7; ++i) fill(shelves, i % 2 ? 0 : 1.5, 3 * i, i % 2 ? 38.5 : 40, 3 * i + 0.2);
+  const Costmap hall = costmap_of(shelves);
+  const auto path = plan_path(hall, body, {1, 1, 0}, {39, 20, 0});
+  EXPECT_GT(path.size() * PathPlanner::spacing, 240);
+  for (std::size_t i = 1; i < path.size(); ++i)
+    ASSERT_LT(std::hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y), 0.12) << i;
+}
+
 TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   const Costmap costmap = costmap_of(two_doors());
   const std::vector<maps::Pose> chosen = plan_path(costmap, body, {1, 3.2, 0}, {7, 3.2, 0});

@@ -235,6 +235,8 @@ TEST(RacingOpponent, DrawsLanesAndSpeedsFromItsKeyAlone) {
 }
 
 TEST(RacingOpponent, RejectsInvalidInput) {
+  const std::vector<PathPoint> far{{{0, 0}, 1}, {{1e9, 0}, 1}, {{0, 1e9}, 1}};
+  EXPECT_THROW(RacingLine(far, *testing::ring_track(), {}), std::invalid_argument);
   EXPECT_THROW(RacingOpponent(line(4), 0, OpponentDriver::racing, 1.1, RandomKey{}), std::invalid_argument);
   EXPECT_THROW(RacingOpponent(nullptr, 0, OpponentDriver::racing, 1, RandomKey{}), std::invalid_argument);
   EXPECT_THROW(

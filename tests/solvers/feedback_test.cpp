@@ -153,7 +153,7 @@ TEST(Feedback, KeepsTheBoundsAndLeavesInputsThatPushAgainstThem) {
 }
 
 TEST(Feedback, HoldsWhateverStateAndTimeItIsGiven) {
-  Mppi controller{Scalar{}, {.horizon = 4, .samples = 64}};
+  Mppi controller{Scalar{.a = 4}, {.horizon = 4, .samples = 64}};
   Feedback feedback{controller};
   EXPECT_EQ(feedback.input_at(0, {1})[0], 0) << "before the first update";
   const auto plan = controller.solve({1});
@@ -162,6 +162,7 @@ TEST(Feedback, HoldsWhateverStateAndTimeItIsGiven) {
   EXPECT_EQ(feedback.input_at(0.1, {nan})[0], plan.inputs[1][0]);
   EXPECT_EQ(feedback.input_at(nan, {1})[0], plan.inputs[0][0]);
   EXPECT_EQ(feedback.input_at(inf, {1})[0], plan.inputs[0][0]);
+  for (const double far : {1e30, 1.7e308}) EXPECT_TRUE(std::isfinite(feedback.input_at(0, {-far})[0])) << far;
   EXPECT_EQ(feedback.input_at(-3, plan.states[0])[0], plan.inputs[0][0]);
   EXPECT_EQ(feedback.input_at(1e300, plan.states[4])[0], plan.inputs[3][0]);
 }

@@ -57,6 +57,14 @@ TEST_F(DriveCommand, DrawsALapAtUtmCoordinates) {
   EXPECT_GT(fs::file_size(folder_ / "lap.png"), 10000u);
 }
 
+TEST_F(DriveCommand, TheNoteOnTheProfileIsThatOfTheCar) {
+  const std::string drive =
+      "drive --course wren --method mppi --set mppi.samples=50 --set planner.max_speed=3 ";
+  const std::string words = "asks for more than the car can (";
+  EXPECT_EQ(succeed(drive + "--set vehicle.friction=1").find(words), std::string::npos);
+  EXPECT_NE(succeed(drive + "--set vehicle.friction=0.4").find(words + "3.5"), std::string::npos);
+}
+
 TEST_F(DriveCommand, DrivesACarOfFullSize) {
   // Two straights of 150 m and two half circles of 45 m; the road is 14 m wide.
   std::ofstream line(folder_ / "oval.csv");

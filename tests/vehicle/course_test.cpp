@@ -46,6 +46,21 @@ TEST(Course, ReadsTheOptimisedLineForm) {
   EXPECT_DOUBLE_EQ(course.waypoints[1].speed, 2.5);
 }
 
+TEST(Course, ReadsPointsWithSpeedsWhereThereIsNothingElse) {
+  const CourseFolder folder;
+  folder.write("points.csv", "# x_m; y_m; vx_mps\n2; 0; 1.5\n0; 2; 2.5\n-2; 0; 3\n0; -2; 0\n");
+  EXPECT_EQ(load_course(folder.path()).waypoints[1].speed, 2) << "of the raceline";
+  folder.remove("raceline.csv");
+  for (const char* text : {"# x_m; y_m; vx_mps\n2; 0; 1.5\n0; 2; 2.5\n-2; 0; 3\n0; -2; 0\n",
+                           "x,y,v\n2,0,1.5\n0,2,2.5\n-2,0,3\n0,-2,0\n"}) {
+    folder.write("points.csv", text);
+    const Course course = load_course(folder.path());
+    ASSERT_EQ(course.waypoints.size(), 4u);
+    EXPECT_EQ(course.waypoints[1].y, 2);
+    EXPECT_EQ(course.waypoints[1].speed, 2.5);
+  }
+}
+
 TEST(Course, NotesFilesThatItIgnoresButForACentreLine) {
   const CourseFolder folder;
   folder.write("centre.csv", "# x_m, y_m, w_tr_right_m, w_tr_left_m\n0, 0, 1, 1\n");

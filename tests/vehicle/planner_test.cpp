@@ -189,12 +189,16 @@ TEST(Planner, InvalidInputStopsTheCarAndValidInputRestartsIt) {
   const maps::LaserScanView fine = free_lane.view();
   maps::LaserScanView turned = fine;
   turned.angle_min = nan;
+  const std::vector<float> zeros(271, 0.0F);
+  maps::LaserScanView dark = scan_of(zeros);
+  dark.range_min = 0;
   const Case cases[] = {
       {"no ranges", {}, good, PlannerStatus::bad_scan},
       {"one range", scan_of(one), good, PlannerStatus::bad_scan},
       {"too many ranges", scan_of(many), good, PlannerStatus::bad_scan},
       {"only infinite ranges", scan_of(nothing), good, PlannerStatus::bad_scan},
       {"only NaN ranges", scan_of(nonsense), good, PlannerStatus::bad_scan},
+      {"only zeros", dark, good, PlannerStatus::bad_scan},
       {"NaN angle", turned, good, PlannerStatus::bad_scan},
       {"NaN x", fine, {{nan, 0, 0}, 3}, PlannerStatus::bad_odometry},
       {"infinite y", fine, {{5, INFINITY, 0}, 3}, PlannerStatus::bad_odometry},

@@ -26,7 +26,7 @@ using vehicle::RacingCar;
 
 struct CourseArguments {
   std::string input, line, car = RacingCar{}.name, start, out, name, description, json;
-  std::optional<double> friction, top_speed, margin;
+  std::optional<double> friction, top_speed, margin, narrowest;
   bool reverse = false, no_picture = false;
 };
 
@@ -51,6 +51,7 @@ vehicle::GuideLine read_guide(const std::string& file) {
 RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
   vehicle::RaceCourseOptions options;
   options.reverse = arguments.reverse;
+  options.narrowest = arguments.narrowest.value_or(0);
   if (!arguments.start.empty()) options.start = parse_pose("--start", arguments.start);
   if (!is_csv(arguments.input)) {
     std::vector<std::string> notes;
@@ -89,6 +90,7 @@ std::string command_of(const CourseArguments& arguments) {
   add_number("--friction", arguments.friction);
   add_number("--top-speed", arguments.top_speed);
   add_number("--margin", arguments.margin);
+  add_number("--narrowest", arguments.narrowest);
   add("--start", arguments.start);
   if (arguments.reverse) text += " --reverse";
   add("--out", folder_name(arguments.out));
@@ -173,6 +175,8 @@ void declare_course(Subcommand& command) {
   command.option("--margin", arguments->margin,
                  "Distance that the body keeps from walls, m; in narrow places less, down to 0.4 of it",
                  {0, 10});
+  command.option("--narrowest", arguments->narrowest, "Least width of the gaps that a found loop may use, m",
+                 {0, 1000});
   const Option start =
       command.option("--start", arguments->start,
                      "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if "

@@ -30,8 +30,10 @@ Axis linear_axis(double low, double high, double from, double to, int steps, boo
     axis.low = step * std::floor(low / step + 1e-9);
     axis.high = step * std::ceil(high / step - 1e-9);
   }
-  for (double tick = step * std::ceil(axis.low / step - 1e-9); tick <= axis.high + 1e-9 * step; tick += step)
-    axis.ticks.push_back(std::abs(tick) < 1e-9 * step ? 0 : tick);
+  // Counted, since a step is lost in a value of many more digits.
+  const double first = std::ceil(axis.low / step - 1e-9);
+  for (int k = 0; k <= 2 * steps + 2 && step * (first + k) <= axis.high + 1e-9 * step; ++k)
+    axis.ticks.push_back(first + k == 0 ? 0 : step * (first + k));
   return axis;
 }
 

@@ -112,9 +112,7 @@ void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& ca
                                                   return std::abs(a.curvature) < std::abs(b.curvature);
                                                 }) -
                                points.begin());
-  std::vector<maps::Point> shown = left;
-  shown.insert(shown.end(), right.begin(), right.end());
-  MapPicture picture(course.map, picture_side, shown, 2);
+  MapPicture picture(course.map, picture_side);
   picture.line(left, corridor_side, 2, corridor.closed);
   picture.line(right, corridor_side, 2, corridor.closed);
   picture.line(corridor.centre_line, line_colour, 1.5, corridor.closed, true);

@@ -133,7 +133,8 @@ std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
   const std::size_t rows = centre_line.size(), middle = nearest(centre_line, start);
   const auto row_at = [&](double way, std::size_t step) {
     std::size_t row = middle;
-    for (double away = 0; away < way; row = (row + step) % rows)
+    double away = 0;
+    for (std::size_t k = 0; k < rows && away < way; ++k, row = (row + step) % rows)
       away += distance(centre_line[row], centre_line[(row + step) % rows]);
     return row;
   };

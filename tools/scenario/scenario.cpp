@@ -44,7 +44,8 @@ std::vector<std::string> notes_on(const evaluation::Environment& environment,
   const vehicle::PlannerOptions& planner = configuration.planner;
   const vehicle::PathTrackingOptions& car = configuration.vehicle;
   const bool lowered = planner.profile_friction > 0;
-  const double friction = lowered ? planner.profile_friction : sim::CarParameters{}.friction;
+  const auto& tyres = configuration.vehicle.own_of<vehicle::SingleTrackOptions>();
+  const double friction = lowered ? planner.profile_friction : tyres.friction * tyres.usable_grip;
   vehicle::CourseCheckOptions options;
   options.half_width = car.body.width / 2;
   options.margin = car.body.margin;

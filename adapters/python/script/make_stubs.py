@@ -60,7 +60,7 @@ def constructor(cls):
     values = [m for m, value in vars(cls).items() if isinstance(value, property) and value.fset]
     if issubclass(cls, _slalom.AnyProblem) and arguments.endswith("**kwargs: Any") and values:
         return arguments.replace("**kwargs: Any", "*") + "".join(f", {m}: {property_type(vars(cls)[m])} = ..." for m in values
-                                                               if m != "discs" or cls is _slalom.MlpProblem)
+                                                               if m != "discs")
     return arguments
 
 
@@ -71,7 +71,7 @@ def property_type(value):
     if words.startswith("the callable"):
         return "Callable[..., Any] | None" if "None" in words else "Callable[..., Any]"
     if match and match[1] == "object" and value.fset:
-        return "Any" if "MlpProblem" in value.fget.__doc__ else "float"
+        return "float"
     return translate(match[1], False) if match else "Any"
 
 

@@ -3,9 +3,8 @@
     import numpy as np, slalom
 
     controller = slalom.SvgMppi(slalom.Pendulum(), horizon=60, input_min=-5, input_max=5)
-    plan = controller.solve([np.pi, 0.0], elapsed=0.02)
-    if plan.ok:
-        torque = plan.inputs[0]
+    drive = slalom.run(slalom.Pendulum(), controller, [np.pi, 0.0], steps=300)
+    drive.states, drive.inputs, drive.costs, drive.times
 """
 
 import importlib.util
@@ -14,7 +13,9 @@ from . import _slalom, display, plot
 display.add_methods(_slalom)
 from ._slalom import *  # noqa: E402,F401,F403
 from ._slalom import __version__  # noqa: E402
+from .closed_loop import Run, run  # noqa: E402
 from .compiler import CompileError, compile  # noqa: E402
+from .network import MlpProblem  # noqa: E402
 from .show import show  # noqa: E402
 
 if importlib.util.find_spec("slalom._driving"):
@@ -38,9 +39,13 @@ def __getattr__(name: str) -> object:
     raise AttributeError(f"module 'slalom' has no attribute '{name}'")
 
 
+def __dir__() -> list[str]:
+    return sorted([*__all__, "compile", "gpu", "plot"])
+
+
 display.install(_slalom)
 from . import gpu  # noqa: E402  the signatures of its classes are those of the compiled ones
 for _module in filter(None, (_slalom, _driving)):
     display.set_pickles(_module)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
-__all__ += ["CompileError", "SymptomWarning", "__version__", "show"]
+__all__ += ["CompileError", "MlpProblem", "Run", "SymptomWarning", "__version__", "run", "show"]

@@ -38,25 +38,31 @@ def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | 
     problem: the name of the struct, with its namespace; needed only if the source has several problems
     flags: further flags of the compiler, for instance "-I..."
     gpu: architectures of GPUs for which it is compiled, too, for instance [90]; needs a CUDA toolkit (docs/gpu.md)
-    parameters: values for members of the struct that are `double` or arrays of it; they are attributes of the problem
+    parameters: values for members of the struct; they are attributes of the problem. A `double` takes a number, an array
+        of it as many; a slalom::Mlp takes a slalom.mlp.Mlp or its file; a slalom::maps::Field takes a slalom.Field, or the
+        file of a map, of which it is the signed distance
 
     The compiler is $CXX, or the first one found of c++, g++ and clang++: g++ 12 or clang 14, or later. The result is
     kept in $XDG_CACHE_HOME/slalom (default: ~/.cache/slalom) and is compiled again only if the source, a header that it
     includes, the compiler's flags or Slalom have changed.
     """
-    values: dict[str, Any] = {}
     if isinstance(source, _slalom.AnyProblem):
         from .gpu import source_of
 
         source, problem, values = source_of(source)
-    text = _text_of(source)
-    name, members = _problem_in(_without_comments(text if isinstance(source, str) and _is_text(source)
-                                                  else Path(source).read_text()), problem)
-    listed = ", ".join(f'{{"{each}", slalom::python::values_of(p.{each})}}' for each in members or values)
-    end = _END.format(name=name, parameters=listed)
-    architectures = [gpu] if isinstance(gpu, int) else [*gpu]
-    made = _slalom.CompiledProblem(str(_library(text, name, end, [*flags], architectures)))
-    for key, value in {**values, **parameters}.items():
+        parameters = {**values, **parameters}
+    text = source if isinstance(source, str) and _is_text(source) else Path(source).read_text()
+    name, members = _problem_in(_without_comments(text), problem)
+    return compile_members(source, name, parameters, flags, gpu, members)
+
+
+def compile_members(source: str | os.PathLike[str], problem: str, values: dict[str, Any], flags: Sequence[str] = (),
+                    gpu: int | Sequence[int] = (), members: Sequence[str] = ()) -> _slalom.CompiledProblem:
+    """The problem struct of a source with its `members`, by default those that `values` sets."""
+    listed = ", ".join(f'slalom::python::parameter_of("{each}", p.{each})' for each in members or values)
+    end = _END.format(name=problem, parameters=listed)
+    made = _slalom.CompiledProblem(str(_library(_text_of(source), problem, end, [*flags], [gpu] if isinstance(gpu, int) else [*gpu])))
+    for key, value in values.items():
         setattr(made, key, value)
     return made
 
@@ -127,7 +133,8 @@ def _problem_in(text: str, wanted: str | None) -> tuple[str, list[str]]:
                          "the source has no problem: a struct with `static constexpr int inputs`"))
     members = []
     for statement in bodies[name or ""].split(";"):
-        declared = re.match(r"\s*(?:double|(?:std::)?array<double,[^<>]*>)\s+(.*)", statement, re.S)
+        declared = re.match(r"\s*(?:double|(?:std::)?array<double,[^<>]*>|(?:slalom::)?Mlp<[^<>]*>|(?:slalom::)?(?:maps::)?"
+                            r"Field)\s+(.*)", statement, re.S)
         for part in re.split(r",(?![^<]*>)", declared[1]) if declared else ():
             member = re.fullmatch(r"\s*(\w+)\s*(?:[={].*)?", part, re.S)
             members += [member[1]] if member else []

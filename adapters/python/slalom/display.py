@@ -27,22 +27,22 @@ class Options(Dict[str, Any]):
         raise TypeError("the options of a controller cannot be changed; make another one with "
                         "type(controller)(controller.problem, **{**controller.options, 'temperature': 0.1})")
 
-    __setitem__ = __delitem__ = __ior__ = update = pop = popitem = setdefault = clear = _refuse  # type: ignore[assignment]
-
     def __reduce__(self) -> Any:
         return dict, (dict(self),)
+
+
+for _name in ("__setitem__", "__delitem__", "__ior__", "update", "pop", "popitem", "setdefault", "clear"):
+    setattr(Options, _name, getattr(Options, "_refuse"))
 
 
 def install(solvers: ModuleType) -> None:
     """Adds `__repr__` and `__reduce__` to the classes of the compiled module, and signatures to their methods."""
     _option_names.update(option["name"] for method in solvers.methods() for option in solvers.options(method))
-    of_network = _settable(solvers.MlpProblem)
     arguments: dict[type, Callable[[Any], Arguments]] = {
         solvers.Problem: lambda problem: ((), {name: getattr(problem, name)
                                                for name in inspect.signature(solvers.Problem).parameters}),
         solvers.RiskEvaluator: lambda risk: ((risk.problem, risk.randomize), risk.options),
-        solvers.CompiledProblem: lambda problem: ((problem.file,), problem.parameters),
-        solvers.MlpProblem: lambda problem: ((problem.network,), {name: getattr(problem, name) for name in of_network})}
+        solvers.CompiledProblem: lambda problem: ((problem.file,), problem.parameters)}
     for cls in [each for each in vars(solvers).values() if isinstance(each, type)]:
         _add_signatures(solvers, cls)
         if issubclass(cls, solvers.Controller):
@@ -141,7 +141,7 @@ def _keywords(solvers: ModuleType, cls: type) -> list[tuple[str, Any]]:
     if issubclass(cls, solvers.Controller):
         words = (cls.__doc__ or "").split("`")
         return [(o["name"], o["default"]) for o in solvers.options(words[1])] if len(words) > 1 else []
-    if cls in (solvers.CompiledProblem, solvers.MlpProblem):
+    if cls is solvers.CompiledProblem:
         return [(name, None) for name in _settable(cls)]
     default = cls()
     return [(name, getattr(default, name)) for name in _settable(cls) if name != "discs"]
@@ -159,7 +159,7 @@ def _constructed(cls: type, arguments: Callable[[Any], Arguments]) -> None:
 
 
 def _make(cls: type, positional: tuple[Any, ...], named: dict[str, Any]) -> Any:
-    discs = None if cls.__name__ == "MlpProblem" else named.pop("discs", None)  # an attribute, but no argument
+    discs = None if cls.__name__ == "CompiledProblem" else named.pop("discs", None)  # an attribute, but no argument
     made = cls(*positional, **named)
     if discs is not None:
         setattr(made, "discs", discs)

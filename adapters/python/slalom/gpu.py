@@ -11,8 +11,6 @@ import re
 from pathlib import Path
 from typing import Any, Sequence
 
-import numpy as np
-
 from . import _slalom, display
 from .compiler import INCLUDE, CompileError, run
 
@@ -74,46 +72,8 @@ def compile_kernels(header: Path, problem: str, architectures: Sequence[int], co
 def source_of(problem: _slalom.AnyProblem) -> tuple[str | Path, str, dict[str, Any]]:
     """The struct of a problem of this package: source, name, and the parameters to set."""
     kind = type(problem).__name__
-    if isinstance(problem, _slalom.MlpProblem):
-        return _network(problem)
     header = INCLUDE / "slalom/problems" / f"{re.sub('(?<!^)(?=[A-Z])', '_', kind).lower()}.hpp"
     if not header.exists():
-        raise ValueError(f"compile: source: slalom.{kind} has no struct in C++; must be a built-in problem, an MlpProblem, "
+        raise ValueError(f"compile: source: slalom.{kind} has no struct in C++; must be a built-in problem, "
                          "or the text or file of a struct (docs/gpu.md#from-python)")
     return header, f"slalom::problems::{kind}", display.changed(problem)
-
-
-_NETWORK = """#include <slalom/python/network_struct.hpp>
-struct Network : slalom::python::NetworkStruct<{states}, {inputs}, {discs}> {{
-  static constexpr int inputs = {inputs};
-  Network() : NetworkStruct({{.layers = {{{layers}}}, .activation = slalom::Activation::{activation}, {parts},
-                             .residual = {residual}}}) {{}}
-}};
-"""
-
-
-def _network(problem: _slalom.MlpProblem) -> tuple[str, str, dict[str, Any]]:
-    """The struct of a network's problem, in whose source the weights stand."""
-    if problem.walls is not None or problem.field is not None:
-        raise ValueError("compile: source: an MlpProblem with walls or a field has no struct in C++: write one "
-                         "(docs/gpu.md#from-python)")
-    mlp, states, inputs, infinity = problem.network, problem.states, problem.inputs, float("inf")
-
-    def braces(values: Any) -> str:
-        return "{" + ", ".join(f"{value:.9g}" for value in values.ravel()) + "}"
-
-    def spread(name: str, count: int, default: float = 0) -> list[float]:
-        value = getattr(problem, name)
-        return [default if value is None else value] * count if np.ndim(value) == 0 else list(value)
-
-    source = _NETWORK.format(
-        states=states, inputs=inputs, discs=len(problem.discs), activation=mlp.activation,
-        layers=", ".join(f"{{{w.shape[1]}, {w.shape[0]}, {braces(w)}, {braces(b)}}}" for w, b in mlp.layers),
-        parts=", ".join(f".{name} = {braces(getattr(mlp, name))}"
-                        for name in ("input_mean", "input_scale", "output_scale", "output_mean")),
-        residual=str(mlp.residual).lower())
-    return source, "Network", {
-        "dt": problem.dt, "disc_weight": problem.disc_weight, "discs": [value for disc in problem.discs for value in disc],
-        **{name: spread(name, states) for name in ("goal", "state_weights", "terminal_weights")},
-        "input_weights": spread("input_weights", inputs), "input_min": spread("input_min", inputs, -infinity),
-        "input_max": spread("input_max", inputs, infinity)}

@@ -68,6 +68,10 @@ class Mlp:
         result: Array = y + x[:, :y.shape[1]] if self.residual else y
         return result
 
+    def __repr__(self) -> str:
+        sizes = [self.layers[0][0].shape[1], *(len(biases) for _, biases in self.layers)]
+        return (f"<slalom.mlp.Mlp {' -> '.join(map(str, sizes))}, {self.activation}{', residual' if self.residual else ''}>")
+
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the network to a file for `slalom::load_mlp` and `Mlp.load`."""
         arrays = {"activation": np.array(self.activation), "residual": np.array(self.residual)}
@@ -101,6 +105,11 @@ def train_mlp(inputs: ArrayLike, outputs: ArrayLike, *, hidden: Sequence[int] = 
         raise ValueError("train_mlp: every input and output must be finite")
     if residual and outputs.shape[1] > inputs.shape[1]:
         raise ValueError("train_mlp: residual needs at least as many columns of inputs as of outputs")
+    for name, value, least in [("epochs", epochs, 0), ("batch", batch, 1), *(("hidden", size, 1) for size in hidden)]:
+        if not (isinstance(value, (int, np.integer)) and value >= least):
+            raise ValueError(f"train_mlp: {name}: {value} must be an integer of at least {least}")
+    if not 0 < learning_rate < np.inf:
+        raise ValueError(f"train_mlp: learning_rate: {learning_rate} must be finite and above 0")
     target = outputs - inputs[:, :outputs.shape[1]] if residual else outputs
     (input_mean, input_scale), (output_mean, output_scale) = map(_normalisation, (inputs, target))
     x, y = (inputs - input_mean) / input_scale, (target - output_mean) / output_scale

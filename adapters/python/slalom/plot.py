@@ -3,6 +3,7 @@ matplotlib."""
 
 from __future__ import annotations
 
+import importlib
 import io
 from typing import Any, Callable, Dict
 
@@ -14,8 +15,7 @@ _MOST_LINES = 60  # samples that are drawn
 def plan(plan: Any) -> Any:
     """A matplotlib figure of a plan: samples, guides and inputs within their bounds, predicted states, costs and weights
     of the samples, and the cost by term. `figure.savefig("plan.png")` writes it to a file."""
-    from matplotlib.figure import Figure  # type: ignore[import]
-
+    Figure = importlib.import_module("matplotlib.figure").Figure
     inputs = plan.inputs.shape[1]
     figure = Figure(figsize=(11, 2.2 * (inputs + 2)), layout="constrained")
     rows = figure.subfigures(2, 1, height_ratios=(inputs, 2))
@@ -47,8 +47,7 @@ class Lap(Dict[str, Any]):
 def lap(lap: Lap) -> Any:
     """A matplotlib figure of a lap from above: the path of the car coloured by its speed, the line of the course, and the
     parked cars."""
-    from matplotlib.figure import Figure
-
+    Figure = importlib.import_module("matplotlib.figure").Figure
     figure = Figure(figsize=(8, 6), layout="constrained")
     axis = figure.add_subplot()
     axis.plot(lap.waypoints[:, 0], lap.waypoints[:, 1], color="tab:gray", linestyle="--", linewidth=0.8, label="course")
@@ -98,7 +97,7 @@ def _lines(axis: Any, rows: Any, label: str, **style: Any) -> None:
 def _inputs(axis: Any, plan: Any, index: int) -> None:
     samples = plan.samples[:, :, index]
     best = np.argsort(plan.weights)[::-1][:_MOST_LINES // 2]
-    others = np.linspace(0, len(samples) - 1, _MOST_LINES // 2).astype(int) if len(samples) else []
+    others: Any = np.linspace(0, len(samples) - 1, _MOST_LINES // 2).astype(int) if len(samples) else []
     _lines(axis, samples[others], "samples", color="tab:gray", alpha=0.25, linewidth=0.6)
     _lines(axis, samples[best], "samples of largest weight", color="tab:blue", alpha=0.3, linewidth=0.8)
     _lines(axis, plan.guides[:, :, index], "guides", color="tab:orange", linestyle="--")

@@ -43,8 +43,8 @@ def on_tensors(function: Callable[..., Any]) -> Callable[..., Any]:
         def dynamics(x, u):           # tensors x [K, states], u [K, inputs] on the CPU
             return torch.stack([x[:, 0] + 0.1 * x[:, 1], x[:, 1] + 0.1 * u[:, 0]]).T
 
-    Its arguments are tensors on the memory of the solver's arrays, and its results are passed on as arrays on the memory
-    of the tensors: nothing is copied. A function that changes its arguments raises ValueError. Gradients are not recorded.
+    Its arguments are tensors on the memory of the solver's arrays, which reads the results where they are: nothing is
+    copied. A function that changes its arguments raises ValueError. Gradients are not recorded.
     """
 
     @functools.wraps(function)
@@ -55,7 +55,7 @@ def on_tensors(function: Callable[..., Any]) -> Callable[..., Any]:
         if any(getattr(tensor, "_version", 0) for tensor in tensors):
             raise ValueError(f"{getattr(function, '__name__', function)}: changes its arguments in place; must compute new "
                              "tensors, as x = x - goal for x -= goal")
-        return _to_arrays(result)
+        return result
 
     return on_arrays
 
@@ -72,13 +72,3 @@ class _Memory:
 
 def _writable(array: Any) -> Any:
     return array if array.flags.writeable else np.asarray(_Memory(array))
-
-
-def _to_arrays(result: Any) -> Any:
-    if isinstance(result, torch.Tensor):
-        return result.detach().numpy()
-    if isinstance(result, tuple):
-        return tuple(_to_arrays(part) for part in result)
-    if isinstance(result, dict):
-        return {name: _to_arrays(part) for name, part in result.items()}
-    return result

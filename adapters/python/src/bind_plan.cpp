@@ -119,7 +119,7 @@ void bind_plan(py::module_& module) {
   });
   read("states", "float64 [horizon + 1, states], predicted for the inputs", [](const Plan& p) {
     Controller& c = p.controller();
-    return Numbers({c.solver().horizon() + 1, c.problem().states()}, c.prediction().states.data());
+    return Numbers({c.solver().horizon() + 1, c.problem().states()}, c.prediction().known_states().data());
   });
   read("cost", "cost of the plan", [](const Plan& p) { return p.controller().prediction().cost; });
   read("collided", "whether the plan collides",

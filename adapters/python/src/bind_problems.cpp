@@ -92,7 +92,8 @@ void bind_any_problem(py::module_& module) {
                 self.predict(vector_of(state, self.states(), "state"),
                              std::vector<double>(inputs.data(), inputs.data() + inputs.size()));
             return py::make_tuple(
-                Numbers({inputs.shape(0) + 1, py::ssize_t{self.states()}}, found.states.data()), found.cost);
+                Numbers({inputs.shape(0) + 1, py::ssize_t{self.states()}}, found.known_states().data()),
+                found.cost);
           },
           "state"_a, "inputs"_a,
           "The states float64 [steps + 1, states] under the inputs [steps, inputs] from `state`, and the "
@@ -106,32 +107,51 @@ void bind_any_problem(py::module_& module) {
           "state"_a, "Whether a state collides, according to the terminal cost.");
 }
 
+constexpr const char* callable_words = R"(A problem of your own: callables on batches of K samples.
+
+Parameters
+----------
+dynamics : callable (x [K, states], u [K, inputs]) -> x [K, states]
+cost : callable (x, u) -> [K]
+    or in terms, {name: [K]}; or a pair (cost, collided [K])
+terminal_cost : callable (x) -> [K], optional
+    as of cost
+states, inputs : int
+dt : float, optional
+    s, duration of a step
+input_min, input_max : float or [inputs], optional
+    bounds in addition to those of the options
+input_rate_max : float or [inputs], optional
+    largest rate of the inputs, per s, in rollouts and plans; requires dt
+input_levels : float or [inputs], optional
+    number of values, evenly spaced from input_min to input_max, that an input takes; 0: all
+sampler : callable (random, samples, horizon, inputs) -> [samples, horizon, inputs], optional
+    noise instead of standard normal values, drawn only from the numpy Generator `random`
+rollout : callable (x [states], u [K, T, inputs]) -> costs [K]
+    whole rollouts, in place of dynamics and costs; with their states a pair (costs,
+    states [K, T + 1, states]). K and T differ from call to call
+
+dynamics and cost may take a third argument: the index of the step, an int. Their x and u are float32, with
+contiguous columns. No argument must be written; u is a view of the solver's memory, valid during the call.
+The result of dynamics is not copied.)";
+
 void bind_callable_problem(py::module_& module) {
-  py::class_<CallableProblem, AnyProblem> problem(
-      module, "Problem",
-      "A problem of your own: callables on batches of K samples.\n\n"
-      "dynamics(x[K, states], u[K, inputs]) -> x[K, states]\n"
-      "cost(x, u) -> [K], or in terms {name: [K]}; or a pair (cost, collided[K])\n"
-      "terminal_cost(x) -> the same, or None\n"
-      "dynamics and cost may take a third argument: the index of the step, an int\n"
-      "input_min, input_max: bounds in addition to those of the options, one number or one per input\n"
-      "input_rate_max: largest rate of the inputs, per s, in rollouts and plans; requires dt\n"
-      "sampler(random, samples, horizon, inputs) -> [samples, horizon, inputs]: noise instead of standard "
-      "normal values, drawn only from the numpy Generator `random`\n\n"
-      "x and u are float32, with contiguous columns, and must not be written; u is a view of the solver's "
-      "memory, valid during the call. The result of dynamics is not copied.",
-      collected<CallableProblem>());
+  py::class_<CallableProblem, AnyProblem> problem(module, "Problem", callable_words,
+                                                  collected<CallableProblem>());
   problem
       .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
                        double dt, const Values& input_min, const Values& input_max,
-                       const Values& input_rate_max, py::object sampler) {
+                       const Values& input_rate_max, const Values& input_levels, py::object sampler,
+                       py::object rollout) {
              return std::make_unique<CallableProblem>(
                  CallableParts{dynamics, cost, terminal_cost, states, inputs, dt, numbers_of(input_min),
-                               numbers_of(input_max), numbers_of(input_rate_max), sampler});
+                               numbers_of(input_max), numbers_of(input_rate_max), numbers_of(input_levels),
+                               sampler, rollout});
            }),
-           "dynamics"_a, "cost"_a, "terminal_cost"_a = py::none(), py::kw_only(), "states"_a, "inputs"_a,
-           "dt"_a = 0.0, "input_min"_a = py::none(), "input_max"_a = py::none(),
-           "input_rate_max"_a = py::none(), "sampler"_a = py::none())
+           "dynamics"_a = py::none(), "cost"_a = py::none(), "terminal_cost"_a = py::none(), py::kw_only(),
+           "states"_a, "inputs"_a, "dt"_a = 0.0, "input_min"_a = py::none(), "input_max"_a = py::none(),
+           "input_rate_max"_a = py::none(), "input_levels"_a = py::none(), "sampler"_a = py::none(),
+           "rollout"_a = py::none())
       .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
                     "s, duration of a step; 0: unknown");
   const auto read = reader(problem);
@@ -142,6 +162,7 @@ void bind_callable_problem(py::module_& module) {
   callable("cost", &CallableParts::cost, "the callable");
   callable("terminal_cost", &CallableParts::terminal_cost, "the callable, or None");
   callable("sampler", &CallableParts::sampler, "the callable, or None");
+  callable("rollout", &CallableParts::rollout, "the callable, or None");
   const auto limits = [&](const char* name, std::vector<double> CallableParts::*field, const char* help) {
     read(name, help, [field](const CallableProblem& p) { return from_numbers(p.parts().*field); });
   };
@@ -149,6 +170,7 @@ void bind_callable_problem(py::module_& module) {
   limits("input_max", &CallableParts::input_max, "as given: a number, one for each input, or None");
   limits("input_rate_max", &CallableParts::input_rate_max,
          "per s, as given: a number, one for each input, or None");
+  limits("input_levels", &CallableParts::input_levels, "as given: a number, one for each input, or None");
 }
 
 void bind_built_in_problems(py::module_& module) {

@@ -51,19 +51,28 @@ CallableProblem::CallableProblem(CallableParts parts)
     : parts_(std::move(parts)),
       state_(static_cast<std::size_t>(std::max(parts_.states, 0))),
       previous_(static_cast<std::size_t>(std::max(parts_.inputs, 0))) {
+  check_parts();
+  dynamics_take_k_ = takes_k(parts_.dynamics);
+  cost_takes_k_ = takes_k(parts_.cost);
+  set_dt(parts_.dt);
+}
+
+void CallableProblem::check_parts() const {
   const auto require = [](bool holds, const std::string& what) {
     if (!holds) throw std::invalid_argument("Problem." + what);
   };
+  const bool whole = !parts_.rollout.is_none();
   const auto require_callable = [&](const py::object& part, const std::string& name, bool optional) {
     require(PyCallable_Check(part.ptr()) || (optional && part.is_none()),
             name + ": must be callable" + (optional ? " or None" : ""));
   };
-  require_callable(parts_.dynamics, "dynamics", false);
-  require_callable(parts_.cost, "cost", false);
+  require_callable(parts_.dynamics, "dynamics", whole);
+  require_callable(parts_.cost, "cost", whole);
   require_callable(parts_.terminal_cost, "terminal_cost", true);
   require_callable(parts_.sampler, "sampler", true);
-  dynamics_take_k_ = takes_k(parts_.dynamics);
-  cost_takes_k_ = takes_k(parts_.cost);
+  require_callable(parts_.rollout, "rollout", true);
+  require(!whole || (parts_.dynamics.is_none() && parts_.cost.is_none() && parts_.terminal_cost.is_none()),
+          "rollout: takes the place of dynamics, cost and terminal_cost, which must not be given");
   const int states = parts_.states, inputs = parts_.inputs;
   require(states >= 1 && states <= 10000, "states: " + std::to_string(states) + " must be in [1, 10000]");
   require(inputs >= 1 && inputs <= 10000, "inputs: " + std::to_string(inputs) + " must be in [1, 10000]");
@@ -74,9 +83,13 @@ CallableProblem::CallableProblem(CallableParts parts)
   require_count(parts_.input_min, "input_min");
   require_count(parts_.input_max, "input_max");
   require_count(parts_.input_rate_max, "input_rate_max");
+  require_count(parts_.input_levels, "input_levels");
   for (const double rate : parts_.input_rate_max)
     require(rate >= 0, "input_rate_max: " + to_text(rate) + " must be at least 0");
-  set_dt(parts_.dt);
+  if (!in_levels()) return;
+  require(!parts_.input_min.empty() && !parts_.input_max.empty() && parts_.input_rate_max.empty(),
+          "input_levels: needs input_min and input_max, and no input_rate_max");
+  for (int i = 0; i < inputs; ++i) slalom::detail::stated_bounds(levels_of(i));
 }
 
 double CallableProblem::input_step(int input) const noexcept {
@@ -86,13 +99,58 @@ double CallableProblem::input_step(int input) const noexcept {
 void CallableProblem::set_previous_input(std::span<const double> u) noexcept {
   previous_.assign(u.begin(), u.end());
 }
-void CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const noexcept {
-  if (parts_.input_rate_max.empty()) return;
-  const auto nu = static_cast<std::size_t>(parts_.inputs);
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    const double before = i < nu ? previous[i] : u[i - nu], reach = input_step(static_cast<int>(i % nu));
-    u[i] = std::clamp(u[i], before - reach, before + reach);
+
+/// Holds values of an input within its rate, or in levels, each with what the step before has carried.
+template <class T>
+void CallableProblem::hold(int input, std::span<T> values, std::span<T> carried) const noexcept {
+  using One = Input<T, 1>;
+  const auto levels = slalom::detail::levels_of<T>(levels_of(input));
+  const One reach{{static_cast<T>(input_step(input))}};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    One now{{values[i]}}, before{{carried[i]}};
+    in_levels() ? slalom::detail::hold_levels(now, before, levels)
+                : slalom::detail::hold_rate(now, before, reach);
+    values[i] = now[0];
+    carried[i] = before[0];
   }
+}
+
+void CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const noexcept {
+  if (!holds()) return;
+  std::array<double, 1> carried;
+  for (int i = 0; i < parts_.inputs; ++i) {
+    carried[0] = previous[static_cast<std::size_t>(i)];
+    for (auto at = static_cast<std::size_t>(i); at < u.size(); at += previous.size())
+      hold<double>(i, u.subspan(at, 1), carried);
+  }
+}
+
+void CallableProblem::carry(std::span<const float> wanted, std::span<const double> held,
+                            std::span<double> remainder) const noexcept {
+  for (std::size_t at = 0; at < held.size(); ++at) {
+    const std::size_t i = at % remainder.size();
+    const double half = slalom::detail::levels_of<double>(levels_of(static_cast<int>(i))).spacing[0] / 2;
+    remainder[i] = std::clamp(remainder[i] + static_cast<double>(wanted[at]) - held[at], -half, half);
+  }
+}
+
+/// The sequences of a batch within rates or in levels, [step][input][sample]; none if there are no such
+/// limits.
+std::vector<float> CallableProblem::held_sequences(const SequenceBatch& batch, int first, int count) const {
+  std::vector<float> all;
+  if (!holds()) return all;
+  const auto samples = static_cast<std::size_t>(count);
+  std::vector<float> carried;
+  for (const float value : previous_) carried.insert(carried.end(), samples, value);
+  for (int k = 0; k < batch.steps(); ++k) {
+    for (int i = 0; i < parts_.inputs; ++i) {
+      const float* const wanted = batch.row(k, i) + first;
+      all.insert(all.end(), wanted, wanted + count);
+      hold<float>(i, std::span(all).last(samples),
+                  std::span(carried).subspan(static_cast<std::size_t>(i) * samples, samples));
+    }
+  }
+  return all;
 }
 
 void CallableProblem::set_dt(double dt) {
@@ -131,18 +189,6 @@ py::array CallableProblem::next(const py::array& x, const py::array& u, int k) c
                   {x.shape(0), parts_.states});
 }
 
-/// Moves the inputs of all samples, `held` [input][sample], towards those of step `k` within their rates.
-void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, int count,
-                                std::vector<float>& held) const {
-  float* before = held.data();
-  for (int i = 0; i < parts_.inputs; ++i) {
-    const float reach = static_cast<float>(input_step(i));
-    const float* wanted = batch.row(k, i) + first;
-    for (int s = 0; s < count; ++s, ++before)
-      *before = std::min(std::max(wanted[s], *before - reach), *before + reach);
-  }
-}
-
 void CallableProblem::draw(SequenceBatch& noise, int first, int count, RandomKey key) const {
   const auto random = py::module_::import("numpy").attr("random").attr("default_rng")(
       py::make_tuple(key.seed, key.stream, first));
@@ -167,15 +213,23 @@ void CallableProblem::fill(SequenceBatch& noise, int first, int count, RandomKey
 
 void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count, float* costs,
                                std::uint8_t* collided) const {
-  py::array x = columns(count, parts_.states);
-  float* values = static_cast<float*>(x.mutable_data());
-  for (const float value : state_) values = std::fill_n(values, count, value);
   std::fill_n(costs, count, 0.0f);
   std::fill_n(collided, count, std::uint8_t{0});
-  const bool holds = !parts_.input_rate_max.empty();
-  std::vector<float> held;
-  for (const float value : previous_)
-    held.insert(held.end(), holds ? static_cast<std::size_t>(count) : 0, value);
+  const std::vector<float> held = held_sequences(batch, first, count);
+  const float* const sequences = held.empty() ? batch.row(0, 0) + first : held.data();
+  constexpr py::ssize_t width = sizeof(float);
+  const py::ssize_t row = width * (held.empty() ? batch.stride() : count), step = row * parts_.inputs;
+  const auto lent_inputs = [&](const float* from, std::vector<py::ssize_t> shape,
+                               std::vector<py::ssize_t> strides) {
+    return py::array(py::dtype::of<float>(), std::move(shape), std::move(strides), from, owner_);
+  };
+  if (!parts_.rollout.is_none()) {
+    const py::array u = lent_inputs(sequences, {count, batch.steps(), parts_.inputs}, {width, step, row});
+    return add_column(outcome_of(array_of(state_), u).costs, 0, count, costs);
+  }
+  py::array x = columns(count, parts_.states);
+  float* values = static_cast<float*>(x.mutable_data());
+  for (const double value : state_) values = std::fill_n(values, count, static_cast<float>(value));
   // The costs of a small batch are computed for all steps in one call.
   const bool together = count <= small_batch && !cost_takes_k_;
   const py::ssize_t rows = together ? py::ssize_t{count} * batch.steps() : 0;
@@ -185,11 +239,7 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
       add_column(from, i, count, all.mutable_data() + i * rows + py::ssize_t{k} * count);
   };
   for (int k = 0; k < batch.steps(); ++k) {
-    if (holds) hold_step(batch, k, first, count, held);
-    const float* const from = holds ? held.data() : batch.row(k, 0) + first;
-    constexpr py::ssize_t width = sizeof(float);
-    py::array u(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{parts_.inputs}},
-                {width, width * (holds ? count : batch.stride())}, from, owner_);
+    const py::array u = lent_inputs(sequences + k * (step / width), {count, parts_.inputs}, {width, row});
     if (together) {
       keep(x, all_x, k);
       keep(u, all_u, k);
@@ -227,11 +277,43 @@ void CallableProblem::evaluate(const SequenceBatch& batch, int first, int count,
 }
 std::vector<double> CallableProblem::step(std::span<const double> state, std::span<const double> input,
                                           int k) {
+  if (!parts_.rollout.is_none()) {
+    const Prediction found = roll_out_alone(state, input);
+    return {found.known_states().end() - parts_.states, found.states.end()};
+  }
   const Numbers result(next(row(state), row(input), k));
   return {result.data(), result.data() + parts_.states};
 }
 
+/// Calls the rollout of all sequences u [K, steps, inputs] from a state.
+CallableProblem::Outcome CallableProblem::outcome_of(const py::array& state, const py::array& u) const {
+  py::object costs = parts_.rollout(lent(state), lent(u)), states = py::none();
+  if (py::isinstance<py::tuple>(costs) && py::len(costs) == 2)
+    std::tie(costs, states) = costs.cast<std::pair<py::object, py::object>>();
+  Outcome outcome{array_of("rollout", costs, {u.shape(0)}), Numbers(0)};
+  if (!states.is_none())
+    outcome.states = array_of("rollout: states", states, {u.shape(0), u.shape(1) + 1, parts_.states});
+  return outcome;
+}
+
+/// The rollout of one sequence.
+Prediction CallableProblem::roll_out_alone(std::span<const double> state,
+                                           std::span<const double> inputs) const {
+  Prediction result{{state.begin(), state.end()}, 0, false, {}};
+  if (inputs.empty()) return result;
+  const py::ssize_t width = parts_.inputs, steps = static_cast<py::ssize_t>(inputs.size()) / width;
+  const Outcome outcome =
+      outcome_of(array_of(state), py::array_t<double>({py::ssize_t{1}, steps, width}, inputs.data()));
+  add_column(outcome.costs, 0, 1, &result.cost);
+  result.add("total", result.cost);
+  const Numbers states(outcome.states);
+  result.states.assign(states.data(),
+                       states.data() + states.size());  // none if the rollout tells costs alone
+  return result;
+}
+
 Prediction CallableProblem::predict(std::span<const double> state, std::span<const double> inputs) {
+  if (!parts_.rollout.is_none()) return roll_out_alone(state, inputs);
   std::vector<double> now(state.begin(), state.end());
   Prediction result{now, 0, false, {}};
   std::uint8_t collided = 0;

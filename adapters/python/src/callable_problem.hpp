@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <exception>
-#include <mutex>
 
 #include "keywords.hpp"
 #include "problem.hpp"
@@ -10,18 +10,23 @@ namespace slalom::python {
 
 /// The parts of a problem of callables.
 struct CallableParts {
-  py::object dynamics, cost;
-  py::object terminal_cost;  ///< callable or None
+  py::object dynamics, cost;  ///< callables, or None where there is a rollout
+  py::object terminal_cost;   ///< callable or None
   int states = 0, inputs = 0;
-  double dt = 0;                                             ///< s, duration of a step; 0: unknown
-  std::vector<double> input_min, input_max, input_rate_max;  ///< one value, one per input, or none
-  py::object sampler;                                        ///< callable or None
+  double dt = 0;  ///< s, duration of a step; 0: unknown
+  std::vector<double> input_min, input_max, input_rate_max,
+      input_levels;    ///< one value, one per input, or none
+  py::object sampler;  ///< callable or None
+  py::object rollout;  ///< callable that takes the place of dynamics and costs, or None
+
+  std::array<py::object*, 5> callables() { return {&dynamics, &cost, &terminal_cost, &sampler, &rollout}; }
 };
 
 /// A problem made of callables on batches of K samples: dynamics(x[K, nx], u[K, nu]) -> x[K, nx],
 /// cost(x, u) -> [K], terminal_cost(x) -> [K]. Dynamics and cost may take the index of the step as a
 /// third parameter. A cost may consist of terms, {name: [K]}, or be a pair
-/// (cost, collided). The functions get arrays that must not be written: views of the solver's
+/// (cost, collided). In place of these, rollout(x[nx], u[K, steps, nu]) -> [K] computes whole rollouts; with
+/// their states it returns a pair. The functions get arrays that must not be written: views of the solver's
 /// memory, and what dynamics returned, which is not copied.
 class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
@@ -37,8 +42,14 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   InputBounds stated_bounds() const override {
     return bounds_of(parts_.input_min, parts_.input_max, parts_.inputs);
   }
+  double unit_variance(int input) const noexcept override {
+    return in_levels() ? slalom::detail::unit_variance(levels_of(input), 0) : 0;
+  }
   double input_step(int input) const noexcept override;
+  bool in_levels() const noexcept override { return !parts_.input_levels.empty(); }
   void hold_rates(std::span<const double> previous, std::span<double> sequence) const noexcept override;
+  void carry(std::span<const float> wanted, std::span<const double> held,
+             std::span<double> remainder) const noexcept override;
   void set_previous_input(std::span<const double> u) noexcept override;
   bool whole_batches() const noexcept override { return true; }
   void set_state(std::span<const double> state) noexcept override;
@@ -54,8 +65,7 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   /// Rethrows the first exception of a callable during the solve.
   void finish() override;
   void each_object(const std::function<void(void*)>& visit) override {
-    for (py::object* object : {&parts_.dynamics, &parts_.cost, &parts_.terminal_cost, &parts_.sampler})
-      visit(object);
+    for (py::object* object : parts_.callables()) visit(object);
   }
 
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
@@ -66,8 +76,27 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void set_dt(double dt);
 
  private:
+  /// An input as a problem of its own, which has levels.
+  struct OneInput {
+    static constexpr int inputs = 1;
+    double input_min, input_max, input_levels;
+  };
+  OneInput levels_of(int input) const noexcept {
+    return {value_for(parts_.input_min, input, 0), value_for(parts_.input_max, input, 0),
+            value_for(parts_.input_levels, input, 0)};
+  }
+  bool holds() const noexcept { return in_levels() || !parts_.input_rate_max.empty(); }
+  template <class T>
+  void hold(int input, std::span<T> values, std::span<T> carried) const noexcept;
+  std::vector<float> held_sequences(const SequenceBatch& batch, int first, int count) const;
+  void check_parts() const;
+  struct Outcome {
+    py::array costs;   ///< [K]
+    py::array states;  ///< [K, steps + 1, states], or empty
+  };
+  Outcome outcome_of(const py::array& state, const py::array& u) const;
+  Prediction roll_out_alone(std::span<const double> state, std::span<const double> inputs) const;
   void roll_out(const SequenceBatch& batch, int first, int count, float* costs, std::uint8_t* collided) const;
-  void hold_step(const SequenceBatch& batch, int k, int first, int count, std::vector<float>& held) const;
   void fill(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept override;
   void draw(SequenceBatch& noise, int first, int count, RandomKey key) const;
   py::array next(const py::array& x, const py::array& u, int k) const;
@@ -76,7 +105,8 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
 
   CallableParts parts_;
   bool dynamics_take_k_ = false, cost_takes_k_ = false;  ///< the index of the step
-  std::vector<float> state_, previous_;
+  std::vector<double> state_;
+  std::vector<float> previous_;
   py::handle owner_;                  ///< during a solve
   mutable std::exception_ptr error_;  ///< the first of a solve; guarded by the interpreter lock
 };

@@ -40,12 +40,13 @@ inline void check_shape(const std::string& what, const py::array& array,
                           ", must be " + shape_text(shape));
 }
 
-/// The array that a callable returned. Throws TypeError if it is none, ValueError if its shape is another.
+/// The array that a callable returned, or the one that shares the memory of a tensor. Throws TypeError if it
+/// is none, ValueError if its shape is another.
 inline py::array array_of(const char* what, const py::object& result, const std::vector<py::ssize_t>& shape) {
-  if (!py::isinstance<py::array>(result))
+  if (!py::hasattr(result, "__array__"))
     throw py::type_error(std::string("Problem.") + what + ": returned " +
                          py::repr(py::type::of(result)).cast<std::string>() + ", must be an array");
-  auto array = py::reinterpret_borrow<py::array>(result);
+  const py::array array(result);
   check_shape(what, array, shape);
   return array;
 }

@@ -9,6 +9,7 @@ namespace slalom::python {
 /// Throws py::value_error if a cost has a term that is not one of `terms`.
 Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<const float> sequences,
                                        int steps, std::span<const std::string> names) {
+  if (!parts_.rollout.is_none()) return AnyProblem::roll_out(state, sequences, steps, names);
   const auto nx = static_cast<std::size_t>(parts_.states), nu = static_cast<std::size_t>(parts_.inputs);
   const std::size_t points = static_cast<std::size_t>(steps) + 1;
   const std::size_t count = sequences.size() / (static_cast<std::size_t>(steps) * nu);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "problem.hpp"
@@ -12,12 +13,30 @@
 /// not need the headers of Python.
 namespace slalom::python {
 
-inline std::span<double> values_of(double& value) {
-  return {&value, 1};
+inline Parameter parameter_of(const char* name, double& value) {
+  return {name, Parameter::Kind::numbers, {&value, 1}, {}};
 }
 template <std::size_t N>
-std::span<double> values_of(std::array<double, N>& values) {
-  return values;
+Parameter parameter_of(const char* name, std::array<double, N>& values) {
+  return {name, Parameter::Kind::numbers, values, {}};
+}
+template <int I, int O>
+Parameter parameter_of(const char* name, Mlp<I, O>& network) {
+  const auto set = [&network](const void* from) {
+    network = Mlp<I, O>(*static_cast<const MlpParameters*>(from));
+  };
+  const auto weights = network.weights();
+  return {
+      name, Parameter::Kind::network, {}, set, std::ranges::all_of(weights, [](float w) { return w == 0; })};
+}
+/// A slalom::maps::Field, whose header only a source with one includes.
+template <class Field>
+requires requires(Field& field) {
+  field.relative_to(0, 0).geometry().width;
+}
+Parameter parameter_of(const char* name, Field& field) {
+  const auto set = [&field](const void* from) { field = *static_cast<const Field*>(from); };
+  return {name, Parameter::Kind::field, {}, set, field.geometry().width * field.geometry().height == 1};
 }
 
 /// The problem struct `P`. `list(P&)` returns its parameters.

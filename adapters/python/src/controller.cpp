@@ -136,9 +136,9 @@ void Controller::finish(std::int64_t nan_costs) {
          "sample "
          "that must not be chosen");
   if (solves_ == 1) check_repeats();
-  // A robot that has arrived makes no progress, either: not worth a warning.
+  // A robot that has arrived makes no progress, either, and many a task takes all that the inputs can do.
   if (result().suspicious_solves == SolveResult::symptom_patience &&
-      result().suspicion != Symptom::no_progress)
+      result().suspicion != Symptom::no_progress && result().suspicion != Symptom::saturated_inputs)
     warn(std::string(name(result().suspicion)) + " in " + std::to_string(SolveResult::symptom_patience) +
          " solves in a row: " + explanation(result().suspicion));
 }
@@ -161,8 +161,9 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
   std::vector<Controller*> all;
   std::vector<Busy> busy;
   for (std::size_t i = 0; i < owners.size(); ++i) {
-    if (!is_constructed(owners[i].ptr()))
-      throw py::type_error("controller: its __init__ has not been called");
+    if (!py::isinstance<Controller>(owners[i]) || !is_constructed(owners[i].ptr()))
+      throw py::type_error("controller: " + py::repr(py::type::handle_of(owners[i])).cast<std::string>() +
+                           " is no Controller, or its __init__ has not been called");
     all.push_back(&owners[i].cast<Controller&>());
     checked(states[i], static_cast<std::size_t>(all[i]->problem_->states()), "state");
     check_times(request, all[i]->problem_->evaluator().time_step(), all[i]->solver().horizon());

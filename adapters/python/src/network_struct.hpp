@@ -8,22 +8,28 @@
 
 namespace slalom::python {
 
-/// The problem of an MlpProblem without maps as a struct, which `slalom.compile` makes; network_model.hpp has
-/// the same dynamics and costs for sizes that are known only at run time.
-template <int States, int Inputs, int Discs>
+/// In place of a field. It has a value, since bytes between members would be copied to a GPU unset.
+struct NoField {
+  double unused = 0;
+};
+
+/// The problem of slalom.MlpProblem: the dynamics of a network and a cost of few parts. `Walls` and `Mapped`
+/// are a slalom::maps::Field, or NoField.
+template <int States, int Inputs, int Discs, class Walls, class Mapped>
 struct NetworkStruct {
   template <class T>
   struct State {
     T value[States];
   };
   static constexpr int inputs = Inputs, unrolled_steps = 1;
-  Mlp<States + Inputs, States> network;
-  double dt = 0, disc_weight = 0;
+  Mlp<States + Inputs, States> network;  ///< the state after a step, of state and inputs
+  double dt = 0, disc_weight = 0;        ///< s; cost of a state that collides
   std::array<double, States> goal{}, state_weights{}, terminal_weights{};
   std::array<double, Inputs> input_weights{}, input_min{}, input_max{};
-  std::array<double, 3 * Discs> discs{};  ///< x, y, radius of each
-
-  explicit NetworkStruct(const MlpParameters& parameters) : network(parameters) {}
+  std::array<double, 3 * Discs> discs{};   ///< x, y, radius of each, m
+  Walls walls;                             ///< distance from the nearest wall, m
+  Mapped field;                            ///< a part of the cost
+  double clearance = 0, field_weight = 1;  ///< m: a state collides where `walls` is less; factor of `field`
 
   template <class V>
   void visit_memory(V&& visit) const {
@@ -55,16 +61,19 @@ struct NetworkStruct {
  private:
   template <class T>
   Cost<T> state_cost(const std::array<double, States>& weights, const State<T>& x) const {
-    T distance(0);
-    for (std::size_t i = 0; i < States; ++i)
-      distance = distance + T(weights[i]) * square(x.value[i] - T(goal[i]));
+    T cost(0);
+    for (std::size_t i = 0; i < States; ++i) cost = cost + T(weights[i]) * square(x.value[i] - T(goal[i]));
     mask_t<T> hit = mask_t<T>(false);
     if constexpr (Discs > 0) {
       for (std::size_t i = 0; i < 3 * Discs; i += 3)
         hit = hit || square(x.value[0] - T(discs[i])) + square(x.value[1] - T(discs[i + 1])) <
                          T(discs[i + 2] * discs[i + 2]);
     }
-    return {distance + select(hit, T(disc_weight), T(0)), hit};
+    if constexpr (requires(const Walls& w) { w.geometry(); })
+      hit = hit || walls.value(x.value[0], x.value[1]) < T(clearance);
+    if constexpr (requires(const Mapped& m) { m.geometry(); })
+      cost = cost + T(field_weight) * field.value(x.value[0], x.value[1]);
+    return {cost + select(hit, T(disc_weight), T(0)), hit};
   }
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <any>
 #include <cstring>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,11 +17,19 @@ namespace slalom::python {
 
 /// The outcome of a control sequence in double.
 struct Prediction {
-  std::vector<double> states;  ///< [step][state], one step more than inputs
+  std::vector<double>
+      states;  ///< [step][state], one step more than inputs; none if the problem tells costs alone
   double cost = 0;
   bool collided = false;
   std::vector<std::pair<std::string, double>> terms;  ///< the parts of the cost
 
+  /// The states. Throws std::invalid_argument if there are none.
+  const std::vector<double>& known_states() const {
+    if (states.empty())
+      throw std::invalid_argument(
+          "Problem.rollout: returned costs alone; states need a pair (costs, states [K, T + 1, states])");
+    return states;
+  }
   /// Adds to the term with this name.
   void add(const std::string& name, double value) {
     for (auto& [known, sum] : terms) {
@@ -70,7 +80,7 @@ inline Trajectories AnyProblem::roll_out(std::span<const double> state, std::spa
   for (std::size_t at = 0; at + size <= sequences.size(); at += size) {
     const Prediction one = predict(
         state, std::vector<double>(&sequences[at], &sequences[at] + static_cast<std::ptrdiff_t>(size)));
-    all.states.insert(all.states.end(), one.states.begin(), one.states.end());
+    all.states.insert(all.states.end(), one.known_states().begin(), one.states.end());
     all.costs.insert(all.costs.end(), static_cast<std::size_t>(steps) * one.terms.size(), 0.0);
     for (const auto& [name, value] : one.terms) all.costs.push_back(value);
     all.collisions.push_back(one.collided ? steps : -1);
@@ -78,10 +88,14 @@ inline Trajectories AnyProblem::roll_out(std::span<const double> state, std::spa
   return all;
 }
 
-/// A parameter of a problem that is compiled at run time: a `double` member, or an array of them.
+/// A member of a problem that is compiled at run time: a `double` or an array of them, an Mlp, or a Field.
 struct Parameter {
+  enum class Kind { numbers, network, field };
   const char* name;
-  std::span<double> values;
+  Kind kind;
+  std::span<double> values;              ///< numbers
+  std::function<void(const void*)> set;  ///< takes the MlpParameters of a network, or a maps::Field
+  bool is_empty = false;                 ///< whether a network has no weights, or a field no samples
 };
 
 /// A problem that is compiled at run time, in a library of its own (compiled_problem.hpp).
@@ -89,7 +103,18 @@ class CompiledProblem : public AnyProblem {
  public:
   /// The problem's members that can be changed between solves.
   virtual std::vector<Parameter> parameters() { return {}; }
-  std::string file;  ///< the file that it was loaded from
+  void begin(void*) override {
+    for (const Parameter& each : parameters())
+      if (each.is_empty && !given.contains(each.name))
+        throw std::invalid_argument("compile: the member '" + std::string(each.name) +
+                                    "' is empty: set it, by a keyword argument or as an attribute");
+  }
+  void each_object(const std::function<void(void*)>& visit) override {
+    for (auto& [name, object] : given) visit(object_of(object));
+  }
+  std::string file;                         ///< the file that it was loaded from
+  std::map<std::string, std::any> given;    ///< the py::object that a network or a field was set to, by name
+  void* (*object_of)(std::any&) = nullptr;  ///< where the py::object is
 };
 
 /// A problem struct.

@@ -41,21 +41,22 @@ def emulated(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(folder))
         patch.setattr(slalom.gpu, "compile_kernels", compile_for_host)
-        yield lambda problem: slalom.compile(problem, gpu=[90], flags=[f"-Wl,--no-as-needed,-rpath,{folder}", str(driver)])
+        patch.setenv("CXX", f"c++ -Wl,--no-as-needed,-rpath,{folder} {driver}")
+        yield lambda problem: slalom.compile(problem, gpu=[90])
 
 
 def network(**parts):
-    return slalom.MlpProblem(test_compiled.network(), **PARTS, **parts)
+    return slalom.MlpProblem(test_compiled.network(), **PARTS, discs=[(0.6, 0, 0.2)], disc_weight=5, **parts)
 
 
 OPTIONS = {"horizon": 12, "samples": 200, "temperature": 1}
 GUIDED = {**OPTIONS, "batches": 1, "noise_exponent": 0, "gradient_temperature": 1, "seed": 1}
 
 
-@pytest.mark.parametrize("problem", [slalom.Pendulum(length=1.5), network(discs=[(0.6, 0, 0.2)], disc_weight=5)],
-                         ids=["built-in", "network"])
-def test_plans_are_those_of_the_processor(emulated, problem):
-    compiled = emulated(problem)
+@pytest.mark.parametrize("make", [lambda emulated: (slalom.Pendulum(length=1.5), emulated(slalom.Pendulum(length=1.5))),
+                                  lambda emulated: (network(), network(gpu=90))], ids=["built-in", "network"])
+def test_plans_are_those_of_the_processor(emulated, make):
+    problem, compiled = make(emulated)
     bounds = {"input_min": -2, "input_max": 2}
     for name, options in ("Mppi", OPTIONS), ("SvgMppi", GUIDED):
         on_gpu = getattr(slalom.gpu, name)(compiled, **options, **bounds)
@@ -93,9 +94,6 @@ def test_what_a_gpu_lacks_is_refused(emulated, monkeypatch, tmp_path):
             slalom.gpu.Mppi(problem, temperature=1)
     with pytest.raises(ValueError, match="slalom.Problem has no struct in C..; must be a built-in problem"):
         slalom.compile(callables, gpu=[90])
-    field = slalom.Field.from_function(lambda x, y: x, 20, 20, 0.2, (-2, -2))
-    with pytest.raises(ValueError, match="with walls or a field has no struct"):
-        slalom.compile(network(field=field), gpu=[90])
     monkeypatch.setenv("CUDA_PATH", str(tmp_path))
     with pytest.raises(slalom.CompileError, match=f"no CUDA toolkit in {tmp_path}: .*nvrtc.h and libnvrtc.so"):
         slalom.gpu.toolkit()

@@ -27,27 +27,12 @@ def test_a_field_of_a_function_is_that_function():
         np.testing.assert_allclose(dy, -1, rtol=1e-3)
 
 
-def test_columns_of_a_batch_of_states_are_looked_up():
-    field = slalom.Field(np.random.default_rng(0).normal(size=(40, 50)), 0.1)
-    states = np.random.default_rng(1).uniform(-1, 6, (101, 3)).astype(np.float32)
-    for batch in states, np.asfortranarray(states):
-        value = field.value(batch[:, 0], batch[:, 1])
-        assert value.dtype == np.float32 and value.shape == (101,)
-        np.testing.assert_allclose(value, field.value(*batch[:, :2].astype(float).T), atol=1e-4)
-
-
 def test_signed_distance_of_occupancy():
     cells = np.zeros((20, 30), bool)
     cells[:, 10] = True
     field = slalom.signed_distance(slalom.OccupancyGrid(cells, 0.1), outside_is_obstacle=False)
     assert field.value(0.55, 1.0) == pytest.approx(0.45)  # the wall begins at x = 1 m
     assert field.value(1.05, 1.0) == pytest.approx(-0.05)
-    codes = np.where(cells, 100, 0)
-    codes[:, 20] = -1
-    grid = slalom.OccupancyGrid(codes, 0.1)
-    assert np.array_equal(grid.cells, codes) and grid.cells.dtype == np.int8
-    assert slalom.signed_distance(grid).value(1.85, 1.0) == pytest.approx(0.15)
-    assert slalom.signed_distance(grid, unknown_is_obstacle=False).value(1.85, 1.0) == pytest.approx(0.75)
 
 
 def test_a_ros_map_is_loaded(tmp_path):

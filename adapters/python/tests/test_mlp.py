@@ -1,4 +1,4 @@
-import os
+import math
 
 import numpy as np
 import pytest
@@ -23,12 +23,6 @@ def test_a_network_learns_a_function(activation, residual):
     np.testing.assert_allclose(single, network(unseen), atol=1e-4)
 
 
-def test_the_same_seed_gives_the_same_network():
-    x = np.random.default_rng(2).normal(size=(300, 2))
-    first, again, other = (train_mlp(x, function(x), hidden=(8,), epochs=3, seed=seed)(x) for seed in (4, 4, 5))
-    assert np.array_equal(first, again) and not np.array_equal(first, other)
-
-
 def test_a_network_is_stored_and_read(tmp_path):
     x = np.random.default_rng(4).normal(size=(200, 3))
     network = train_mlp(x, function(x), hidden=(8, 4), residual=True, epochs=2)
@@ -37,19 +31,8 @@ def test_a_network_is_stored_and_read(tmp_path):
         assert arrays["weights_0"].shape == (8, 3) and arrays["biases_2"].shape == (2,)
         assert str(arrays["activation"]) == "tanh" and arrays["residual"]
     assert np.array_equal(Mlp.load(tmp_path / "network.npz")(x), network(x))
-
-
-def test_files_have_the_limits_of_load_mlp(tmp_path):
-    network = Mlp([(np.zeros((2, 3)), np.zeros(2))])
-    network.save(tmp_path / "network.npz")
-    with np.load(tmp_path / "network.npz") as arrays:
-        np.savez_compressed(tmp_path / "small.npz", **arrays)
-    (tmp_path / "large.npz").write_bytes(b"")
-    os.truncate(tmp_path / "large.npz", (16 << 20) + 1)
-    os.mkfifo(tmp_path / "pipe.npz")
-    for name, text in [("small", "compressed"), ("large", "at most 16777216"), ("pipe", "regular file"), ("none", "exist")]:
-        with pytest.raises(slalom.IoError, match=f"{name}.npz: .*{text}"):
-            Mlp.load(tmp_path / f"{name}.npz")
+    with pytest.raises(slalom.IoError, match="none.npz: .*exist"):
+        Mlp.load(tmp_path / "none.npz")
 
 
 def test_mistakes_are_named():
@@ -59,6 +42,10 @@ def test_mistakes_are_named():
         train_mlp(np.zeros((3, 1)), np.zeros((2, 1)))
     with pytest.raises(ValueError, match="must be finite"):
         train_mlp(np.full((3, 1), np.nan), np.zeros((3, 1)))
+    for mistake in [{"hidden": (0,)}, {"hidden": (8, -1)}, {"learning_rate": math.nan}, {"learning_rate": 0}, {"batch": 0},
+                    {"epochs": 1.5}]:
+        with pytest.raises(ValueError, match=f"train_mlp: {next(iter(mistake))}: .* must be"):
+            train_mlp(np.zeros((3, 1)), np.zeros((3, 1)), **mistake)
     with pytest.raises(ValueError, match="residual"):
         train_mlp(np.zeros((3, 1)), np.zeros((3, 2)), residual=True)
 

@@ -62,18 +62,6 @@ def test_errors_of_a_cost_reach_the_caller():
     assert np.array_equal(drive(1), drive(1, lambda *_: 0))
 
 
-def test_paths_avoid_cells_with_a_price():
-    costmap, body = slalom.Costmap(room()), slalom.Footprint.rectangle(0.3, 0.3, 0.4)
-    prices = np.zeros((60, 100))
-    prices[:30, 40:60] = 10
-    costmap.update(room(), prices)
-    assert slalom.plan_path(costmap, body, (1, 2.9, 0), (9, 2.9, 0))[:, 1].max() > 4
-    costmap.update(room(), np.flipud(prices))
-    assert slalom.plan_path(costmap, body, (1, 3.1, 0), (9, 3.1, 0))[:, 1].min() < 2
-    with pytest.raises(ValueError, match="prices must have the size"):
-        costmap.update(room(), np.zeros(7))
-
-
 def test_errors_name_the_argument_and_the_rule():
     costmap, body = slalom.Costmap(room(), unknown="priced"), slalom.Footprint([[0.2, 0.2], [-0.2, 0.2], [0, -0.3]])
     assert costmap.distance(1, 1) > 0.5
@@ -82,6 +70,7 @@ def test_errors_name_the_argument_and_the_rule():
     for call, words in [(lambda: navigator.set_path(np.zeros((3, 2))), "path: has shape"),
                         (lambda: slalom.Costmap(room(), unknown="free"), "unknown: 'free' must be one of"),
                         (lambda: slalom.Navigator(body, costmap, max_forward=-1), "max_forward: '-1' must be in"),
+                        (lambda: costmap.update(room(), np.zeros(7)), "prices must have the size"),
                         (lambda: costmap.update(slalom.OccupancyGrid(np.zeros((3, 3)), 0.1)), "size and resolution")]:
         with pytest.raises(ValueError, match=words):
             call()

@@ -134,12 +134,6 @@ def test_a_plan_on_the_page_keeps_the_rates_of_the_problem():
         assert np.allclose(places, plan.states[:, :2], atol=1e-5)
 
 
-def test_a_cost_without_terms_has_a_page():
-    with shown(garden(lambda x, u: {})) as client:
-        assert client.text("hello")["terms"] == []
-        client.find(lambda m: isinstance(m, np.ndarray) and m[0] >= 1)
-
-
 def test_a_cost_whose_terms_change_is_an_error():
     view = slalom._slalom._View(garden(lambda x, u: {"far" if x[:, 0].max() > 0.01 else "near": x[:, 0]}), [0, 0, 0],
                                 port=0)

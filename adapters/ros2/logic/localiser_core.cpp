@@ -195,7 +195,7 @@ std::optional<KnownPose> LocaliserCore::reliable() const {
 std::vector<maps::Pose> LocaliserCore::particles(int most) const {
   std::vector<maps::Pose> some;
   if (!localiser_ || most < 1) return some;
-  const int count = localiser_->particle_count(), step = (count + most - 1) / most;
+  const int count = localiser_->particle_count(), step = (count - 1) / most + 1;
   for (int i = 0; i < count; i += step) some.push_back(localiser_->particle(i).pose);
   return some;
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::nodes {
 namespace {
@@ -20,6 +22,8 @@ constexpr unsigned char lethal = 254, unknown = 255;
 constexpr double longest_period = 1;   ///< s; after a longer one the robot was not controlled in between
 constexpr double usual_period = 0.05;  ///< s, of the first update
 constexpr double longest_braking = 3;  ///< s, after which a cancellation waits no longer
+constexpr double notable = 0.02;       ///< m by which a point of the plan moves
+constexpr double behind = 0.5;         ///< m of the plan behind the robot that the navigator takes
 
 bool stands(const nav::Velocity& v) {
   return std::hypot(v.forward, v.left) < 0.01 && std::abs(v.turn) < 0.05;
@@ -88,8 +92,13 @@ void PathFollower::use_costmap(const CostGrid& from) {
   if (!costmap_->update(grid)) throw std::invalid_argument("costmap: its origin must be finite");
 }
 
-void PathFollower::use_plan(const std::vector<maps::Pose>& plan, const std::string& frame) {
-  plan_.use(plan, frame);
+void PathFollower::use_plan(const std::vector<maps::Pose>& plan) {
+  if (plan.empty()) throw std::invalid_argument("path: no poses, must have at least one");
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    if (!maps::is_plausible(plan[i])) maps::check_pose("path: pose " + std::to_string(i), plan[i]);
+  plan_ = plan;
+  placed_frame_.reset();
+  remaining_ = std::numeric_limits<double>::infinity();
   cancelling_ = false;
 }
 
@@ -115,7 +124,6 @@ void PathFollower::reset() {
   plan_.clear();
   if (navigator_) navigator_->reset(seed());
   cancelling_ = false;
-  standing_ = 0;
   last_time_.reset();
   velocity_ = command_ = {};
   predicted_.clear();
@@ -148,7 +156,27 @@ void PathFollower::make_navigator(const std::optional<GoalTolerance>& told) {
     options.goal_angle = told->angle > 0 ? std::clamp(told->angle, least, options.goal_angle) : every_heading;
   navigator_.emplace(*footprint_, options, settings_.solver(share_), *costmap_);
   tolerance_ = told;
-  plan_.forget_placement();
+  placed_frame_.reset();
+}
+
+/// Gives the navigator the plan ahead of the robot, where the frame of the plan is now. Localisation moves
+/// that frame against the costmap.
+void PathFollower::place_plan(const maps::Pose& plan_frame) {
+  const auto moves = [&](const maps::Pose& pose) {
+    return maps::distance(maps::transform(plan_frame, {pose.x, pose.y}),
+                          maps::transform(*placed_frame_, {pose.x, pose.y})) > notable;
+  };
+  if (placed_frame_ && !moves(plan_.front()) && !moves(plan_.back())) return;
+  placed_frame_ = plan_frame;
+  std::vector<maps::Pose> placed;
+  double left = 0;
+  for (std::size_t i = plan_.size(); i-- > 0 && left <= remaining_ + behind;) {
+    const maps::Point at = maps::transform(plan_frame, {plan_[i].x, plan_[i].y});
+    if (!placed.empty()) left += maps::distance(at, {placed.back().x, placed.back().y});
+    placed.push_back({at.x, at.y, plan_[i].yaw + plan_frame.yaw});
+  }
+  std::reverse(placed.begin(), placed.end());
+  navigator_->set_path(placed);
 }
 
 double PathFollower::elapsed_until(double time) {
@@ -164,13 +192,13 @@ FollowerAnswer PathFollower::update(const FollowerInput& input) try {
   if (!costmap_) return {Problem::no_control, "there is no costmap", "", {}, 0};
   if (!footprint_) return {Problem::no_control, "the robot has no footprint", "", {}, 0};
   make_navigator(input.tolerance);
-  if (!plan_.empty())
-    if (const auto* const placed = plan_.place(input.plan_frame, input.pose)) navigator_->set_path(*placed);
+  if (!plan_.empty()) place_plan(input.plan_frame);
   const nav::NavigationResult result = navigator_->update(input.pose, velocity_, *costmap_, elapsed);
   predicted_.assign(result.plan.begin(), result.plan.end());
   path_.assign(result.path.begin(), result.path.end());
   const FollowerAnswer answer = judge(result, elapsed);
   command_ = answer.command;
+  remaining_ = result.remaining;
   return answer;
 } catch (const std::exception& error) {
   command_ = {};
@@ -186,9 +214,7 @@ FollowerAnswer PathFollower::judge(const nav::NavigationResult& result, double e
     cancelling_for_ += elapsed;
     return answer;
   }
-  const bool stands_still = result.status == nav::NavigationStatus::braking && stands(answer.command);
-  standing_ = stands_still ? standing_ + elapsed : 0;
-  answer.why = standing_ > settings_.navigator(1).patience ? "every plan collides" : why_of(result.status);
+  answer.why = why_of(result.status);
   if (answer.why.empty()) return answer;
   answer.problem = Problem::no_control;
   answer.command = {};

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "logic/follower_plan.hpp"
 #include "logic/follower_settings.hpp"
 #include "slalom/navigation/costmap.hpp"
 
@@ -72,10 +71,10 @@ class PathFollower {
   void use_footprint(const std::vector<maps::Point>& vertices);
   /// Takes the cells of a costmap. Throws std::exception if the library takes no such size or resolution.
   void use_costmap(const CostGrid& grid);
-  /// Takes a plan in its own frame, from near the robot to the goal. A plan that leads along the present one
-  /// to the same goal changes nothing, so that a detour is kept. Ends a cancellation. Throws std::exception
-  /// unless there is at least one pose and all are finite.
-  void use_plan(const std::vector<maps::Pose>& plan, const std::string& frame);
+  /// Takes a plan in its own frame, from near the robot to the goal. One that ends like the present one
+  /// changes nothing (Navigator::set_path). Ends a cancellation. Throws std::exception unless there is at
+  /// least one pose and all are finite.
+  void use_plan(const std::vector<maps::Pose>& plan);
   /// Scales all speeds so that the largest is at most this: in percent of the limits, or an absolute speed
   /// forward (m/s). 0: no limit. Throws std::exception unless it is finite and at least 0.
   void limit_speed(double limit, bool percentage);
@@ -94,6 +93,7 @@ class PathFollower {
 
  private:
   void make_navigator(const std::optional<GoalTolerance>& told);
+  void place_plan(const maps::Pose& plan_frame);
   double elapsed_until(double time);
   FollowerAnswer judge(const navigation::NavigationResult& result, double elapsed);
   std::uint64_t seed() const;
@@ -106,14 +106,15 @@ class PathFollower {
   std::optional<navigation::Costmap> costmap_;
   std::optional<navigation::Navigator> navigator_;  ///< none: the next update makes it
   std::optional<GoalTolerance> tolerance_;          ///< tolerance of that navigator
-  FollowerPlan plan_;
-  double limit_ = 0;  ///< m/s or percent; 0: none
+  std::vector<maps::Pose> plan_;                    ///< in its own frame
+  std::optional<maps::Pose> placed_frame_;          ///< where that frame was when the navigator took the plan
+  double remaining_ = 0;                            ///< m of the plan that were left in the last update
+  double limit_ = 0;                                ///< m/s or percent; 0: none
   bool limit_is_percentage_ = false;
   double share_ = 1;  ///< share of the limits of the base that the limit leaves
 
   std::optional<double> last_time_;          ///< s, of the last update
   navigation::Velocity velocity_, command_;  ///< velocity and command of the last update
-  double standing_ = 0;                      ///< s for which the robot has braked and stood
   bool cancelling_ = false;
   double cancelling_for_ = 0;  ///< s
   std::vector<maps::Pose> predicted_, path_;

@@ -9,7 +9,7 @@ namespace slalom::maps {
 /// A LiDAR scan that somebody else owns. Beam i points along angle_min + i * angle_increment,
 /// counter-clockwise, in the frame of the laser.
 struct LaserScanView {
-  std::span<const float> ranges{};  ///< m; NaN, infinite or beyond the limits where there is no reading
+  std::span<const float> ranges{};  ///< m; NaN, 0, infinite or beyond the limits where there is no reading
   double angle_min = 0;             ///< rad
   double angle_increment = 0;       ///< rad
   double range_min = 0;             ///< m; readings below it are ignored

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 
 #include "slalom/maps/body_room.hpp"
 #include "slalom/maps/path_curve.hpp"
@@ -53,8 +52,6 @@ class LegFollower {
       begin(vehicle, next());
     }
   }
-  /// Whether a leg has begun since the last call.
-  bool takes_leg() noexcept { return std::exchange(begun_, false); }
   double turn_left() const noexcept { return turn_left_; }  ///< the rest of a turn, rad; 0 on other legs
   /// Whether the vehicle has reached the end of the present leg.
   bool is_finished(const PathCurve& path, const Pose& vehicle) const noexcept;
@@ -69,7 +66,6 @@ class LegFollower {
   double along(const PathCurve& path, const Pose& vehicle) const noexcept;
 
   LegOptions options_;
-  bool begun_ = false;    ///< whether a leg has begun
   double turn_left_ = 0;  ///< rad
   double last_yaw_ = 0;   ///< rad, of the vehicle
   double standing_ = 0;   ///< s

@@ -90,7 +90,7 @@ struct ScanReport {
   bool accepted =
       false;        ///< false: empty, too many beams, angles not finite, or not 0 <= range_min < range_max
   int beams = 0;    ///< number of beams of the scan
-  int invalid = 0;  ///< NaN, below range_min (so negative), or range_max and more (so infinite)
+  int invalid = 0;  ///< NaN, 0, below range_min (so negative), or range_max and more (so infinite)
   int on_body = 0;  ///< dropped because they lie within the footprint
   int used = 0;     ///< number of beams that gave a point
 };

@@ -16,7 +16,8 @@ namespace slalom::maps {
 /// The motions of a vehicle in a ManoeuvreSearch, their prices, and where it may end. Costs are in m of
 /// driving forward with room.
 struct ManoeuvreOptions {
-  double radius = 0;        ///< m, least of an arc; 0: the vehicle turns on the spot
+  double radius = 0;        ///< m, least of an arc; 0: the vehicle turns on the spot, and
+  double bend = 0;          ///< m, radius of its arcs; 0: none
   bool can_reverse = true;  ///< whether it drives backward
   double step = 0;          ///< m of an arc; cells have two thirds of it
   double cautious = 0;      ///< m of room below which driving costs up to five times as much

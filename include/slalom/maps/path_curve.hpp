@@ -52,7 +52,10 @@ class PathCurve {
   const PathLeg& leg() const noexcept { return legs_[leg_]; }             ///< the present leg
   bool on_last_leg() const noexcept { return leg_ + 1 == legs_.size(); }  ///< whether it ends at the goal
   void next_leg() noexcept;                                               ///< goes on to the next leg
-  std::span<const PathLeg> legs() const noexcept { return legs_; }        ///< all legs
+  /// Drives past the corner at the end of the present leg, without the turn there. Returns false where there
+  /// is no corner, or the direction of travel changes.
+  bool join_legs() noexcept;
+  std::span<const PathLeg> legs() const noexcept { return legs_; }  ///< all legs
 
   /// Begins at the point of the path that is nearest to the vehicle; where it passes nearly as close several
   /// times, at the first one.

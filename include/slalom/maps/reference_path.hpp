@@ -22,8 +22,8 @@ struct ReferenceCell {
 };
 static_assert(sizeof(ReferenceCell) == 16);
 
-/// Throws std::invalid_argument, naming the point, unless there are 3 to 10 million points, all within
-/// PoseLimits, with a finite speed >= 0.
+/// Throws std::invalid_argument, naming the point, unless there are 3 to 10 million points within PoseLimits,
+/// of a finite speed >= 0, along a way of at least 0.1 m, at most 10,000 points a metre.
 void check_reference_path(std::span<const ReferencePoint> path);
 
 }  // namespace slalom::maps

@@ -8,9 +8,6 @@
 
 namespace slalom::navigation {
 
-/// The distance (m) of a point from the line between `a` and `b`.
-double distance_to_segment(const maps::Point& point, const maps::Point& a, const maps::Point& b) noexcept;
-
 /// The outline of a robot, with bounds that decide most collision checks without it. All in the robot's frame
 /// (m): x forward, y to the left, origin where the robot's pose is.
 class Footprint {
@@ -33,8 +30,11 @@ class Footprint {
   /// A rectangle: `front` and `rear` (m) are the distances from the origin to its front and rear side.
   static Footprint rectangle(double front, double rear, double width);
 
-  /// The same shape, smaller around the origin: the half width is less by `rim` (m), at least a fifth of it.
+  /// The outline moved inward by `rim` (m). Where that leaves nothing around the origin: the same shape,
+  /// smaller around the origin, whose half width is less by `rim`, but at least a fifth.
   Footprint without_rim(double rim) const;
+  /// The body, those without a rim of 1, 2, ... 7 steps (m), and a small core.
+  std::vector<Footprint> without_rims(double step) const;
   std::span<const maps::Point> vertices() const noexcept { return vertices_; }  ///< the outline
   /// The parts, which together cover the body.
   const std::array<Part, part_count>& parts() const noexcept { return parts_; }

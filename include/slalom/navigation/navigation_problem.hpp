@@ -109,13 +109,14 @@ struct NavigationMaps {
   double progress = 0;        ///< m from the beginning of that part to the robot
   double window_length = 0;   ///< m, of that part
   bool backward = false;      ///< whether the leg is driven in reverse
+  bool manoeuvres = false;    ///< whether it is a manoeuvre, to be followed exactly
   bool turns = false;         ///< whether the robot turns on the spot, at `end`
   bool ends_leg = false;      ///< whether that part ends where the leg does
   bool ends_at_goal = false;  ///< whether that part ends at the goal
   maps::Pose end;             ///< end of that part, map frame; a turn ends at exactly this yaw
-  /// Whether the body overlaps an obstacle now. Rollouts then take it without a rim of half a cell, so that
-  /// they tell an overlap by an error of a scan from a collision.
-  bool overlaps = false;
+  /// Rollouts take the body without a rim of so many half cells: that by which it overlaps an obstacle now,
+  /// so that they tell a way out, or along it, from one that goes deeper.
+  int rim = 0;
   maps::MovingObstaclesView others{};  ///< moving obstacles, map frame
 };
 
@@ -146,22 +147,29 @@ class NavigationProblem {
         input_min(Base::per_input(-limits.max_reverse, -limits.max_sideways, -limits.max_turn)),
         input_max(Base::per_input(limits.max_forward, limits.max_sideways, limits.max_turn)),
         base_(limits),
-        bodies_{BodyCheck(footprint, resolution),
-                BodyCheck(footprint.without_rim(0.5 * resolution), resolution)},
         costs_(costs, step),
         step_(step),
         reach_(farthest_projection * step *
                std::max({limits.max_forward, limits.max_reverse, limits.max_sideways})) {
     const auto [forward, sideways, turning] = axis_limits(limits);
+    per_braking_ = 0.5 / forward.deceleration;
+    per_forward_ = 1 / std::max(limits.max_forward, limits.max_reverse);
+    per_sideways_ = 1 / std::max(limits.max_sideways, 0.01);
     const auto axes = Base::per_input(forward, sideways, turning);
     for (std::size_t i = 0; i < axes.size(); ++i)
       axes_[i] = {axes[i].acceleration * step, axes[i].deceleration * step, axes[i].dead_band};
+    for (const Footprint& body : footprint.without_rims(0.5 * resolution))
+      bodies_.emplace_back(body, resolution);
   }
 
   /// The input that is driven after `before` if `u` is asked for: it changes within the limits, and what is
   /// in the dead band is not driven. A robot in the dead band stands, and leaves it at once.
   template <class T>
   SLALOM_INLINE_CALLS Input<T, inputs> driven(const Input<T, inputs>& before, Input<T, inputs> u) const {
+    if constexpr (turns_while_driving<Base>) {  // the speeds over the ground are within an ellipse
+      const T excess = sqrt(square(u[0] * T(per_forward_)) + square(u[1] * T(per_sideways_)));
+      for (int i = 0; i < 2; ++i) u[i] = u[i] / max(excess, T(1));
+    }
     for (int i = 0; i < inputs; ++i) {
       const Axis& axis = axes_[static_cast<std::size_t>(i)];
       const T was = before[i], faster = T(axis.faster), slower = T(axis.slower), dead = T(axis.dead_band);
@@ -190,9 +198,9 @@ class NavigationProblem {
     end_y_ = maps.end.y - maps.origin.y;
     end_yaw_ = maps.end.yaw;
     others_ = maps.others.relative_to(maps.origin);
-    body_ = maps.overlaps ? 1 : 0;
+    body_ = static_cast<std::size_t>(maps.rim);
     // A base that cannot turn on the spot must come to the end of a leg in its direction.
-    const bool exact = steers<Base> && maps.ends_leg;
+    const bool exact = (steers<Base> && maps.ends_leg) || maps.manoeuvres;
     path_weight_ = exact ? exact_path * static_cast<double>(costs_.path) : static_cast<double>(costs_.path);
     heading_weight_ = maps.turns ? 0.0 : (exact ? exact_heading : 1.0) * static_cast<double>(costs_.heading);
     turning_weight_ = (exact ? 0.0 : 1.0) * static_cast<double>(costs_.turning);
@@ -202,6 +210,7 @@ class NavigationProblem {
     moves_ = maps.turns && maps.ends_at_goal ? 0.0 : 1.0;
     drift_weight_ = maps.turns ? drift * static_cast<double>(step_) : 0.0;
     turn_weight_ = maps.turns ? costs_.goal_heading : Coefficient(0);
+    stop_weight_ = maps.ends_leg && !maps.turns ? costs_.collision : Coefficient(0);
     near_goal_ = maps.ends_at_goal ? Coefficient(1) : Coefficient(0);
   }
 
@@ -270,10 +279,13 @@ class NavigationProblem {
         mask_t<T>(seen.obstacle.collided | met.collided)};
   }
 
-  /// Cost of the last state.
+  /// Cost of the last state, with that of a speed from which it cannot stop at the end of a leg.
   template <class T>
-  SLALOM_INLINE_CALLS Cost<T> terminal_cost(const State<T>&, const Seen<T>& seen) const {
-    return {T(final_weight_) * left(seen), seen.obstacle.collided};
+  SLALOM_INLINE_CALLS Cost<T> terminal_cost(const State<T>& x, const Seen<T>& seen) const {
+    const VelocityOf<T> velocity = base_.velocity(x.before);
+    const T rest = left(seen);
+    const T stopping = (square(velocity.forward) + square(velocity.left)) * T(per_braking_);
+    return {T(final_weight_) * rest + T(stop_weight_) * max(stopping - rest, T(0)), seen.obstacle.collided};
   }
 
  private:
@@ -320,15 +332,16 @@ class NavigationProblem {
 
   Base base_;
   std::array<Axis, static_cast<std::size_t>(inputs)> axes_;
-  std::array<BodyCheck, 2> bodies_;  ///< the body, and the one without a rim
+  std::vector<BodyCheck> bodies_;  ///< the body, and those without a rim
   Weights costs_;
-  std::size_t body_ = 0;  ///< the one in use
-  Coefficient step_, reach_;
+  std::size_t body_ = 0;                    ///< the one in use
+  Coefficient step_, reach_, per_braking_;  ///< s, m, s^2/m
+  Coefficient per_forward_, per_sideways_;  ///< s/m, over the largest speeds
   GridView<1> distances_, prices_;
   GridView<4> path_;
   maps::MovingObstaclesView others_;
   Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, progress_weight_, final_weight_,
-      path_weight_, heading_weight_, turning_weight_, drift_weight_, turn_weight_, near_goal_;
+      path_weight_, heading_weight_, turning_weight_, drift_weight_, turn_weight_, stop_weight_, near_goal_;
   Coefficient moves_ = 1;  ///< 0 in the turn at the goal, in which speeds are braked to 0
 };
 

@@ -10,7 +10,6 @@
 #include "slalom/navigation/base.hpp"
 #include "slalom/navigation/cost_options.hpp"
 #include "slalom/navigation/costmap.hpp"
-#include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/solver.hpp"
 #include "slalom/solvers/solver_options.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
@@ -24,8 +23,6 @@ namespace slalom::navigation {
 /// The options of `svg_mppi` for a base with these limits: 3000 samples of 56 steps, with standard deviations
 /// in proportion to the largest speeds of the base.
 SvgMppiOptions svg_mppi_options(const BaseOptions& base);
-/// The options of `mppi` for such a base.
-MppiOptions mppi_options(const BaseOptions& base);
 /// The options of any method of the registry: those of the options above that the method has, and the
 /// method's defaults for the others. The number of samples is such that a solve takes about as many rollouts
 /// as one of `svg_mppi`, so that every method keeps the control period. Throws std::invalid_argument that
@@ -60,8 +57,8 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.patience,
         {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
   visit(o.stuck_after, {"stuck_after", "s",
-                        "time without progress after which the robot tries another way; after five of them "
-                        "it is stuck for 10 s",
+                        "time without progress, or half of it standing, after which the robot tries another "
+                        "way; after five of them it is stuck for 10 s",
                         0.1, 3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
 }
@@ -93,8 +90,9 @@ constexpr const char* name(NavigationStatus status) noexcept {
 /// The answer of a navigator.
 struct NavigationResult {
   NavigationStatus status = NavigationStatus::no_path;  ///< whether it drives, and if not, why
-  /// Finite and within the largest speeds of the base. Braking reduces speed and yaw rate separately, so that
-  /// the command may then ask an Ackermann base for a tighter turn than it can drive.
+  /// Finite and within the largest speeds of the base, or on the way to them if the robot drives faster.
+  /// Braking reduces speed and yaw rate separately, so that the command may then ask an Ackermann base for a
+  /// tighter turn than it can drive.
   Velocity command;
   int corrections = 0;   ///< values of it that the final check changed
   double remaining = 0;  ///< m of path to the goal
@@ -147,9 +145,10 @@ class Navigator {
   /// heading at the goal. Those of the others count if each is within 60 degrees of the direction of the path
   /// or of its opposite: there the robot reverses. Otherwise the robot drives forward; an Ackermann base
   /// reverses after cusps. The robot stops at cusps, and at corners of more than 60 degrees, where it turns
-  /// on the spot if it can. The goal is the end of the path, even if the path passes there before. The same
-  /// path again does not change the progress along it. Throws std::invalid_argument unless there is at least
-  /// one pose, all are within maps::PoseLimits, and the path is at most 49 km long.
+  /// on the spot if it can. The goal is the end of the path, even if the path passes there before. A path
+  /// that ends like the one that is followed, to half of goal_distance, changes nothing, and neither does one
+  /// to the same goal once the robot is there. Throws std::invalid_argument unless there is at least one
+  /// pose, all are within maps::PoseLimits, and the path is at most 49 km long.
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time

@@ -14,12 +14,12 @@ namespace slalom::navigation {
 /// allocates.
 class PathPlanner {
  public:
-  static constexpr std::size_t max_points = 4000;  ///< most points of a path
+  static constexpr std::size_t max_points = 4000;  ///< most points of a path, unless more are asked for
   static constexpr double spacing = 0.05;          ///< m, between the points of a path
   static constexpr double dead_end_radius = 0.5;   ///< m, round a dead end, where no way leads
 
   /// For costmaps of this size, and a body with this half width (m).
-  PathPlanner(const maps::GridGeometry& geometry, double half_width);
+  PathPlanner(const maps::GridGeometry& geometry, double half_width, std::size_t most_points = max_points);
 
   /// Whether the costmap covers all cells that the body touches at a point of a path.
   bool knows(const Costmap& costmap, const maps::Point& point) const noexcept;
@@ -31,18 +31,28 @@ class PathPlanner {
   /// search prefers the way that was chosen. No way leads through the `closed` discs.
   void read(const Costmap& costmap, std::span<const maps::Pose> kept,
             std::span<const maps::ClosedDisc> closed) noexcept;
-  /// Searches from a position. Returns false if it is off the costmap. Cells within 1.2 half
-  /// widths count as free.
+  /// Searches from a position. Returns false if it is off the costmap. Cells within 1.2 half widths count as
+  /// free, or those up to the nearest free place.
   bool search_from(const maps::Point& start) noexcept;
   /// The cost of a way to a position, m of free space; infinite if there is none.
   double cost_to(const maps::Point& point) const noexcept;
-  /// The way to a position that can be reached, without that position itself. Valid until the next call.
+  /// A way, and its end if it is followed by a straight line off the costmap.
+  struct Way {
+    maps::Point end;  ///< m
+    double cost = 0;  ///< m of free space, with that line; infinite if there is none
+  };
+  /// The cheapest way to a position off the costmap: to the edge of the costmap, and straight on, with room
+  /// as far as the costmap shows. None that costs `most` or more.
+  Way way_off(const Costmap& costmap, const maps::Point& point, double most) const noexcept;
+  /// The way to a position that can be reached, without that position itself; empty if it has too many
+  /// points. Valid until the next call.
   std::span<const maps::Point> path_to(const maps::Point& point) noexcept;
 
  private:
   double half_width_;
   maps::GridGeometry geometry_;
   maps::GridSearch grid_;
+  std::size_t most_points_;
   std::vector<std::uint8_t> is_kept_;  ///< whether each cell is kept
 };
 

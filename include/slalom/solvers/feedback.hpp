@@ -70,7 +70,7 @@ class Feedback {
 
   /// The inputs for state `x` at time `t` (s) after the plan was made, within the bounds. Before the plan's
   /// start its first state counts, after its end the last. Time is counted in steps if the problem has no
-  /// `dt`. A state or time that is not finite gives the inputs of the plan without feedback.
+  /// `dt`. A state or time that is not finite, or feedback that is not, gives the inputs of the plan.
   Inputs input_at(double t, const State& x) const noexcept {
     double now[nx];
     detail::scalars_of<Problem, double>(x, now);

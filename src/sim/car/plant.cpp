@@ -52,6 +52,8 @@ Plant::Plant(const CarParameters& car, const PlantOptions& options, double time_
     slalom::detail::check("car", {"speed_min", "m/s", "", -1000, -1e-3}, car.speed_min);
   on_the_way_.assign(saturate_cast<std::size_t>(std::round(options.steering_dead_time / time_step)), 0.0);
   options_.dynamics.substeps = substeps(car, options.dynamics, time_step);
+  slalom::detail::check("car", {"parts of a step that keep its tyres stable", "", "", 1, 1e4},
+                        options_.dynamics.substeps);
 }
 
 void Plant::reset(const CarState& state) noexcept {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/numbers/count.hpp"
 #include "slalom/core/options.hpp"
 
 namespace slalom::sim {
@@ -31,6 +31,7 @@ std::vector<maps::Point> points_of(std::span<const PathPoint> path) {
 
 /// Samples of the path at equal distances.
 std::vector<maps::Point> resampled(const LapPath& path) {
+  slalom::count(path.length(), usual_spacing, 1e6, "racing line");
   const auto count = std::max<std::size_t>(8, saturate_cast<std::size_t>(path.length() / usual_spacing));
   std::vector<maps::Point> points;
   for (std::size_t i = 0; i < count; ++i) {

@@ -72,22 +72,29 @@ fs::path find_map(const fs::path& folder, std::vector<std::string>& notes) {
 }
 
 fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vector<std::string>& notes) {
-  std::vector<fs::path> candidates;
+  using enum detail::CsvForm;
+  std::vector<fs::path> candidates, files = files_with(folder, {".csv"});
   std::string ignored;
-  for (const auto& file : files_with(folder, {".csv"})) {
-    if (file.filename() == obstacle_file) continue;
-    const auto candidate_form = detail::csv_form(file);
-    if (candidate_form == detail::CsvForm::centre_line) continue;
-    if (candidate_form != detail::CsvForm::other) {
+  std::vector<detail::CsvForm> forms;
+  for (const fs::path& file : files)
+    forms.push_back(file.filename() == obstacle_file ? centre_line : detail::csv_form(file));
+  // Points with a speed count where no file has one of the other forms.
+  const bool plain = std::count(forms.begin(), forms.end(), raceline) +
+                         std::count(forms.begin(), forms.end(), optimised_line) ==
+                     0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path& file = files[i];
+    if (forms[i] == centre_line) continue;
+    if (forms[i] != other && (forms[i] != points_with_speed || plain)) {
       candidates.push_back(file);
-      form = candidate_form;
+      form = forms[i];
     } else {
-      notes.push_back(file.filename().string() + " is ignored: it is in neither form of a waypoint file");
+      notes.push_back(file.filename().string() + " is ignored: it is in no form of a waypoint file");
       ignored += "; " + notes.back();
     }
   }
   return only_one(folder, candidates,
-                  "waypoint file (a .csv with the header opt_x,opt_y,...,ref_v or rows "
+                  "waypoint file (a .csv with the header opt_x,opt_y,...,ref_v or x_m; y_m; vx_mps, or rows "
                   "s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2)",
                   ignored);
 }
@@ -177,6 +184,8 @@ void complete_course(Course& course, std::optional<bool> closed) {
   }
   const Waypoint &first = course.waypoints.front(), &last = course.waypoints.back();
   course.length = last.arc_length + (course.closed ? distance(last, first) : 0);
+  if (!(course.length >= 0.1))
+    throw std::invalid_argument("waypoints: " + to_text(course.length) + " m long; must be at least 0.1 m");
   course.start = {first.x, first.y, first.yaw};
   if (course.obstacle_path.empty())
     for (const Waypoint& point : course.waypoints) course.obstacle_path.push_back({point.x, point.y});
@@ -198,7 +207,11 @@ Course load_course(const fs::path& folder, maps::MapRule rule) {
     course.obstacle_path = detail::read_points(points);
   const fs::path file = folder / course_file;
   const detail::CourseFile said = fs::exists(file) ? detail::read_course_file(file) : detail::CourseFile{};
-  complete_course(course, said.closed);
+  try {
+    complete_course(course, said.closed);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(line.string(), 0, error.what());
+  }
   course.name = said.name.value_or(course.name);
   course.description = said.description.value_or("");
   course.start = said.start.value_or(course.start);

@@ -112,10 +112,30 @@ bool is_comment(const Line& line) {
   return line.text.front() == '#';
 }
 
+char separator_of(const Line& line) {
+  return line.text.find(';') != std::string::npos ? ';' : ',';
+}
+
+/// Whether a line has names in place of numbers.
+bool is_header(const Line& line) {
+  const std::string_view cell = split(line.text, separator_of(line))[0];
+  double value = 0;
+  return is_comment(line) || std::from_chars(cell.data(), cell.data() + cell.size(), value).ec != std::errc{};
+}
+
+/// Whether a header names x, y and a speed, and nothing else.
+bool names_speed(const Line& line) {
+  const std::string text = without_blanks(is_comment(line) ? line.text.substr(1) : line.text);
+  const auto names = split(text, separator_of(line));
+  return names.size() == 3 && names[0].starts_with('x') && names[1].starts_with('y') &&
+         (names[2].starts_with('v') || names[2].starts_with("speed"));
+}
+
 }  // namespace
 
 CsvForm csv_form(const std::filesystem::path& file) {
   for (const Line& line : read_lines(file)) {
+    if (names_speed(line)) return CsvForm::points_with_speed;
     if (is_comment(line)) {
       if (without_blanks(line.text.substr(1)) == raceline_header) return CsvForm::raceline;
       if (without_blanks(line.text) == without_blanks(centre_line_header)) return CsvForm::centre_line;
@@ -133,9 +153,13 @@ std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm 
   const auto content = read_lines(file);
   std::size_t first = 0;
   while (first < content.size() && is_comment(content[first])) ++first;
-  const Columns columns = form == CsvForm::optimised_line
-                              ? optimised_line_columns(file, content[first++])
-                              : Columns{';', raceline_columns, 1, 2, 5, "x_m", "y_m", "vx_mps"};
+  const bool plain = form == CsvForm::points_with_speed;
+  while (plain && first < content.size() && is_header(content[first])) ++first;
+  const Columns columns =
+      form == CsvForm::optimised_line ? optimised_line_columns(file, content[first++])
+      : plain
+          ? Columns{first < content.size() ? separator_of(content[first]) : ';', 3, 0, 1, 2, "x", "y", "v"}
+          : Columns{';', raceline_columns, 1, 2, 5, "x_m", "y_m", "vx_mps"};
   std::vector<Waypoint> waypoints;
   lines.clear();
   for (; first < content.size(); ++first) {
@@ -167,24 +191,17 @@ std::vector<CentreLineRow> read_centre_line_rows(const std::filesystem::path& fi
   std::vector<CentreLineRow> rows;
   bool left_first = false, first = true;
   for (const Line& line : read_lines(file)) {
-    const char separator = line.text.find(';') != std::string::npos ? ';' : ',';
-    const auto cells = split(line.text, separator);
-    const auto names = [&] {  // a header, by its first cell
-      double value = 0;
-      const std::string_view cell = cells[0];
-      return std::from_chars(cell.data(), cell.data() + cell.size(), value).ec != std::errc{};
-    };
-    if (is_comment(line) || (first && names())) {
+    const auto cells = split(line.text, separator_of(line));
+    if (is_comment(line) || (first && is_header(line))) {
       const auto left = line.text.find("left"), right = line.text.find("right");
       if (left != std::string::npos && right != std::string::npos) left_first = left < right;
       first = is_comment(line) && first;
       continue;
     }
-    if (cells.size() < 2 || cells.size() == 3)
+    if (cells.size() < 2)
       throw IoError(
           file.string(), line.number,
-          std::to_string(cells.size()) +
-              " columns; every row must have x, y, width to the right, width to the left, or x and y");
+          "1 column; every row must have x, y, width to the right, width to the left, or x and y first");
     if (!rows.empty() && widths != (cells.size() >= 4))
       throw IoError(file.string(), line.number,
                     std::to_string(cells.size()) + " columns; every row must have as many as the first");

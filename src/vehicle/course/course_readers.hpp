@@ -13,8 +13,8 @@ namespace slalom::vehicle::detail {
 /// The header of a centre line with its widths.
 inline constexpr const char* centre_line_header = "# x_m, y_m, w_tr_right_m, w_tr_left_m";
 
-/// The two formats of a waypoint CSV, a centre line with widths, or neither.
-enum class CsvForm { optimised_line, raceline, centre_line, other };
+/// The formats of a waypoint CSV (the last: x, y and speed), a centre line with widths, or neither.
+enum class CsvForm { optimised_line, raceline, points_with_speed, centre_line, other };
 
 /// Detects the format of a CSV from its first lines. Throws IoError if it cannot be read.
 CsvForm csv_form(const std::filesystem::path& file);

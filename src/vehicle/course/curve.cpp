@@ -83,7 +83,7 @@ Curve normals(const Curve& curve, bool closed) {
 
 double min_gap(const Curve& curve, double apart) {
   const int n = static_cast<int>(curve.size());
-  const int away = saturate_cast<int>(std::ceil(apart / (length(curve) / n)));
+  const int away = saturate_cast<int>(std::min(std::ceil(apart / (length(curve) / n)), 1.0 * n));
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < n; ++i)
     for (int j = i + away; j < n && j - i <= n - away; ++j) {

@@ -42,6 +42,20 @@ maps::Point grid_origin(std::span<const maps::ReferencePoint> path) {
   return {grid * std::round(path[0].x / grid), grid * std::round(path[0].y / grid)};
 }
 
+/// The points of a path relative to `origin`, without those that are less than 1 mm from the one before: a
+/// car that stands while it is recorded leaves thousands, and each update walks along the path.
+std::vector<maps::ReferencePoint> thinned(std::span<const maps::ReferencePoint> path,
+                                          const maps::Point& origin) {
+  std::vector<maps::ReferencePoint> kept;
+  for (maps::ReferencePoint point : path) {
+    point.x -= origin.x;
+    point.y -= origin.y;
+    if (kept.empty() || std::hypot(point.x - kept.back().x, point.y - kept.back().y) >= 1e-3)
+      kept.push_back(point);
+  }
+  return kept;
+}
+
 /// Moves predicted states, which are relative to `origin`, to the map frame.
 void shift(std::span<PredictedState> states, const maps::Point& origin) noexcept {
   for (PredictedState& state : states) {
@@ -206,12 +220,9 @@ Planner::Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> mo
                  std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver) {
   detail::check_parts(options, model.get(), path, solver.get());
   const bool slips = dynamic_cast<const DynamicVehicleModel*>(model.get());
-  detail::PlannerParts parts{
-      options, std::move(model), detail::grid_origin(path), {path.begin(), path.end()}, std::move(solver)};
-  for (maps::ReferencePoint& point : parts.path) {
-    point.x -= parts.origin.x;
-    point.y -= parts.origin.y;
-  }
+  const maps::Point origin = detail::grid_origin(path);
+  detail::PlannerParts parts{options, std::move(model), origin, detail::thinned(path, origin),
+                             std::move(solver)};
   implementation_ = slips ? detail::make_dynamic_planner(parts) : detail::make_kinematic_planner(parts);
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t max_areas = 3;    // largest areas of free space that are searched
 constexpr std::size_t max_islands = 5;  // largest islands of an area that are tried
+constexpr double alike = 0.7;  // share of the best length for width, from which another way is a rival
 
 int extent(const CellRegion& region) {
   return std::max(region.right - region.left, region.top - region.bottom);
@@ -193,11 +194,12 @@ double distance_to(const std::vector<maps::Point>& loop, const maps::Point& poin
 }  // namespace
 
 std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
-                                   const std::optional<maps::Point>& near) {
+                                   const std::optional<maps::Point>& near,
+                                   std::optional<maps::Point>& rival) {
   const CellRegions areas(space.map().width, space.map().height, false,
                           [&](int x, int y) { return space.clearance(x, y) >= keep; });
   std::vector<maps::Point> best;
-  double best_slenderness = 0;
+  double best_slenderness = 0, second = 0;
   for (const bool surroundings : {false, true}) {
     std::size_t searched = 0;
     for (const int area : largest(areas, areas.regions().size())) {
@@ -208,16 +210,22 @@ std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
       for (const int island : largest(islands, max_islands + 1)) {
         if (island == islands.at(0, 0)) continue;
         std::vector<maps::Point> loop = ground.way_round(islands, island);
-        const double slender = slenderness(space, loop);
+        double slender = slenderness(space, loop);
         const bool passes =
             !near || distance_to(loop, *near) <= std::max(4 * keep, 1.5 * space.clearance(*near));
-        if (loop.empty() || !passes || slender <= best_slenderness) continue;
-        best = std::move(loop);
-        best_slenderness = slender;
+        if (loop.empty() || !passes) continue;
+        if (slender > best_slenderness) {
+          std::swap(best, loop);
+          std::swap(best_slenderness, slender);
+        }
+        if (slender <= second) continue;
+        second = slender;
+        rival = loop[loop.size() / 2];
       }
     }
     if (!best.empty()) break;
   }
+  if (second < alike * best_slenderness) rival.reset();
   if (enclosed_area(best) < 0) std::reverse(best.begin(), best.end());
   return best;
 }

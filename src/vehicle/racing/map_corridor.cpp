@@ -17,6 +17,7 @@ constexpr int centring_rounds = 4;
 // Lengths over the median half width: the widest that draws the line, so that side rooms do not; deviations
 // of smoothing the shifts, and the line itself.
 constexpr double centring_reach = 1.5, centring_smooth = 0.5, line_smooth = 0.3;
+constexpr double kept_width = 1.2;  // to each side where a line is kept, over the distance from walls
 
 /// Looks along the normals of a line.
 struct Rays {
@@ -104,10 +105,12 @@ Corridor measured_corridor(const FreeSpace& space, const std::vector<maps::Point
   corridor.normal = normals(corridor.centre_line, closed);
   const Rays rays{space, corridor, measure};
   for (std::size_t i = 0; i < corridor.centre_line.size(); ++i) {
-    const std::optional<double> begin = rays.free_offset(i);
+    const bool kept = measure.keeps(space, corridor.centre_line[i]);
+    const std::optional<double> begin = kept ? std::nullopt : rays.free_offset(i);
     // A place where the car does not fit closes the corridor.
-    corridor.left.push_back(begin ? rays.last_offset(i, *begin, 1) + measure.keep : 0);
-    corridor.right.push_back(begin ? measure.keep - rays.last_offset(i, *begin, -1) : 0);
+    const double otherwise = kept ? kept_width * measure.keep : 0;
+    corridor.left.push_back(begin ? rays.last_offset(i, *begin, 1) + measure.keep : otherwise);
+    corridor.right.push_back(begin ? measure.keep - rays.last_offset(i, *begin, -1) : otherwise);
   }
   return corridor;
 }
@@ -119,7 +122,8 @@ Corridor centred_corridor(const FreeSpace& space, const std::vector<maps::Point>
   };
   std::vector<maps::Point> centre = even(line);
   std::vector<double> clearances;
-  for (const maps::Point& point : centre) clearances.push_back(space.clearance(point));
+  for (const maps::Point& point : centre)
+    clearances.push_back(measure.keeps(space, point) ? measure.keep : space.clearance(point));
   centre = even(smoothed(centre, std::max(measure.keep, centring_smooth * median(clearances)), closed));
   for (int round = 0; round < centring_rounds; ++round) {
     const Corridor now = measured_corridor(space, centre, closed, measure);

@@ -9,9 +9,15 @@ namespace slalom::vehicle::detail {
 
 /// The measures with which a corridor of a map is found.
 struct CorridorMeasure {
-  double keep = 0;   ///< m, that the centre of the car keeps from walls
-  double step = 0;   ///< m between the points of the centre line
-  double reach = 0;  ///< m, widths are at most this
+  double keep = 0;          ///< m, that the centre of the car keeps from walls
+  double step = 0;          ///< m between the points of the centre line
+  double reach = 0;         ///< m, widths are at most this
+  bool keeps_line = false;  ///< whether the car keeps to the line where no wall is within reach
+
+  /// Whether nothing bounds the corridor at a point of its line.
+  bool keeps(const FreeSpace& space, const maps::Point& at) const {
+    return keeps_line && space.clearance(at) >= reach;
+  }
 };
 
 /// The corridor along a line: at each point the widths to both sides up to where the car can be. A width ends

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <stdexcept>
 
 #include "slalom/core/numbers/count.hpp"
-#include "slalom/maps/image.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "vehicle/course/track_parts.hpp"
 #include "vehicle/racing/free_space.hpp"
@@ -23,16 +21,21 @@ constexpr int max_rounds = 4;              // rounds of improving a line along i
 constexpr double min_gain = 5e-4;          // share of the time, by which a round must improve it
 constexpr double min_room = 1e-3;          // m, between the bounds of a line
 constexpr double max_yaw = 0.6;            // rad, of the way from the x axis at a start that is found
-constexpr double most_cells = 2.5e7;       // cells of a map that is drawn
-constexpr double most_drawn = 3e8;         // cells that are visited to draw it
 constexpr double most_cells_of_car = 200;  // cells of a map across the car
 constexpr double run_out = 5;              // m beyond the ends of an open course, in widths of the car
+constexpr double standing_room = 0.65;     // distance from walls of a start on the raceline, in car widths
+constexpr double other_length = 0.1;  // share by which a raceline may differ from its line without a note
+constexpr double pinch = 1 / 3.0;     // share of the median width, below which the narrowest is a doubt
 constexpr double half_turn = 3.14159265358979323846;  // rad
 
 std::string text_of(const maps::Point& point) {
   char text[64];
   std::snprintf(text, sizeof text, "(%.2f, %.2f)", point.x, point.y);
   return text;
+}
+
+std::string rounded(double length) {
+  return to_text(std::round(100 * length) / 100);
 }
 
 template <class Points>
@@ -97,7 +100,9 @@ Raceline fastest_line(const detail::FreeSpace& space, const Corridor& corridor, 
     for (const RacelinePoint& point : best.points) line.push_back({point.x, point.y});
     const Corridor along_line = detail::measured_corridor(space, line, best.closed, measure);
     for (std::size_t i = 0; i < along_line.left.size(); ++i)
-      if (along_line.left[i] + along_line.right[i] <= 2 * measure.keep + min_room) return best;
+      if (along_line.left[i] + along_line.right[i] <= 2 * measure.keep + min_room ||
+          measure.keeps(space, along_line.centre_line[i]))
+        return best;
     Raceline next = minimum_time_raceline(along_line, car);
     const bool turns_more = next.curvature_limit > best.curvature_limit;
     if (turns_more || next.time >= best.time) return best;
@@ -115,6 +120,19 @@ void complete(RaceCourse& course, const detail::FreeSpace& space, const RacingCa
   begin_at_start(course, start);
   for (const RacelinePoint& point : course.raceline.points)
     course.distance.push_back(space.clearance(maps::Point{point.x, point.y}));
+  const auto nearest = std::min_element(course.distance.begin(), course.distance.end());
+  const RacelinePoint& there =
+      course.raceline.points[static_cast<std::size_t>(nearest - course.distance.begin())];
+  if (*nearest < 0.5 * car.width - space.map().resolution)
+    throw std::invalid_argument("corridor: the raceline is " + to_text(*nearest) + " m from a wall at " +
+                                text_of({there.x, there.y}) + "; the centre line must be smoother there");
+  // Where the raceline touches a wall, the car starts in the middle of the road.
+  if (!start && course.distance[0] < standing_room * car.width) {
+    const Corridor& corridor = course.corridor;
+    const double aside = 0.5 * (corridor.left[0] - corridor.right[0]);
+    course.start.x = corridor.centre_line[0].x + aside * corridor.normal[0].x;
+    course.start.y = corridor.centre_line[0].y + aside * corridor.normal[0].y;
+  }
   if (course.raceline.curvature_limit > max_curvature(car)) {
     char text[200];
     std::snprintf(
@@ -140,12 +158,38 @@ std::optional<maps::Pose> given_start(const RaceCourseOptions& options, const de
   return options.start;
 }
 
+/// Notes on what the maker of a course may not have meant.
+void add_doubts(RaceCourse& course, const GuideLine* guide) {
+  const auto& [line, normal, left, right, closed] = course.corridor;
+  if (guide) {
+    const double given = detail::length(guide->points, guide->closed), made = course.raceline.length;
+    if (std::abs(made - given) > other_length * given)
+      course.notes.push_back("the raceline is " + rounded(made) + " m long, and the line " + rounded(given) +
+                             " m");
+    return;
+  }
+  std::vector<double> widths(left);
+  for (std::size_t i = 0; i < left.size(); ++i) widths[i] += right[i];
+  const auto narrowest = std::min_element(widths.begin(), widths.end());
+  const maps::Point place = line[static_cast<std::size_t>(narrowest - widths.begin())];
+  const double least = *narrowest;
+  std::nth_element(widths.begin(), widths.begin() + widths.size() / 2, widths.end());
+  if (least < pinch * widths[widths.size() / 2])
+    course.notes.push_back("the course leads through a gap of " + rounded(least) + " m at " + text_of(place) +
+                           ", and is " + rounded(widths[widths.size() / 2]) +
+                           " m wide mostly; --narrowest excludes gaps, --line gives the way");
+}
+
 /// The loop that passes the start. Without a start, the origin of the map frame becomes it if the loop passes
 /// there about along its x axis.
 std::vector<maps::Point> found_loop(const detail::FreeSpace& space, double keep,
                                     std::optional<maps::Pose>& start, std::vector<std::string>& notes) {
   const auto near = start ? std::optional(maps::Point{start->x, start->y}) : std::nullopt;
-  std::vector<maps::Point> line = detail::find_loop(space, keep, near);
+  std::optional<maps::Point> rival;
+  std::vector<maps::Point> line = detail::find_loop(space, keep, near, rival);
+  if (rival)
+    notes.push_back("another loop, through " + text_of(*rival) +
+                    ", is as long for its width; --start or --line chooses between them");
   if (line.empty()) {
     char text[200];
     std::snprintf(text, sizeof text, "map: no closed way%s keeps %.3f m from all walls%s",
@@ -176,45 +220,6 @@ void check(const GuideLine& guide, const RacingCar& car) {
   if (const double length = detail::length(guide.points, guide.closed); !(length >= car.wheelbase))
     throw std::invalid_argument("line: " + to_text(length) + " m long; must be at least " +
                                 to_text(car.wheelbase) + " m, the wheelbase of the car");
-}
-
-/// The size of the cells (m) of a drawn map: as given, or larger if it would have more than `most_cells`.
-double drawn_resolution(double length_x, double length_y, double resolution) {
-  const double side = std::max(length_x, length_y) / (maps::max_image_side - 8);
-  return std::max({resolution, std::sqrt(length_x * length_y / most_cells), side});
-}
-
-/// Throws std::invalid_argument if a corridor, whose line needs a map of this size (m), is so wide for its
-/// length that a map of it takes too long.
-void check_work(const Corridor& corridor, double length_x, double length_y, double reach, double wall,
-                double resolution) {
-  const double points = static_cast<double>(corridor.centre_line.size());
-  const auto takes_too_long = [&](double side) {
-    const double around = 2 * (side + wall),
-                 cell = drawn_resolution(length_x + around, length_y + around, resolution);
-    const double cells = length(corridor) / points / cell + 2 * (side / cell + std::max(wall / cell, 2.0));
-    return points * cells * cells > most_drawn;
-  };
-  if (!takes_too_long(reach)) return;
-  double most = 0, too_much = reach;
-  while (too_much - most > 0.01 * too_much) {
-    const double middle = 0.5 * (most + too_much);
-    (takes_too_long(middle) ? too_much : most) = middle;
-  }
-  throw std::invalid_argument("corridor: walls " + to_text(std::round(reach)) +
-                              " m from the centre line; must be at most " + to_text(std::floor(most)) +
-                              " m from it, to be drawn");
-}
-
-/// Throws std::invalid_argument if cells that became larger than `wanted` (m) cannot show a corridor.
-void check_cells(const Corridor& corridor, double wanted, double resolution) {
-  double narrowest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < corridor.left.size(); ++i)
-    narrowest = std::min(narrowest, corridor.left[i] + corridor.right[i]);
-  if (resolution > wanted && narrowest < 2 * resolution)
-    throw std::invalid_argument("corridor: " + to_text(narrowest) + " m wide; must be at least " +
-                                to_text(std::ceil(2 * resolution)) +
-                                " m, two cells of a map of 25 million cells for its length");
 }
 
 /// The corridor of an open course with room to stop: straight on by `length` (m) beyond both ends.
@@ -254,14 +259,17 @@ RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, con
     course.notes.push_back(std::to_string(space.spots()) +
                            " unknown spots smaller than the car count as free");
   std::optional<maps::Pose> start = given_start(options, space, keep);
-  std::vector<maps::Point> line = guide ? guide->points : found_loop(space, keep, start, course.notes);
+  std::vector<maps::Point> line =
+      guide ? guide->points : found_loop(space, std::max(keep, 0.5 * options.narrowest), start, course.notes);
   const bool closed = !guide || guide->closed;
   if (start && along(line, closed, *start) < 0) std::reverse(line.begin(), line.end());
   if (options.reverse) std::reverse(line.begin(), line.end());
   if (options.reverse && start) start->yaw = maps::wrap_angle(start->yaw + half_turn);
-  const auto measure = measure_for(car, detail::length(line, closed));
+  auto measure = measure_for(car, detail::length(line, closed));
+  measure.keeps_line = guide;
   course.corridor = detail::centred_corridor(space, line, closed, measure);
   complete(course, space, car, measure, start);
+  add_doubts(course, guide);
   return course;
 }
 
@@ -286,65 +294,6 @@ RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const Rac
   const detail::FreeSpace space(course.map, 0);
   complete(course, space, car, measure_for(car, length(corridor)), options.start);
   return course;
-}
-
-maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, double wall) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  const auto& line = corridor.centre_line;
-  double low_x = infinity, low_y = infinity, high_x = -infinity, high_y = -infinity, reach = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    low_x = std::min(low_x, line[i].x);
-    low_y = std::min(low_y, line[i].y);
-    high_x = std::max(high_x, line[i].x);
-    high_y = std::max(high_y, line[i].y);
-    reach = std::max({reach, corridor.left[i], corridor.right[i]});
-  }
-  check_work(corridor, high_x - low_x, high_y - low_y, reach, wall, resolution);
-  maps::OccupancyGrid map;
-  map.resolution =
-      drawn_resolution(high_x - low_x + 2 * (reach + wall), high_y - low_y + 2 * (reach + wall), resolution);
-  wall = std::max(wall, 2 * map.resolution);
-  check_cells(corridor, resolution, map.resolution);
-  reach += wall;
-  const auto below = [&](double value) {
-    return map.resolution * std::floor((value - reach) / map.resolution - 2);
-  };
-  map.origin = {below(low_x), below(low_y), 0};
-  const auto cells = [&](double high, double first) {
-    return count(high + reach - first, map.resolution, maps::max_image_side - 2, "corridor: its map") + 2;
-  };
-  map.width = static_cast<int>(cells(high_x, map.origin.x));
-  map.height = static_cast<int>(cells(high_y, map.origin.y));
-  const std::size_t segments = corridor.closed ? line.size() : line.size() - 1;
-  std::vector<double> beyond(static_cast<std::size_t>(map.width) * map.height, infinity);
-  for (std::size_t i = 0; i < segments; ++i) {
-    const std::size_t next = (i + 1) % line.size();
-    const maps::Point a = line[i], d{line[next].x - a.x, line[next].y - a.y};
-    const double square = d.x * d.x + d.y * d.y;
-    const auto cell = [&](double value, double origin) {
-      return saturate_cast<int>(std::floor((value - origin) / map.resolution));
-    };
-    const int x0 = cell(std::min(a.x, a.x + d.x) - reach, map.origin.x),
-              x1 = cell(std::max(a.x, a.x + d.x) + reach, map.origin.x),
-              y0 = cell(std::min(a.y, a.y + d.y) - reach, map.origin.y),
-              y1 = cell(std::max(a.y, a.y + d.y) + reach, map.origin.y);
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) {
-        const double px = map.origin.x + (x + 0.5) * map.resolution - a.x,
-                     py = map.origin.y + (y + 0.5) * map.resolution - a.y;
-        const double t = std::clamp((px * d.x + py * d.y) / square, 0.0, 1.0);
-        const auto& widths = d.x * py - d.y * px > 0 ? corridor.left : corridor.right;
-        double& least = beyond[static_cast<std::size_t>(y) * map.width + x];
-        least = std::min(least,
-                         std::hypot(px - t * d.x, py - t * d.y) - ((1 - t) * widths[i] + t * widths[next]));
-      }
-  }
-  map.cells.reserve(beyond.size());
-  for (const double b : beyond)
-    map.cells.push_back(b <= 0      ? maps::Occupancy::free
-                        : b <= wall ? maps::Occupancy::occupied
-                                    : maps::Occupancy::unknown);
-  return map;
 }
 
 }  // namespace slalom::vehicle

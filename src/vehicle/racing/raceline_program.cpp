@@ -78,19 +78,6 @@ struct Barrier {
 }  // namespace
 
 template <class T>
-T RacelineProgram::limit(const T& square, double GripAtSpeed::*member, double constant) const {
-  const auto& rows = car_.grip;
-  if (rows.empty()) return T(constant);
-  const double now = std::sqrt(plain(square) * top_square_);
-  if (now <= rows.front().speed) return T(rows.front().*member);
-  if (now >= rows.back().speed) return T(rows.back().*member);
-  std::size_t k = 1;
-  while (rows[k].speed < now) ++k;
-  const double slope = (rows[k].*member - rows[k - 1].*member) / (rows[k].speed - rows[k - 1].speed);
-  return (rows[k - 1].*member - slope * rows[k - 1].speed) + (slope * car_.limits.top_speed) * sqrt(square);
-}
-
-template <class T>
 T RacelineProgram::segment(int i, const T (&offset)[4], const T (&square)[2], double weight) const {
   int nodes[4];
   segment_points(i, nodes);
@@ -115,10 +102,8 @@ T RacelineProgram::segment(int i, const T (&offset)[4], const T (&square)[2], do
   T curvature[2] = {T(0.0), T(0.0)};
   for (int k = 0; k < 2; ++k) {
     if (bends[k]) curvature[k] = curvature_of(p[k], p[k + 1], p[k + 2]);
-    const T across = top_square_ * square[k] * curvature[k] /
-                     limit(square[k], &GripAtSpeed::lateral, car_.limits.lateral_acceleration);
-    const T used = along / (forwards ? limit(square[k], &GripAtSpeed::acceleration, car_.limits.acceleration)
-                                     : limit(square[k], &GripAtSpeed::braking, car_.limits.braking));
+    const T across = top_square_ * square[k] * curvature[k] / T(car_.limits.lateral_acceleration);
+    const T used = along / T(forwards ? car_.limits.acceleration : car_.limits.braking);
     barrier.add(1.0 - (across * across + used * used));
   }
   if (std::isfinite(car_.power)) barrier.add(1.0 - (car_.limits.top_speed / car_.power) * (along * speed[0]));

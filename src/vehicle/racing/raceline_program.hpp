@@ -50,10 +50,6 @@ class RacelineProgram {
   template <class T>
   T segment(int i, const T (&offset)[4], const T (&square)[2], double weight) const;
 
-  /// The car's limit at a speed; linear between the rows of its ggv diagram.
-  template <class T>
-  T limit(const T& square, double GripAtSpeed::*member, double constant) const;
-
   /// The points i-1 .. i+2; beyond the ends of an open line the end point, which then does not count.
   void segment_points(int i, int (&nodes)[4]) const;
 

@@ -13,21 +13,6 @@ namespace {
 using detail::require;
 using detail::require_within;
 
-/// The limits of the tyres at a speed: linear between the rows of the car, constant beyond them.
-GripAtSpeed tyres_at(const RacingCar& car, double speed) {
-  const auto& rows = car.grip;
-  if (rows.empty())
-    return {speed, car.limits.acceleration, car.limits.braking, car.limits.lateral_acceleration};
-  if (speed <= rows.front().speed) return rows.front();
-  if (speed >= rows.back().speed) return rows.back();
-  std::size_t k = 1;
-  while (rows[k].speed < speed) ++k;
-  const GripAtSpeed &a = rows[k - 1], &b = rows[k];
-  const double t = (speed - a.speed) / (b.speed - a.speed);
-  const auto mix = [t](double low, double high) { return low + t * (high - low); };
-  return {speed, mix(a.acceleration, b.acceleration), mix(a.braking, b.braking), mix(a.lateral, b.lateral)};
-}
-
 /// The highest value that holds, by bisection: `low` holds, `high` does not.
 template <class Holds>
 double highest(double low, double high, const Holds& holds) {
@@ -36,15 +21,6 @@ double highest(double low, double high, const Holds& holds) {
     (holds(middle) ? low : high) = middle;
   }
   return low;
-}
-
-/// The highest speed, at most `top`, whose lateral acceleration on a curve the tyres allow.
-double cornering_speed(const RacingCar& car, double curvature, double top) {
-  const double bend = std::max(std::abs(curvature), 1e-9);
-  if (car.grip.empty()) return std::min(top, std::sqrt(car.limits.lateral_acceleration / bend));
-  // The tyres may allow less the faster the car is, so the highest speed that holds is bracketed.
-  const auto holds = [&](double v) { return v * v * bend <= tyres_at(car, v).lateral; };
-  return holds(top) ? top : highest(0, top, holds);
 }
 
 RacingCar passenger_car() {
@@ -70,16 +46,6 @@ void validate(const RacingCar& car) {
   require_within(0.001, 1e9, "max_steering_rate", car.max_steering_rate);
   detail::require_plausible(car.limits);
   require(car.power >= 0.01, "power", car.power, "at least 0.01");
-  for (std::size_t i = 0; i < car.grip.size(); ++i) {
-    const std::string row = "ggv[" + std::to_string(i) + "].";
-    const GripAtSpeed& grip = car.grip[i];
-    require_within(0, 1000, row + "speed", grip.speed);
-    require(i == 0 || grip.speed > car.grip[i - 1].speed, row + "speed", grip.speed,
-            "above that of the row before");
-    require_within(0.01, 1000, row + "acceleration", grip.acceleration);
-    require_within(0.01, 1000, row + "braking", grip.braking);
-    require_within(0.01, 1000, row + "lateral", grip.lateral);
-  }
 }
 
 std::vector<std::string> racing_car_names() {
@@ -99,15 +65,14 @@ RacingCar racing_car(const Configuration& configuration) {
   const auto& tyres = vehicle.own_of<SingleTrackOptions>();
   constexpr double longest_model_car = 1;  // m, wheelbase
   RacingCar car = vehicle.wheelbase() > longest_model_car ? passenger_car() : RacingCar{};
-  const double grip = tyres.friction * tyres.usable_grip * gravity;
   car.name = "configured";
   car.width = vehicle.body.width;
   car.margin = 3 * vehicle.body.margin;
   car.wheelbase = vehicle.wheelbase();
   car.max_steering = configuration.planner.steer_limit;
   car.max_steering_rate = tyres.steer_rate;
-  car.limits = {car.limits.top_speed, grip, std::min(vehicle.max_acceleration, grip),
-                std::min(vehicle.max_deceleration, grip)};
+  car.limits = grip_limits(tyres.friction * tyres.usable_grip, car.limits.top_speed, vehicle.max_acceleration,
+                           vehicle.max_deceleration);
   car.power = vehicle.max_acceleration * tyres.switch_speed;
   return car;
 }
@@ -116,40 +81,32 @@ void set_friction(RacingCar& car, double friction) {
   require_within(0.01, 10, "friction", friction);
   const double grip = friction * gravity;
   car.limits.lateral_acceleration = car.limits.acceleration = car.limits.braking = grip;
-  car.grip.clear();
 }
 
 double max_curvature(const RacingCar& car) {
   return std::tan(car.max_steering) / car.wheelbase;
 }
 
-GripAtSpeed grip_at(const RacingCar& car, double speed) {
-  GripAtSpeed grip = tyres_at(car, speed);
-  if (speed > 0) grip.acceleration = std::min(grip.acceleration, car.power / speed);
-  grip.speed = speed;
-  return grip;
-}
-
 std::vector<double> racing_speeds(std::span<const double> curvature, std::span<const double> step,
                                   bool closed, const RacingCar& car) {
   validate(car);
   detail::require_finite(curvature, step);
+  const SpeedLimits& limits = car.limits;
   const std::size_t n = curvature.size();
   std::vector<double> speed(n);
   for (std::size_t i = 0; i < n; ++i) {
-    speed[i] = cornering_speed(car, curvature[i], car.limits.top_speed);
+    speed[i] = std::min(limits.top_speed,
+                        std::sqrt(limits.lateral_acceleration / std::max(std::abs(curvature[i]), 1e-9)));
     if (!closed && i + 1 == n) break;
     const double turn = car.wheelbase * std::abs(curvature[(i + 1) % n] - curvature[i]) / step[i];
     if (speed[i] * turn > car.max_steering_rate) speed[i] = car.max_steering_rate / turn;
   }
-  const auto forwards = [&](double v, double k) {
-    const GripAtSpeed tyres = tyres_at(car, v);
-    return std::min(tyres.acceleration * detail::share_left(v, k, tyres.lateral),
-                    car.power / std::max(v, 1e-9));
-  };
   const auto braking = [&](double v, double k) {
-    const GripAtSpeed tyres = tyres_at(car, v);
-    return tyres.braking * detail::share_left(v, k, tyres.lateral);
+    return limits.braking * detail::share_left(v, k, limits.lateral_acceleration);
+  };
+  const auto forwards = [&](double v, double k) {
+    return std::min(limits.acceleration * detail::share_left(v, k, limits.lateral_acceleration),
+                    car.power / std::max(v, 1e-9));
   };
   // The strongest acceleration of both ends of a piece and of its middle: on a line on which turning takes
   // all grip almost everywhere, that of the start alone is too much for a fifth of the pieces.

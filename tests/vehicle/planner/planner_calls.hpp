@@ -29,9 +29,10 @@ inline SolverOptions few_samples(const char* method) {
 
 /// A planner of a car whose tyres slip, on a lane at 3 m/s.
 inline vehicle::Planner sliding_planner(const vehicle::PlannerOptions& options = {},
-                                        vehicle::VehicleOptions car = {}) {
+                                        vehicle::VehicleOptions car = {},
+                                        const std::vector<maps::ReferencePoint>& path = lane(3)) {
   car.model = vehicle::vehicle_model("single_track");
-  return {options, vehicle::make_vehicle_model(car), lane(3), make_solver(few_samples("svg_mppi"), 2)};
+  return {options, vehicle::make_vehicle_model(car), path, make_solver(few_samples("svg_mppi"), 2)};
 }
 
 inline maps::LaserScanView any_scan(Adversary& adversary, std::vector<float>& ranges) {

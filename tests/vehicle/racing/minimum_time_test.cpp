@@ -51,6 +51,44 @@ double time_of(const Corridor& corridor, const std::vector<double>& offsets, con
   return sum;
 }
 
+/// The squares of the second differences along a line of offsets, the objective of
+/// minimum_curvature_offsets().
+double bending(const std::vector<maps::Point>& points, const std::vector<double>& offsets) {
+  using namespace detail;
+  const Curve normal = normals(points);
+  const std::size_t n = points.size();
+  const auto at = [&](std::size_t i) { return points[i % n] + offsets[i % n] * normal[i % n]; };
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const maps::Point bend = at(i) - 2 * at(i + 1) + at(i + 2);
+    sum += dot(bend, bend);
+  }
+  return sum;
+}
+
+TEST(LeastCurvature, IsOptimalWithinItsBounds) {
+  for (const double bound : {0.0, 0.6}) {
+    const auto points = winding(1).centre_line;
+    auto offsets = minimum_curvature_offsets(points, bound);
+    const double best = bending(points, offsets);
+    EXPECT_EQ(best<bending(points, std::vector<double>(points.size(), 0.0)), bound> 0);
+    for (double& offset : offsets) {
+      ASSERT_LE(std::abs(offset), bound);
+      const double kept = offset;
+      for (const double move : {-1e-3, 1e-3}) {
+        offset = std::clamp(kept + move, -bound, bound);
+        EXPECT_GE(bending(points, offsets), best - 1e-9);
+      }
+      offset = kept;
+    }
+  }
+  for (const double offset : minimum_curvature_offsets(circle(5, 1).centre_line, 0.7))
+    EXPECT_NEAR(offset, 0.7, 1e-5) << "the whole line moves to the inside";
+  for (const double bound : {-0.1, std::nan("")})
+    EXPECT_THROW(minimum_curvature_offsets(circle(5, 1).centre_line, bound), std::invalid_argument);
+  EXPECT_THROW(minimum_curvature_offsets(std::vector<maps::Point>(7), 0.5), std::invalid_argument);
+}
+
 TEST(MinimumTime, OnACircleItIsTheInnerBound) {
   // v = sqrt(a r), so a lap takes 2 pi sqrt(r / a): the smallest radius is the fastest.
   const RacingCar car;

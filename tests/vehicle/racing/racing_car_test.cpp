@@ -1,4 +1,4 @@
-// Cars: limits that depend on the speed, profiles, configurations.
+// Cars: profiles, configurations.
 #include "slalom/vehicle/racing/racing_car.hpp"
 
 #include <gtest/gtest.h>
@@ -62,17 +62,6 @@ TEST(RacingSpeeds, PowerLimitsTheGainOfEnergy) {
   const double begin = v[i];
   for (std::size_t k = i; k < 1500; ++k) time += 2 * step[k] / (v[k] + v[k + 1]);
   EXPECT_NEAR(0.5 * (v[1500] * v[1500] - begin * begin), 40 * time, 0.01 * 40 * time);
-}
-
-TEST(RacingSpeeds, LateralGripMayDependOnTheSpeed) {
-  RacingCar car;
-  car.limits.top_speed = 30;
-  car.grip = {{0, 8, 8, 4}, {10, 8, 8, 4}, {20, 4, 8, 12}};
-  EXPECT_DOUBLE_EQ(grip_at(car, 15).lateral, 8);
-  EXPECT_DOUBLE_EQ(grip_at(car, 15).acceleration, 6);
-  EXPECT_DOUBLE_EQ(grip_at(car, 30).lateral, 12);
-  const std::vector<double> step(50, 1.0);
-  EXPECT_NEAR(racing_speeds(std::vector<double>(50, 0.16), step, true, car)[7], 5, 1e-9);
 }
 
 TEST(RacingSpeeds, ACurvatureThatIsNoNumberIsNoStraight) {

@@ -109,7 +109,7 @@ void Controller::setPlan(const nav_msgs::msg::Path& plan) {
   std::vector<Pose> poses;
   for (const auto& stamped : plan.poses) poses.push_back(slalom_ros::pose_of(stamped.pose));
   try {
-    follower_->use_plan(poses, plan.header.frame_id);
+    follower_->use_plan(poses);
   } catch (const std::exception& error) {
     throw nav2_core::InvalidPath(error.what());
   }

@@ -22,6 +22,7 @@ struct RaceCourseOptions {
   /// course without a start begins in the middle of its fastest part.
   std::optional<maps::Pose> start;
   bool reverse = false;  ///< the other way round; not with a start
+  double narrowest = 0;  ///< m, of the gaps through which a loop is searched; 0: as narrow as the car fits
 };
 
 /// A line to drive along, and whether it is closed.

@@ -11,14 +11,6 @@
 
 namespace slalom::vehicle {
 
-/// The most that a car accelerates at one speed: a row of its ggv diagram. All accelerations > 0.
-struct GripAtSpeed {
-  double speed = 0;         ///< m/s, >= 0
-  double acceleration = 0;  ///< m/s^2, forwards when not turning
-  double braking = 0;       ///< m/s^2, when not turning
-  double lateral = 0;       ///< m/s^2, at constant speed
-};
-
 /// The properties of a car on which its raceline depends. Lateral and longitudinal acceleration are inside an
 /// ellipse with these limits as half axes.
 struct RacingCar {
@@ -28,10 +20,8 @@ struct RacingCar {
   double wheelbase = 0.3302;                   ///< m
   double max_steering = 0.4;                   ///< rad, of the front wheels
   double max_steering_rate = 3.2;              ///< rad/s
-  SpeedLimits limits{8, 8.829, 8.829, 8.829};  ///< top speed and accelerations, where `grip` is empty
+  SpeedLimits limits{8, 8.829, 8.829, 8.829};  ///< top speed and accelerations
   double power = std::numeric_limits<double>::infinity();  ///< W/kg: v dv/dt is at most this
-  /// Rows by rising speed instead of the accelerations of `limits`. Linear between them, constant beyond.
-  std::vector<GripAtSpeed> grip;
 };
 
 /// Throws std::invalid_argument that names the key, its value and the rule.
@@ -48,8 +38,8 @@ RacingCar racing_car(const std::string& name);
 /// their margin, and the top speed of racing_car(), by the wheelbase; planner.max_speed is for driving.
 RacingCar racing_car(const Configuration& configuration);
 
-/// Sets the accelerations to those of a friction coefficient, `friction` g in every direction, and removes
-/// the rows of `grip`. Throws std::invalid_argument unless `friction` is finite and above 0.
+/// Sets the accelerations to those of a friction coefficient, `friction` g in every direction. Throws
+/// std::invalid_argument unless `friction` is finite and above 0.
 void set_friction(RacingCar& car, double friction);
 
 /// The share of its margin that a car keeps in the narrowest places.
@@ -69,13 +59,9 @@ inline double least_wall_distance(const RacingCar& car) {
 /// 1/m, the tightest curvature that the steering reaches: tan(max_steering) / wheelbase.
 double max_curvature(const RacingCar& car);
 
-/// The limits at a speed, with the power limit.
-GripAtSpeed grip_at(const RacingCar& car, double speed);
-
-/// The highest speeds (m/s) of a car along a path: as feasible_speeds(), with limits that may depend on the
-/// speed and hold at both ends and in the middle of a piece, and with steering no faster than the car's.
-/// `curvature` (1/m) has one entry a point; `step[i]` is the way (m) from point i to the next, from the last
-/// to the first; not used if open. Throws std::invalid_argument for an invalid car and sizes that differ.
+/// The highest speeds (m/s) of a car along a path: as feasible_speeds(), with limits that hold at both ends
+/// and in the middle of a piece, and with steering no faster than the car's. `curvature` and `step` are as
+/// there. Throws std::invalid_argument for an invalid car and sizes that differ.
 std::vector<double> racing_speeds(std::span<const double> curvature, std::span<const double> step,
                                   bool closed, const RacingCar& car);
 
