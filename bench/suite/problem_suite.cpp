@@ -42,10 +42,12 @@ SolverOptions method_options(const std::vector<std::string>& parts, const Task& 
   }
   if (SvgMppiOptions* const svg = options.get_if<SvgMppiOptions>()) {
     const GuideOptions& guides = svg->guides;
-    // A guide itself is evaluated in every iteration; all are before and after, with the last solution. The
-    // last mean is evaluated, too.
-    svg->samples =
-        rollouts - guides.iterations * guides.count * (guides.gradient_samples + 1) - (2 * guides.count + 2);
+    // In the closed form, a guide itself is evaluated in every iteration, and all are before and after, with
+    // the last solution.
+    const bool closed = svg->batches == 1;
+    svg->samples = closed ? rollouts - guides.iterations * guides.count * (guides.gradient_samples + 1) -
+                                (2 * guides.count + 2)
+                          : rollouts;
     return options;
   }
   const int* const iterations = options.find<int>("iterations");

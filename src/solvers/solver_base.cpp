@@ -74,13 +74,15 @@ Status BatchOutcome::status() const noexcept {
 
 SolverBase::SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
                        std::uint64_t seed, std::shared_ptr<ThreadPool> pool)
-    : horizon_(horizon),
+    : chosen_(static_cast<std::size_t>(horizon) * static_cast<std::size_t>(inputs)),
+      horizon_(horizon),
       inputs_(inputs),
       pool_(std::move(pool)),
       seed_(seed),
       low_(size()),
       high_(size()),
-      moved_(size()) {
+      moved_(size()),
+      compared_(horizon, inputs, simd::padding) {
   for (int r = 0; r < rows(); ++r) {
     const int input = r % inputs;
     require_bound("input_min", input_min[input], -std::numeric_limits<double>::infinity());
@@ -135,6 +137,29 @@ BatchOutcome SolverBase::evaluate(const BatchEvaluator& evaluator, const Sequenc
     if (costs[k] < costs[outcome.best]) outcome.best = k;
   }
   return outcome;
+}
+
+void SolverBase::choose(const BatchEvaluator& evaluator, const SequenceList& proposals) noexcept {
+  float costs[simd::padding];
+  std::uint8_t collided[simd::padding];
+  for (int first = 0; first < proposals.sequences; first += simd::padding - 1) {
+    const int count = std::min(proposals.sequences - first, simd::padding - 1);
+    compared_.set_samples(count + 1);
+    compared_.set_sample(0, result_.inputs);
+    for (int k = 0; k < count; ++k) {
+      const float* const proposal =
+          proposals.values.data() + (first + k) * static_cast<std::ptrdiff_t>(size());
+      for (int r = 0; r < rows(); ++r) {
+        const std::size_t row = static_cast<std::size_t>(r);
+        const float value = std::isfinite(proposal[r]) ? proposal[r] : result_.inputs[row];
+        compared_[r][static_cast<std::size_t>(k) + 1] = std::clamp(value, low_[row], high_[row]);
+      }
+    }
+    const BatchOutcome outcome = evaluate(evaluator, compared_, {}, costs, collided);
+    if (outcome.best == 0) continue;
+    compared_.get_sample(outcome.best, chosen_);
+    result_.inputs = chosen_;
+  }
 }
 
 void SolverBase::watch() noexcept {

@@ -1,6 +1,7 @@
 #include "solvers/golden_json.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/guides.hpp"
+#include "solvers/methods/mppi_update.hpp"
 #include "solvers/methods/reverse_weights.hpp"
 #include "solvers/methods/stein.hpp"
 #include "solvers/published/published_program.hpp"

@@ -126,10 +126,12 @@ TEST_P(SolverContract, WeightsFallWithCostByTheTemperature) {
   std::size_t best = 0;
   for (std::size_t k = 0; k < result.costs.size(); ++k) {
     sum += static_cast<double>(result.weights[k]);
-    if (result.costs[k] < result.costs[best]) best = k;
+    if (result.weights[k] > result.weights[best]) best = k;
   }
   EXPECT_NEAR(sum, 1, 1e-5);
+  const bool in_kinds = GetParam().name.starts_with("svg_mppi");  // only samples of the first guide weigh
   for (std::size_t k = 0; k < result.costs.size(); ++k) {
+    if (in_kinds && result.weights[k] == 0) continue;
     const double expected = static_cast<double>(result.weights[best]) *
                             std::exp(static_cast<double>(result.costs[best] - result.costs[k]) / temperature);
     EXPECT_NEAR(result.weights[k], expected, 1e-4 * static_cast<double>(result.weights[best])) << k;

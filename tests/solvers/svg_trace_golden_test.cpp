@@ -1,6 +1,7 @@
 #include "solvers/golden_json.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/guides.hpp"
+#include "solvers/methods/mppi_update.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 /// Whole solves of the published SVG-MPPI, stage by stage, each stage from what the trace says went into it.

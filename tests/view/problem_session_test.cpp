@@ -167,7 +167,7 @@ TEST_F(OwnProblem, AForkContinuesWithOtherOptionsBesideWhatDroveBefore) {
   const double samples = figure("samples", 3);
   EXPECT_EQ(option("problem", "goal_x"), "-8");
   step(4);
-  EXPECT_EQ(ghost_figure("samples", 7), 2 * samples);
+  EXPECT_GT(ghost_figure("samples", 7), samples) << "of the last batch";
   EXPECT_EQ(last("state")["newest"], 7);
   EXPECT_NE(figure("x", 7), x);
   say({R"({"do": "fork", "method": "svg_mppi", "set": ["problem.dt=0.2"]})"});

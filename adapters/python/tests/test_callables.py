@@ -6,7 +6,7 @@ import slalom
 from test_controllers import linear
 
 
-@pytest.mark.parametrize("method, rollouts", [("mppi", 1), ("svg_mppi", 12), ("reverse_mppi", 20), ("sv_mpc", 6),
+@pytest.mark.parametrize("method, rollouts", [("mppi", 1), ("svg_mppi", 9), ("reverse_mppi", 20), ("sv_mpc", 6),
                                               ("cem", 5), ("icem", 5), ("dial_mpc", 2)])
 def test_a_solve_calls_callables_as_often_as_the_page_says(method, rollouts):
     calls, costs = [], []

@@ -78,11 +78,11 @@ void visit_noise_options(Options& o, Visit&& visit) {
 
 template <class Options, class Visit>
 void visit_weighting_options(Options& o, Visit&& visit) {
-  visit(o.target_ess_fraction,
-        {"target_ess_fraction", "",
-         "effective sample size, as a fraction of the samples, to which the "
-         "temperature adapts; 0: 0.6 sqrt(K) / K where temperature is 0, sqrt(K) / K in a batch of several",
-         0, 1});
+  visit(o.target_ess_fraction, {"target_ess_fraction", "",
+                                "effective sample size, as a fraction of the samples, to which the "
+                                "temperature adapts; 0: 0.6 sqrt(K) / K where temperature is 0, 0.7 / "
+                                "sqrt(n) for n samples of a guide",
+                                0, 1});
 }
 
 template <class Options, class Visit>

@@ -10,6 +10,7 @@
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
+#include "slalom/core/sequence_batch.hpp"
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/solvers/solver.hpp"
 
@@ -110,12 +111,16 @@ class SolverBase : public Solver {
   BatchOutcome evaluate(const BatchEvaluator& evaluator, const SequenceBatch& batch, const Deadline& deadline,
                         float* costs, std::uint8_t* collided) noexcept;
 
+  /// Makes the cheapest of the proposals, moved into the bounds, the inputs of the result if it costs less.
+  void choose(const BatchEvaluator& evaluator, const SequenceList& proposals) noexcept;
+
   /// The first index of the samples that are drawn around zero, if they are the fraction `share` of all.
   static int zero_mean_from(int samples, double share) noexcept {
     return saturate_cast<int>((1.0 - share) * static_cast<double>(samples));
   }
 
-  SolveResult result_;  ///< the last result; `clone` points its spans into the copy
+  SolveResult result_;         ///< the last result; `clone` points its spans into the copy
+  std::vector<float> chosen_;  ///< a proposal that cost less than the solution [row]
 
  private:
   SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
@@ -129,6 +134,7 @@ class SolverBase : public Solver {
   std::uint64_t seed_;
   std::uint64_t solves_ = 0;
   std::vector<float> low_, high_, moved_;  ///< [row]
+  SequenceBatch compared_;                 ///< the solution and proposals
   bool small_variance_ = false;            ///< whether the deviations are below a hundredth of the ranges
   double steady_cost_ = 0;                 ///< least cost of the solve since which it has stayed the same
   double highest_cost_ = 0;                ///< highest least cost since the last reset

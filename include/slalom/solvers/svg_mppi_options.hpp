@@ -70,9 +70,9 @@ struct SvgMppiOptions {
   PerInput variance_min = 0;
   PerInput variance_max = 0;
 
-  /// Shape of the noise; coloured and normal. Of several batches, the first and the last two have white
-  /// noise.
-  NoiseOptions noise{.exponent = 1.5};
+  /// Shape of the noise; coloured and normal. In several batches, a part of the samples has white noise
+  /// unless it is pinned or has knots.
+  NoiseOptions noise{.exponent = 3};
   WeightingOptions weighting{};  ///< how costs become weights
   double control_cost_discount = 0;
   double zero_mean_share = 0;
@@ -86,7 +86,11 @@ namespace detail {
 
 template <class Options, class Visit>
 void visit_guide_options(Options& o, Visit&& visit) {
-  visit(o.count, {"guides", "", "guide particles", 1, 1024, "K_g"});
+  visit(o.count, {"guides", "",
+                  "guides that look for other ways. In several batches at most one for each 100 samples, and "
+                  "at most 2; 0: "
+                  "the samples stay around the plan",
+                  0, 1024, "K_g"});
   visit(o.iterations,
         {"guide_iterations", "", "number of steps by which the guides move in a solve", 1, 1000, "L"});
   visit(o.step,
@@ -132,12 +136,11 @@ template <class Options, class Visit>
 requires is_options_of<Options, SvgMppiOptions>
 void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
-  visit(
-      o.batches,
-      {"batches", "",
-       "parts of the samples, each drawn around the mean of the last; 1: the paper's closed form; 0: by the "
-       "number of samples, 4 to 8. Always 1 with samples around the solution",
-       0, 1000});
+  visit(o.batches,
+        {"batches", "",
+         "parts of the samples, each drawn around the means of the last; 1: the paper's closed form; 0: "
+         "0.75 cbrt(K), at most 8. Always 1 with samples around the solution",
+         0, 1000});
   detail::visit_guide_options(o.guides, visit);
   detail::visit_variance_options(o, visit);
   detail::visit_noise_options(o.noise, visit);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "slalom/core/sequence_batch.hpp"
@@ -27,6 +28,22 @@ struct SamplingDistribution {
   const float* low = nullptr;
   const float* high = nullptr;
   int zero_mean_from = 0;  ///< the first sample that is drawn around zero instead of the mean
+};
+
+/// Samples of several distributions side by side. Each sample follows one `source`.
+struct Mixture {
+  /// Independent normal values, [row].
+  struct Source {
+    const float* mean = nullptr;
+    const float* deviation = nullptr;
+  };
+
+  std::span<const Source> sources;
+  const float* source = nullptr;  ///< the index of a sample's source [sample]
+  const float* scale = nullptr;   ///< the factor of a sample's deviations [sample]
+  const float* white = nullptr;   ///< 1 for samples with white noise, 0 for those with shaped noise [sample]
+  const float* low = nullptr;     ///< bounds [row]
+  const float* high = nullptr;    ///< bounds [row]
 };
 
 /// A range of samples. `first` and `count` are multiples of the lanes.
@@ -113,6 +130,10 @@ namespace kernels {
 /// Turns standard normal values z into samples, clamp(mean + deviation z, low, high). `noise` and `samples`
 /// may be the same.
 void sample(const Rows& noise, const Rows& samples, const SamplingDistribution& to, Range range);
+/// Turns standard normal values, white and shaped, into samples of a mixture, clamped to its bounds. `shaped`
+/// and `samples` may be the same.
+void sample_mixture(const Rows& white, const Rows& shaped, const Rows& samples, const Mixture& from,
+                    Range range);
 /// totals[k] += sum over rows of coefficient[row] v[row][k].
 void add_linear(const Rows& v, const float* coefficient, Range range, float* totals);
 /// totals[k] += sum over rows of weight[row] (v[row][k] - centre[row])^2.

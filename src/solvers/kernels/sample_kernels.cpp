@@ -49,6 +49,30 @@ struct Sample {
   }
 };
 
+struct SampleMixture {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& white, const Rows& shaped, const Rows& samples,
+                                const Mixture& from, Range range) {
+    using F = Pack<Target>;
+    const int sources = static_cast<int>(from.sources.size());
+    for (int r = 0; r < samples.rows; ++r) {
+      const F low(from.low[r]), high(from.high[r]);
+      for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+        const F source = F::load(from.source + k);
+        F mean(from.sources[0].mean[r]), deviation(from.sources[0].deviation[r]);
+        for (int s = 1; s < sources; ++s) {
+          const auto here = source == F(s);
+          mean = select(here, F(from.sources[s].mean[r]), mean);
+          deviation = select(here, F(from.sources[s].deviation[r]), deviation);
+        }
+        const F z =
+            select(F::load(from.white + k) > F(0.0f), F::load(white.row(r) + k), F::load(shaped.row(r) + k));
+        clamp(mean + deviation * F::load(from.scale + k) * z, low, high).store(samples.row(r) + k);
+      }
+    }
+  }
+};
+
 /// Computes `Colour` for `packs` packs that begin at sample k. They share each loaded entry of L.
 template <int packs, class F>
 SLALOM_INLINE void colour_packs(const Rows& z, const float* factor, int first, int step, int k) {
@@ -247,6 +271,11 @@ struct WeightedPowers {
 
 void sample(const Rows& noise, const Rows& samples, const SamplingDistribution& to, Range range) {
   simd::dispatch<Sample>(noise, samples, to, range);
+}
+
+void sample_mixture(const Rows& white, const Rows& shaped, const Rows& samples, const Mixture& from,
+                    Range range) {
+  simd::dispatch<SampleMixture>(white, shaped, samples, from, range);
 }
 
 void colour(const Rows& z, const float* factor, int first, int step, Range range) {

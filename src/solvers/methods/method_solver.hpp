@@ -18,18 +18,23 @@ class MethodSolver : public SolverBase {
   std::unique_ptr<Solver> clone() const override {
     auto copy = std::make_unique<Self>(static_cast<const Self&>(*this));
     copy->bind_result();
+    if (result_.inputs.data() == chosen_.data()) copy->result_.inputs = copy->chosen_;
     return copy;
   }
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto start = Clock::now();
     result_.times = {};
+    static_cast<Self&>(*this).bind_result();
     static_cast<Self&>(*this).compute(evaluator, request, Deadline(start, request.deadline));
+    if (this->takes_proposals() && !Self::plan_is_cheapest) this->choose(evaluator, request.proposals);
     result_.times.total = seconds(start, Clock::now());
     return result_;
   }
 
  protected:
   using SolverBase::SolverBase;
+  /// Whether `compute` itself returns the cheapest of the proposals and its own solution.
+  static constexpr bool plan_is_cheapest = false;
 };
 
 }  // namespace slalom::detail

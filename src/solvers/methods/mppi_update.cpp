@@ -8,6 +8,17 @@
 
 namespace slalom::detail {
 
+void control_coefficients(double temperature, double discount, double inverse_variance_offset,
+                          const float* mean, const float* nominal, const float* variance, int rows,
+                          float* coefficients) noexcept {
+  const double factor = temperature * (1.0 - discount);
+  for (int r = 0; r < rows; ++r) {
+    const double u = mean[r], n = nominal[r];
+    const double inverse = inverse_variance<double>(variance[r], inverse_variance_offset);
+    coefficients[r] = static_cast<float>(factor * (u - n) * inverse);
+  }
+}
+
 WeightSums<double> Weighting::weigh(SampleSet& samples, float least, ThreadPool& pool) noexcept {
   return samples.weigh(least, static_cast<float>(temperature_), pool);
 }

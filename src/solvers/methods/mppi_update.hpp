@@ -6,6 +6,16 @@
 
 namespace slalom::detail {
 
+/// Coefficients [row] of the control term (Honda et al., ICRA 2024, equation (8), where alpha = 0):
+///
+///     sum_row coefficient v = lambda (1 - alpha) sum_t (u - n)^T Sigma^-1 v
+///
+/// `temperature` is lambda, `discount` is alpha, `mean` is the samples' mean u and `nominal` is the nominal
+/// sequence n. All arrays have `rows` values.
+void control_coefficients(double temperature, double discount, double inverse_variance_offset,
+                          const float* mean, const float* nominal, const float* variance, int rows,
+                          float* coefficients) noexcept;
+
 /// Computes the weights of samples from their costs,
 ///
 /// w = exp(-(J - min J) / lambda).

@@ -6,6 +6,7 @@
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
 #include "solvers/methods/method_solver.hpp"
+#include "solvers/methods/mppi_update.hpp"
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
 #include "solvers/published/published_program.hpp"

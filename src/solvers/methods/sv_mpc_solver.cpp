@@ -6,6 +6,7 @@
 #include "slalom/solvers/sv_mpc_options.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/method_solver.hpp"
+#include "solvers/methods/mppi_update.hpp"
 #include "solvers/methods/stein.hpp"
 #include "solvers/published/published_program.hpp"
 #include "solvers/sampling/sample_set.hpp"

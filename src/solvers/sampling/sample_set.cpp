@@ -152,12 +152,12 @@ void SampleSet::propose(const SequenceList& proposals) noexcept {
   proposed_ = std::min(proposals.sequences, samples());
 }
 
+/// Draws each range by `draw(range)` and evaluates it.
+template <class Draw>
 BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
-                                             const SamplingDistribution& to, const float* linear,
-                                             ThreadPool& pool, const Deadline& deadline) noexcept {
-  const Sampler* const sampler = evaluator.sampler();
-  if (sampler || !prepared_for(key)) begin_prepare({});
-  const auto draw = [&](Range r) { sample_range(sampler, key, to, prepared(r), r); };
+                                             const float* linear, ThreadPool& pool, const Deadline& deadline,
+                                             Draw&& draw) noexcept {
+  if (evaluator.sampler() || !prepared_for(key)) begin_prepare({});
   BatchStatistics statistics;
   if (evaluator.whole_batches()) {
     pool.run(tiles(), [&](int tile) { draw(range(tile)); });
@@ -176,6 +176,50 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
   return statistics;
 }
 
+BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
+                                             const SamplingDistribution& to, const float* linear,
+                                             ThreadPool& pool, const Deadline& deadline) noexcept {
+  return draw_and_evaluate(evaluator, key, linear, pool, deadline,
+                           [&](Range r) { sample_range(evaluator.sampler(), key, to, prepared(r), r); });
+}
+
+BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
+                                             const Mixture& from, const SequenceList& known, ThreadPool& pool,
+                                             const Deadline& deadline) noexcept {
+  return draw_and_evaluate(evaluator, key, nullptr, pool, deadline, [&](Range r) {
+    sample_range(evaluator.sampler(), key, from, known, prepared(r), r);
+  });
+}
+
+/// Puts the proposals that fall into a range at the samples from `first` on.
+void SampleSet::place_proposals(int first, const float* mean, const float* low, const float* high,
+                                Range r) noexcept {
+  const int end = std::min(first + proposed_, r.first + r.count);
+  for (int k = std::max(first, r.first); k < end; ++k) {
+    const float* proposal = proposals_ + static_cast<std::ptrdiff_t>(k - first) * rows();
+    for (int row = 0; row < rows(); ++row) {
+      const float value = std::isfinite(proposal[row]) ? proposal[row] : mean[row];
+      values_[row][k] = std::clamp(value, low[row], high[row]);
+    }
+  }
+}
+
+/// Draws a range of samples of a mixture, from the prepared noise if `ready`.
+void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const Mixture& from,
+                             const SequenceList& known, bool ready, Range r) noexcept {
+  if (!ready) fill_noise(sampler, noise_, r, key);
+  const Rows white = rows_of(noise_), shaped = shape_.correlated() ? row_view() : white;
+  if (shape_.correlated()) {
+    for (int row = 0; row < rows(); ++row)
+      std::copy_n(white.row(row) + r.first, r.count, shaped.row(row) + r.first);
+    shape_.apply(values_, r);
+  }
+  kernels::sample_mixture(white, shaped, row_view(), from, r);
+  for (int k = r.first; k < std::min(known.sequences, r.first + r.count); ++k)
+    values_.set_sample(k, known.values.subspan(static_cast<std::size_t>(k * rows())));
+  place_proposals(known.sequences, from.sources[0].mean, from.low, from.high, r);
+}
+
 /// Draws a range of the samples, from the prepared noise if `ready`. Proposals take the places of the last
 /// samples. A value that is not finite becomes that of the mean.
 void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to,
@@ -183,14 +227,7 @@ void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const Sampli
   if (!ready) fill_noise(sampler, values_, r, key);
   SequenceBatch& from = ready ? noise_ : values_;
   kernels::sample(rows_of(from), row_view(), to, r);
-  const int first = samples() - proposed_, end = std::min(samples(), r.first + r.count);
-  for (int k = std::max(first, r.first); k < end; ++k) {
-    const float* proposal = proposals_ + static_cast<std::ptrdiff_t>(k - first) * rows();
-    for (int row = 0; row < rows(); ++row) {
-      const float value = std::isfinite(proposal[row]) ? proposal[row] : to.mean[row];
-      values_[row][k] = std::clamp(value, to.low[row], to.high[row]);
-    }
-  }
+  place_proposals(samples() - proposed_, to.mean, to.low, to.high, r);
 }
 
 void SampleSet::draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool,
@@ -290,17 +327,6 @@ void SampleSet::two_moments(const float* first, const float* second, const float
   add_tiles(rows() * moments, sums, pool, [&](Range r, float* of_tile) {
     kernels::two_moments(row_view(), first, second, centre, r, of_tile);
   });
-}
-
-void control_coefficients(double temperature, double discount, double inverse_variance_offset,
-                          const float* mean, const float* nominal, const float* variance, int rows,
-                          float* coefficients) noexcept {
-  const double factor = temperature * (1.0 - discount);
-  for (int r = 0; r < rows; ++r) {
-    const double u = mean[r], n = nominal[r];
-    const double inverse = inverse_variance<double>(variance[r], inverse_variance_offset);
-    coefficients[r] = static_cast<float>(factor * (u - n) * inverse);
-  }
 }
 
 void bind_samples(const SampleSet& set, SolveResult& result) noexcept {

@@ -83,6 +83,12 @@ class SampleSet {
                                     const SamplingDistribution& to, const float* linear, ThreadPool& pool,
                                     const Deadline& deadline) noexcept;
 
+  /// Draws and evaluates samples of a mixture, before which stand the `known` sequences and the proposals.
+  /// The set draws white noise (`set_white`), which a part of the samples shapes. Omits tiles as above.
+  BatchStatistics draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key, const Mixture& from,
+                                    const SequenceList& known, ThreadPool& pool,
+                                    const Deadline& deadline) noexcept;
+
   /// Draws the samples without evaluating them, with normal noise or that of a problem's `sampler`.
   void draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool,
             const Sampler* sampler = nullptr) noexcept;
@@ -124,6 +130,13 @@ class SampleSet {
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
   void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to, bool ready,
                     Range range) noexcept;
+  void sample_range(const Sampler* sampler, RandomKey key, const Mixture& from, const SequenceList& known,
+                    bool ready, Range range) noexcept;
+  void place_proposals(int first, const float* mean, const float* low, const float* high,
+                       Range range) noexcept;
+  template <class Draw>
+  BatchStatistics draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key, const float* linear,
+                                    ThreadPool& pool, const Deadline& deadline, Draw&& draw) noexcept;
   template <class Each>
   BatchStatistics run_parts(ThreadPool& pool, const Deadline& deadline, Each&& each) noexcept;
   BatchStatistics evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
@@ -156,16 +169,6 @@ template <class Real>
 Real inverse_variance(Real variance, Real offset) noexcept {
   return variance > 0 ? Real(1) / variance + offset : Real(0);
 }
-
-/// Coefficients [row] of the control term (Honda et al., ICRA 2024, equation (8), where alpha = 0):
-///
-///     sum_row coefficient v = lambda (1 - alpha) sum_t (u - n)^T Sigma^-1 v
-///
-/// `temperature` is lambda, `discount` is alpha, `mean` is the samples' mean u and `nominal` is the nominal
-/// sequence n. All arrays have `rows` values.
-void control_coefficients(double temperature, double discount, double inverse_variance_offset,
-                          const float* mean, const float* nominal, const float* variance, int rows,
-                          float* coefficients) noexcept;
 
 /// Points the spans of a result to the samples of `set`.
 void bind_samples(const SampleSet& set, SolveResult& result) noexcept;

@@ -7,11 +7,10 @@
 
 namespace slalom::detail {
 
-/// The effective sample size that weights of `samples` samples should have, if no option states it. It is
-/// larger for the samples of a batch of several: plans that follow more samples keep farther from obstacles.
+/// The effective sample size that weights of `samples` samples should have, if no option states it.
 /// docs/problem-suite.md has what it changes.
-inline double default_effective_size(int samples, bool in_batches = false) {
-  return (in_batches ? 1 : 0.6) * std::sqrt(static_cast<double>(samples));
+inline double default_effective_size(int samples) {
+  return 0.6 * std::sqrt(static_cast<double>(samples));
 }
 
 /// Finds the temperature at which weights have the effective sample size `wanted`. It grows with the
