@@ -101,6 +101,15 @@ TEST(CourseCheck, FindsNothingOnASlowCircleInTheOpen) {
   EXPECT_NEAR(check.max_acceleration, 4, 0.05);
 }
 
+TEST(CourseCheck, FindsNoWallInTheOpenForACarOfAnyWidth) {
+  const Course course = circle(4, 4);
+  for (int millimetres = 100; millimetres < 400; millimetres += 5) {
+    const CourseCheck check =
+        check_course(course, {.half_width = millimetres * 1e-3, .margin = 0.055, .limits = {}});
+    EXPECT_TRUE(check.walls.stretches.empty()) << millimetres;
+  }
+}
+
 TEST(CourseCheck, FindsAProfileThatAsksForTooMuchGrip) {
   Course course = circle(4, 4);
   for (int i = 50; i < 100; ++i) course.waypoints[i].speed = 6;  // 9 m/s^2

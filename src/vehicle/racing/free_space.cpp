@@ -45,7 +45,8 @@ double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point
   const double column = at.x / map.resolution, row = at.y / map.resolution;
   const int cells = saturate_cast<int>(std::ceil(reach / map.resolution)) + 1;
   const int x0 = saturate_cast<int>(std::floor(column)), y0 = saturate_cast<int>(std::floor(row));
-  double nearest = reach / map.resolution;
+  const double most = reach / map.resolution;
+  double nearest = most;
   for (int y = y0 - cells; y <= y0 + cells; ++y)
     for (int x = x0 - cells; x <= x0 + cells; ++x) {
       if (!map.contains(x, y) || map.at(x, y) == maps::Occupancy::free) continue;
@@ -54,7 +55,7 @@ double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point
       const double dy = std::max({y - row, row - (y + 1), 0.0});
       if (dx < nearest && dy < nearest) nearest = std::min(nearest, std::hypot(dx, dy));
     }
-  return nearest * map.resolution;
+  return nearest < most ? nearest * map.resolution : reach;  // the product may round to less than `reach`
 }
 
 FreeSpace::FreeSpace(const maps::OccupancyGrid& map, double spot)
