@@ -21,22 +21,12 @@ struct Inert {
 };
 const std::vector<Inert>& inert() {
   const std::set<std::string> one_guide = {"paper", "published", "hardware"};
-  const std::set<std::string> fixed_variance = {"race", "race_obstacles", "racing_benchmark"};
   static const std::vector<Inert> rows = {
       {{"restart_guides", "fit_all_guides"}, one_guide, "there is one guide"},
       {{"fit_temperature"}, {"paper"}, "the temperature of q* is that of the samples"},
       {{"variance"},
-       {"paper", "published", "hardware", "default", "default_kinematic", "default_speed", "passenger_car"},
+       {"paper", "published", "hardware", "default_kinematic", "default_speed"},
        "the variance of the samples is adapted"},
-      {{"use_nominal"},
-       {"default", "passenger_car", "race", "race_obstacles", "racing_benchmark"},
-       "control_cost_discount: 1 cancels the control term, where alone the nominal sequence acts"},
-      {{"guides", "guide_iterations", "guide_step", "guide_variance", "gradient_samples", "gradient_variance",
-        "gradient_temperature", "guide_weight", "restart_guides", "restart_variance", "variance_max",
-        "inverse_variance_offset", "fit_target", "fit_temperature", "fit_all_guides",
-        "fit_standard_deviation", "fit_absolute_curvature"},
-       fixed_variance,
-       "neither the nominal sequence nor the covariance of the guides acts: this is MPPI"},
   };
   return rows;
 }
@@ -99,7 +89,7 @@ TEST_P(ConfigurationOptions, ActOnTheDrive) {
     vehicle::set_option(configuration, fewer, fewer == std::string("samples") ? "128" : "12", method);
   const std::vector<double> before = drive(configuration);
   const std::set<std::string> options = options_set(GetParam());
-  EXPECT_GT(options.size(), 10u);
+  EXPECT_GE(options.size(), 6u);
   for (const SolverOptions& solver : configuration.methods) {
     if (solver.method() != method) continue;
     for (const OptionEntry& entry : list_options(solver)) {
