@@ -122,6 +122,9 @@ struct PythonNavigator : Navigator {
   void check_term() const {
     if (cost && cost->error) std::rethrow_exception(std::exchange(cost->error, nullptr));
   }
+  void each_object(const auto& visit) {
+    if (cost) visit(&cost->function);
+  }
   std::shared_ptr<PythonCost> cost;
 };
 
@@ -153,7 +156,7 @@ void bind_navigator(py::module_& module) {
       "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
       "with the options of `solver`. Other options:\n\n" +
       options_text(navigation::NavigatorOptions{});
-  py::class_<PythonNavigator>(module, "Navigator", words.c_str(), guarded())
+  py::class_<PythonNavigator>(module, "Navigator", words.c_str(), collected<PythonNavigator>())
       .def(py::init([](const Footprint& footprint, const Costmap& costmap, const std::string& method,
                        const py::dict& solver, const py::kwargs& options) {
              navigation::NavigatorOptions set;
