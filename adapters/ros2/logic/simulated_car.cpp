@@ -39,8 +39,9 @@ void SimulatedCar::reset() {
 
 void SimulatedCar::step(const Command& command, const Command& other) {
   const double time_step = world_.options().time_step;
+  const std::array commands{command, other};
   for (int steps = static_cast<int>(std::lround(period / time_step)); steps > 0; --steps) {
-    world_.step(std::span(std::array{command, other}).first(starts_.size()));
+    world_.step(std::span(commands).first(starts_.size()));
     odometry_.update(world_.state(0), time_step);
   }
   const bool collides = world_.observe(0).collides();
