@@ -79,9 +79,9 @@ TEST(NodeInputs, PointsOfAnotherSensorStopTheCarAndSoDoesTheirAbsence) {
     if (!wall && d.drives()) wall = moved_ahead(d.car().pose(), 4);
     if (!wall) return;
     std::vector<std::array<double, 3>> points;
-    for (double y = -3; y < 3; y += 0.03) {
+    for (int i = -100; i < 100; ++i) {
       const maps::Pose laser = composed(d.car().pose(), d.car().laser());
-      const maps::Point at = maps::inverse_transform(laser, maps::transform(*wall, {0, y}));
+      const maps::Point at = maps::inverse_transform(laser, maps::transform(*wall, {0, 0.03 * i}));
       points.push_back({at.x, at.y, 0});
     }
     to.hear_points(d.now(), "laser", points);
