@@ -116,16 +116,17 @@ def check_python(root):
     os.environ["MPLBACKEND"] = "agg"
     for page in pages(root):
         found = blocks(page, "python")
-        names = {}
+        names, missing = {}, ""
         with tempfile.TemporaryDirectory() as folder:
             os.chdir(folder)
             for line, text in found:
                 try:
                     exec(compile(text, f"{page}:{line}", "exec"), names)
                 except Exception as error:
-                    if isinstance(error, ModuleNotFoundError) and error.name in ("torch", "matplotlib"):
-                        print(f"{page.relative_to(root)}:{line}: not run, since {error.name} is missing "
-                              f"(Debian: python3-{error.name})")
+                    if isinstance(error, ModuleNotFoundError) and error.name.split(".")[0] in ("torch", "matplotlib"):
+                        missing = error.name.split(".")[0]
+                    if missing and isinstance(error, (ModuleNotFoundError, NameError)):  # or what another block would define
+                        print(f"{page.relative_to(root)}:{line}: not run, since {missing} is missing (Debian: python3-{missing})")
                     else:
                         errors.append(f"{page}:{line}: {type(error).__name__}: {error}")
             os.chdir(root)
@@ -138,8 +139,7 @@ def check_patches(root):
     errors = []
     for page in pages(root):
         for line, text in blocks(page, "diff"):
-            tried = subprocess.run(["git", "apply", "--check", "-"], cwd=root, input=text + "\n", text=True,
-                                   capture_output=True)
+            tried = subprocess.run(["git", "apply", "--check", "-"], cwd=root, input=text + "\n", text=True, capture_output=True)
             print(f"{page.relative_to(root)}:{line}: a patch")
             if tried.returncode:
                 errors.append(f"{page}:{line}: the patch does not apply\n{tried.stderr}")

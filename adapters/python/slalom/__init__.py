@@ -15,6 +15,7 @@ from ._slalom import *  # noqa: E402,F401,F403
 from ._slalom import __version__  # noqa: E402
 from .closed_loop import Run, run  # noqa: E402
 from .compiler import CompileError, compile  # noqa: E402
+from .derivatives import Feedback, Linearization, linearize  # noqa: E402
 from .network import MlpProblem  # noqa: E402
 from .show import show  # noqa: E402
 
@@ -24,7 +25,7 @@ if importlib.util.find_spec("slalom._driving"):
 else:  # built without the layers for cars
     _driving = None  # type: ignore[assignment]
 
-_DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "World", "courses", "drive_lap", "plan_path")
+_DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "PredictedObstacle", "World", "courses", "drive_lap", "plan_path")
 
 
 class SymptomWarning(RuntimeWarning):
@@ -48,4 +49,4 @@ from . import gpu  # noqa: E402  the signatures of its classes are those of the 
 for _module in filter(None, (_slalom, _driving)):
     display.set_pickles(_module)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
-__all__ += ["CompileError", "MlpProblem", "Run", "SymptomWarning", "__version__", "run", "show"]
+__all__ += ["CompileError", "Feedback", "Linearization", "MlpProblem", "Run", "SymptomWarning", "__version__", "linearize", "run", "show"]

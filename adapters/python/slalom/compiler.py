@@ -31,13 +31,15 @@ class CompileError(RuntimeError):
 
 
 def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | None = None, *,
-            flags: Sequence[str] = (), gpu: int | Sequence[int] = (), **parameters: Any) -> _slalom.CompiledProblem:
+            flags: Sequence[str] = (), gpu: int | Sequence[int] = (), derivatives: bool = False,
+            **parameters: Any) -> _slalom.CompiledProblem:
     """A problem struct in C++ (docs/writing-a-problem.md) as a problem in Python, at the speed of C++.
 
-    source: the text of a header with the struct, or its file; for a GPU also a built-in problem or an MlpProblem
+    source: the text of a header with the struct, or its file; for a GPU or derivatives also a built-in problem
     problem: the name of the struct, with its namespace; needed only if the source has several problems
     flags: further flags of the compiler, for instance "-I..."
     gpu: architectures of GPUs for which it is compiled, too, for instance [90]; needs a CUDA toolkit (docs/gpu.md)
+    derivatives: whether slalom.linearize has the exact derivatives of the problem, which takes longer to compile
     parameters: values for members of the struct; they are attributes of the problem. A `double` takes a number, an array
         of it as many; a slalom::Mlp takes a slalom.mlp.Mlp or its file; a slalom::maps::Field takes a slalom.Field, or the
         file of a map, of which it is the signed distance
@@ -53,7 +55,7 @@ def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | 
         parameters = {**values, **parameters}
     text = source if isinstance(source, str) and _is_text(source) else Path(source).read_text()
     name, members = _problem_in(_without_comments(text), problem)
-    return compile_members(source, name, parameters, flags, gpu, members)
+    return compile_members(source, name, parameters, [*flags, *["-DSLALOM_DERIVATIVES"] * derivatives], gpu, members)
 
 
 def compile_members(source: str | os.PathLike[str], problem: str, values: dict[str, Any], flags: Sequence[str] = (),
@@ -123,8 +125,7 @@ def _without_comments(text: str) -> str:
 
 def _problem_in(text: str, wanted: str | None) -> tuple[str, list[str]]:
     """The name of the problem struct of a source without comments, and the names of its parameters."""
-    bodies = {found[1]: _outside_braces(text, found.end()) for found in
-              re.finditer(r"\bstruct\s+(\w+)[^;{}()]*\{", text)}
+    bodies = {found[1]: _outside_braces(text, found.end()) for found in re.finditer(r"\bstruct\s+(\w+)[^;{}()]*\{", text)}
     known = [name for name, body in bodies.items() if re.search(r"\bconstexpr\s+int\s+inputs\b", body)]
     name = wanted.split("::")[-1] if wanted else known[0] if len(known) == 1 else None
     if name not in known:

@@ -38,8 +38,7 @@ for _name in ("__setitem__", "__delitem__", "__ior__", "update", "pop", "popitem
 def install(solvers: ModuleType) -> None:
     """Adds `__repr__` and `__reduce__` to the classes of the compiled module, and signatures to their methods."""
     _option_names.update(option["name"] for method in solvers.methods() for option in solvers.options(method))
-    arguments: dict[type, Callable[[Any], Arguments]] = {
-        solvers.Problem: lambda problem: ((), {name: getattr(problem, name)
+    arguments: dict[type, Callable[[Any], Arguments]] = {solvers.Problem: lambda problem: ((), {name: getattr(problem, name)
                                                for name in inspect.signature(solvers.Problem).parameters}),
         solvers.RiskEvaluator: lambda risk: ((risk.problem, risk.randomize), risk.options),
         solvers.CompiledProblem: lambda problem: ((problem.file,), problem.parameters)}
@@ -148,8 +147,7 @@ def _keywords(solvers: ModuleType, cls: type) -> list[tuple[str, Any]]:
 
 
 def _settable(cls: type) -> list[str]:
-    return [name for each in cls.__mro__ for name, member in vars(each).items()
-            if isinstance(member, property) and member.fset]
+    return [name for each in cls.__mro__ for name, member in vars(each).items() if isinstance(member, property) and member.fset]
 
 
 def _constructed(cls: type, arguments: Callable[[Any], Arguments]) -> None:
@@ -187,8 +185,7 @@ def takes_k(function: Callable[..., Any]) -> bool:
 def changed(problem: Any) -> dict[str, Any]:
     """The parameters that differ from their defaults."""
     default = type(problem)()
-    return {name: getattr(problem, name) for name in _settable(type(problem))
-            if getattr(problem, name) != getattr(default, name)}
+    return {name: getattr(problem, name) for name in _settable(type(problem)) if getattr(problem, name) != getattr(default, name)}
 
 
 def _controller_text(controller: Any) -> str:

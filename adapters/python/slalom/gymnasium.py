@@ -68,8 +68,7 @@ class Problem(_slalom.Problem):
         of slalom.Problem: input_rate_max, input_levels, sampler
     """
 
-    def __init__(self, env: gymnasium.Env[Any, Any], terminal_cost: Callable[[Array], Array] | None = None,
-                 **parts: Any) -> None:
+    def __init__(self, env: gymnasium.Env[Any, Any], terminal_cost: Callable[[Array], Array] | None = None, **parts: Any) -> None:
         env.reset()
         inner = _copied(env)
         space = inner.action_space
@@ -105,8 +104,7 @@ def _copied(env: gymnasium.Env[Any, Any]) -> Any:
     return made
 
 
-def episode(env: gymnasium.Env[Any, Any], controller: _slalom.Controller, seed: int | None = None,
-            steps: int = 1_000_000) -> Run:
+def episode(env: gymnasium.Env[Any, Any], controller: _slalom.Controller, seed: int | None = None, steps: int = 1_000_000) -> Run:
     """Drives an environment until its episode ends, or for a number of steps.
 
     Parameters

@@ -45,8 +45,7 @@ class Mlp:
 
     def __init__(self, layers: Sequence[tuple[ArrayLike, ArrayLike]], activation: str = "tanh", *,
                  input_mean: ArrayLike | None = None, input_scale: ArrayLike | None = None,
-                 output_mean: ArrayLike | None = None, output_scale: ArrayLike | None = None,
-                 residual: bool = False) -> None:
+                 output_mean: ArrayLike | None = None, output_scale: ArrayLike | None = None, residual: bool = False) -> None:
         if activation not in _ACTIVATIONS:
             raise ValueError(f"Mlp.activation: {activation!r} must be one of {', '.join(_ACTIVATIONS)}")
         self.layers = [(np.array(w, np.float32), np.array(b, np.float32)) for w, b in layers]
@@ -90,8 +89,7 @@ class Mlp:
 
 
 def train_mlp(inputs: ArrayLike, outputs: ArrayLike, *, hidden: Sequence[int] = (32, 32), activation: str = "tanh",
-              residual: bool = False, epochs: int = 200, batch: int = 256, learning_rate: float = 3e-3,
-              seed: int = 0) -> Mlp:
+              residual: bool = False, epochs: int = 200, batch: int = 256, learning_rate: float = 3e-3, seed: int = 0) -> Mlp:
     """An Mlp that maps inputs [K, n] to outputs [K, m] with the least mean squared error, of normalised outputs.
 
     Adam (Kingma and Ba, 2015) on batches, with a learning rate that falls to 0 along a cosine. With `residual` the

@@ -5,16 +5,16 @@ from __future__ import annotations
 
 import importlib
 import io
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Dict, Sequence
 
 import numpy as np
 
 _MOST_LINES = 60  # samples that are drawn
 
 
-def plan(plan: Any) -> Any:
+def plan(plan: Any, state_names: Sequence[str] = (), input_names: Sequence[str] = ()) -> Any:
     """A matplotlib figure of a plan: samples, guides and inputs within their bounds, predicted states, costs and weights
-    of the samples, and the cost by term. `figure.savefig("plan.png")` writes it to a file."""
+    of the samples, and the cost by term. `figure.savefig("plan.png")` writes it to a file. Names are such as "speed, m/s"."""
     Figure = importlib.import_module("matplotlib.figure").Figure
     inputs = plan.inputs.shape[1]
     figure = Figure(figsize=(11, 2.2 * (inputs + 2)), layout="constrained")
@@ -22,10 +22,11 @@ def plan(plan: Any) -> Any:
     axes = rows[0].subplots(inputs, 1, sharex=True, squeeze=False)[:, 0]
     for index, axis in enumerate(axes):
         _inputs(axis, plan, index)
+        axis.set_ylabel(input_names[index] if input_names else f"input {index}")
     axes[-1].set_xlabel("step")
     axes[0].legend(loc="upper right", fontsize="small")
     states, costs, weights, terms = rows[1].subplots(2, 2).flat
-    _states(states, plan)
+    _states(states, plan, state_names)
     _costs(costs, plan)
     _weights(weights, plan)
     _terms(terms, plan)
@@ -104,13 +105,12 @@ def _inputs(axis: Any, plan: Any, index: int) -> None:
     _lines(axis, [plan.inputs[:, index]], "plan", color="tab:green", linewidth=2.5)
     for bound in (each[index] for each in _bounds(plan) if np.isfinite(each[index])):
         axis.axhline(bound, color="black", linewidth=0.8)
-    axis.set_ylabel(f"input {index}")
     axis.set_title(f"at a bound in {100 * saturation(plan)[index]:.0f} % of the steps", loc="left", fontsize="small")
 
 
-def _states(axis: Any, plan: Any) -> None:
+def _states(axis: Any, plan: Any, names: Sequence[str]) -> None:
     for index in range(min(plan.states.shape[1], 10)):
-        axis.plot(plan.states[:, index], label=f"state {index}")
+        axis.plot(plan.states[:, index], label=names[index] if names else f"state {index}")
     axis.set_title("predicted states", loc="left", fontsize="small")
     axis.set_xlabel("step")
     axis.legend(fontsize="small")

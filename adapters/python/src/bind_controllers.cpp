@@ -125,8 +125,8 @@ void bind_controller(py::module_& module) {
           "seed"_a = py::none(),
           "Discards all state and starts the random numbers from `seed`, by default that of the options.")
       .def("set_previous_input", &Controller::set_previous_input, "input"_a,
-           "Sets the input applied before the next solve, for problems with limits on their input rates. "
-           "By default it is the input that the last plan had for that time.")
+           "Sets the input applied before the next solve, for problems with limits on their input rates. By "
+           "default it is the input that the last plan had for that time.")
       .def("prepare", &Controller::prepare,
            "Draws the noise of the next solve in advance, outside its deadline.")
       .def("_gpu_fault", &Controller::gpu_fault)
@@ -148,12 +148,11 @@ void bind_controller(py::module_& module) {
 void bind_controllers(py::module_& module) {
   bind_plan(module);
   bind_controller(module);
-  module.def(
-      "solve_batch", &solve_batch, "controllers"_a, "states"_a, "elapsed"_a = 0.0,
-      "deadline"_a = std::numeric_limits<double>::infinity(), "threads"_a = 1,
-      "The plans of many controllers, each from its own state and its own last plan, in parallel on "
-      "`threads` threads; with callables on one. Copies of one controller draw the same noise unless each is "
-      "reset with a seed of its own.");
+  module.def("solve_batch", &solve_batch, "controllers"_a, "states"_a, "elapsed"_a = 0.0,
+             "deadline"_a = std::numeric_limits<double>::infinity(), "threads"_a = 1,
+             "The plans of many controllers, each from its own state and its own last plan, in parallel on "
+             "`threads` threads; with callables on one. Copies of one controller draw the same noise unless "
+             "each is reset with a seed of its own.");
   module.def(
       "methods",
       [] {

@@ -127,8 +127,7 @@ void bind_plan(py::module_& module) {
   read("cost_terms", "the parts of the plan's cost by name; they sum to it", &cost_terms);
   read("corrections",
        "values that the checks changed: inputs that were not within the bounds, predicted states and costs "
-       "that "
-       "were not finite, and costs of samples that were nan; 0 in normal operation",
+       "that were not finite, and costs of samples that were nan; 0 in normal operation",
        [](const Plan& p) { return p.controller().corrections(); });
   read("controller", "the controller that made the plan", [](const Plan& p) { return p.owner; });
   plan.def("to_numpy", &to_numpy,

@@ -71,6 +71,12 @@ void bind_any_problem(py::module_& module) {
           },
           "state"_a, "input"_a, "k"_a = 0,
           "The state after one step, in double. `k` is the index of the step, for dynamics that take it.")
+      .def("_expand",
+           [](const AnyProblem& self, const Numbers& state, const Numbers& input, int k) {
+             return self.expand(
+                 vector_of(state, self.states(), "state"),
+                 input.size() ? vector_of(input, self.inputs(), "inputs") : std::vector<double>(), k);
+           })
       .def_property_readonly(
           "time_step", [](const AnyProblem& self) { return self.evaluator().time_step(); },
           "s, duration of a step; 0: unknown")
@@ -97,8 +103,7 @@ void bind_any_problem(py::module_& module) {
           },
           "state"_a, "inputs"_a,
           "The states float64 [steps + 1, states] under the inputs [steps, inputs] from `state`, and the "
-          "cost "
-          "of the sequence, in double. Limits of rates and levels are not applied.")
+          "cost of the sequence, in double. Limits of rates and levels are not applied.")
       .def(
           "collides",
           [](AnyProblem& self, const Numbers& state) {
@@ -158,8 +163,8 @@ void bind_callable_problem(py::module_& module) {
   const auto callable = [&](const char* name, py::object CallableParts::*part, const char* help) {
     read(name, help, [part](const CallableProblem& p) { return p.parts().*part; });
   };
-  callable("dynamics", &CallableParts::dynamics, "the callable");
-  callable("cost", &CallableParts::cost, "the callable");
+  callable("dynamics", &CallableParts::dynamics, "the callable, or None");
+  callable("cost", &CallableParts::cost, "the callable, or None");
   callable("terminal_cost", &CallableParts::terminal_cost, "the callable, or None");
   callable("sampler", &CallableParts::sampler, "the callable, or None");
   callable("rollout", &CallableParts::rollout, "the callable, or None");
@@ -176,35 +181,30 @@ void bind_callable_problem(py::module_& module) {
 void bind_built_in_problems(py::module_& module) {
   bind_problem<problems::Arm>(
       module, "Arm",
-      "An arm with seven joints that reaches past a ball. State: the joints' angles (rad); inputs: "
-      "their rates (rad/s). The problem has bounds on rates and accelerations.")
+      "An arm with seven joints that reaches past a ball. State: the joints' angles (rad); inputs: their "
+      "rates (rad/s). The problem has bounds on rates and accelerations.")
       .def_property_readonly(
           "start",
           [](const py::object&) {
             return py::array_t<double>(problems::Arm::joints, problems::Arm::start.data());
           },
           "angles from which the ball is in the way, rad");
-  bind_problem<problems::Pendulum>(
-      module, "Pendulum",
-      "A pendulum whose motor is too weak to lift it directly. State: angle from upright "
-      "(rad), rate (rad/s); input: torque (N m).");
-  bind_problem<problems::CartPole>(
-      module, "CartPole",
-      "A pole on a cart. State: position (m), speed (m/s), angle from upright (rad), "
-      "rate (rad/s); input: force (N).");
-  bind_problem<problems::DifferentialDrive>(
-      module, "DifferentialDrive",
-      "A robot with two driven wheels among discs. State: x, y (m), yaw "
-      "(rad); inputs: speed (m/s), yaw rate (rad/s).");
+  bind_problem<problems::Pendulum>(module, "Pendulum",
+                                   "A pendulum whose motor is too weak to lift it directly. State: angle "
+                                   "from upright (rad), rate (rad/s); input: torque (N m).");
+  bind_problem<problems::CartPole>(module, "CartPole",
+                                   "A pole on a cart. State: position (m), speed (m/s), angle from upright "
+                                   "(rad), rate (rad/s); input: force (N).");
+  bind_problem<problems::DifferentialDrive>(module, "DifferentialDrive",
+                                            "A robot with two driven wheels among discs. State: x, y (m), "
+                                            "yaw (rad); inputs: speed (m/s), yaw rate (rad/s).");
   bind_problem<problems::Quadrotor>(
       module, "Quadrotor",
-      "A quadrotor in the vertical plane and a wall with two gaps. State: x, z (m), "
-      "tilt (rad) and their rates; inputs: thrust beyond the weight (m/s^2), "
-      "turning acceleration (rad/s^2).");
-  bind_problem<problems::Car>(
-      module, "Car",
-      "A car that steers and accelerates among parked cars. State: x, y (m), yaw (rad), "
-      "speed (m/s); inputs: steering angle (rad), acceleration (m/s^2).");
+      "A quadrotor in the vertical plane and a wall with two gaps. State: x, z (m), tilt (rad) and their "
+      "rates; inputs: thrust beyond the weight (m/s^2), turning acceleration (rad/s^2).");
+  bind_problem<problems::Car>(module, "Car",
+                              "A car that steers and accelerates among parked cars. State: x, y (m), yaw "
+                              "(rad), speed (m/s); inputs: steering angle (rad), acceleration (m/s^2).");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace slalom::python {
 namespace {
 
 /// Batches of at most this number of samples take longer to call a function than to compute.
-constexpr int small_batch = 256;
+constexpr int small_batch = 512;
 
 /// An array [rows, columns] of zeros whose columns are contiguous, as callables work on columns.
 py::array_t<float> columns(py::ssize_t rows, py::ssize_t count) {

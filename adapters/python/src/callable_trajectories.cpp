@@ -38,10 +38,9 @@ Trajectories CallableProblem::roll_out(std::span<const double> state, std::span<
     visit_terms(what, cost, rows, collided.data(), [&](const std::string& name, const py::array& result) {
       const auto term = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
       if (term == terms)
-        throw py::value_error(
-            std::string("Problem.") + what + ": the term '" + name +
-            "' is not among those of a prediction from the start; a cost must always return the same terms, "
-            "if need be with zeros");
+        throw py::value_error(std::string("Problem.") + what + ": the term '" + name +
+                              "' is not among those of a prediction from the start; a cost must always "
+                              "return the same terms, if need be with zeros");
       std::fill(values.begin(), values.end(), 0.0);
       add_column(result, 0, rows, values.data());
       for (std::size_t s = 0; s < count; ++s) all.costs[(s * points + k) * terms + term] += values[s];

@@ -5,6 +5,9 @@
 
 #include "problem.hpp"
 #include "slalom/core/problem_check.hpp"
+#ifdef SLALOM_DERIVATIVES
+#include "slalom/core/derivatives/linearize.hpp"
+#endif
 #ifdef SLALOM_GPU
 #include "slalom/gpu/gpu.hpp"
 #endif
@@ -46,6 +49,26 @@ class CompiledFrom final : public BuiltIn<P, CompiledProblem> {
   using BuiltIn<P, CompiledProblem>::BuiltIn;
   std::unique_ptr<AnyProblem> clone() const override { return std::make_unique<CompiledFrom>(*this); }
   std::vector<Parameter> parameters() override { return list(this->problem()); }
+#ifdef SLALOM_DERIVATIVES
+  std::vector<std::vector<double>> expand(std::span<const double> state, std::span<const double> input,
+                                          int k) const override {
+    const auto flat = [](const auto& values) {
+      const auto* const first = reinterpret_cast<const double*>(&values);
+      return std::vector<double>(first, first + sizeof values / sizeof(double));
+    };
+    const P& problem = this->problem();
+    const auto x = slalom::detail::state_of<P, double>(state.data());
+    if (input.empty()) {
+      const auto end = expand_terminal_cost(problem, x);
+      return {flat(x), {}, {}, {end.value}, flat(end.gradient), flat(end.hessian), {double{end.kink}}};
+    }
+    const auto u = slalom::detail::inputs_of<P, double>(input.data());
+    const auto l = linearize(problem, x, u, k);
+    const auto cost = expand_stage_cost(problem, x, u, k);
+    return {flat(l.next),        flat(l.state_jacobian), flat(l.input_jacobian),       {cost.value},
+            flat(cost.gradient), flat(cost.hessian),     {double{l.kink || cost.kink}}};
+  }
+#endif
 #ifdef SLALOM_GPU
   std::unique_ptr<Solver> gpu_solver(const SolverOptions& options) const override {
     if (const auto* guided = options.get_if<SvgMppiOptions>())

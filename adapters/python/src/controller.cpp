@@ -86,6 +86,14 @@ class Interruptible final : public BatchEvaluator {
   mutable std::atomic<std::int64_t> nan_costs_ = 0;
 };
 
+/// Makes a solver. With callables a batch takes as long as its calls, so svg_mppi then has few.
+std::unique_ptr<Solver> make_for(const AnyProblem& problem, SolverOptions options) {
+  int* const batches = options.find<int>("batches");
+  if (batches && *batches == 0 && *options.find<int>("samples") >= 64 && problem.evaluator().whole_batches())
+    *batches = 3;
+  return make_solver(options, problem.inputs());
+}
+
 }  // namespace
 
 Controller::Controller(const AnyProblem& problem, const SolverOptions& options, bool on_gpu)
@@ -94,7 +102,7 @@ Controller::Controller(const AnyProblem& problem, const SolverOptions& options, 
       on_gpu_(on_gpu),
       core_(*problem_, options,
             [&](const SolverOptions& narrowed) {
-              return on_gpu ? problem_->gpu_solver(narrowed) : make_solver(narrowed, problem.inputs());
+              return on_gpu ? problem_->gpu_solver(narrowed) : make_for(problem, narrowed);
             }),
       state_(static_cast<std::size_t>(problem.states())) {}
 
@@ -133,8 +141,7 @@ void Controller::finish(std::int64_t nan_costs) {
   if (nan_costs > 0 && !std::exchange(told_of_nan_, true))
     warn("cost: nan for " + std::to_string(nan_costs) +
          " samples of this solve, which get no weight: dynamics and cost must return numbers; inf marks a "
-         "sample "
-         "that must not be chosen");
+         "sample that must not be chosen");
   if (solves_ == 1) check_repeats();
   // A robot that has arrived makes no progress, either, and many a task takes all that the inputs can do.
   if (result().suspicious_solves == SolveResult::symptom_patience &&
@@ -152,8 +159,7 @@ void Controller::check_repeats() {
   if (!same(first.cost, again.cost) || !std::ranges::equal(first.states, again.states, same))
     warn(
         "dynamics, cost: return other values for the same arguments, so samples are compared by chance: "
-        "leave "
-        "random numbers out, and use slalom.RiskEvaluator for disturbances");
+        "leave random numbers out, and use slalom.RiskEvaluator for disturbances");
 }
 
 void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::vector<double>> states,

@@ -9,10 +9,9 @@ namespace {
 void check_numpy() {
   const auto version = pybind11::module_::import("numpy").attr("__version__").cast<std::string>();
   if (PYBIND11_VERSION_HEX < 0x020C0000 && std::stoi(version) >= 2)
-    throw pybind11::import_error("slalom was built with a pybind11 before 2.12, which does not know numpy " +
-                                 version +
-                                 ": install it with `pip install .`, which takes a newer pybind11 from "
-                                 "the index, or use numpy 1");
+    throw pybind11::import_error(
+        "slalom was built with a pybind11 before 2.12, which does not know numpy " + version +
+        ": install it with `pip install .`, which takes a newer pybind11 from the index, or use numpy 1");
 }
 
 }  // namespace

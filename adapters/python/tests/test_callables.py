@@ -6,7 +6,7 @@ import slalom
 from test_controllers import linear
 
 
-@pytest.mark.parametrize("method, rollouts", [("mppi", 1), ("svg_mppi", 9), ("reverse_mppi", 20), ("sv_mpc", 6),
+@pytest.mark.parametrize("method, rollouts", [("mppi", 1), ("svg_mppi", 4), ("reverse_mppi", 20), ("sv_mpc", 6),
                                               ("cem", 5), ("icem", 5), ("dial_mpc", 2)])
 def test_a_solve_calls_callables_as_often_as_the_page_says(method, rollouts):
     calls, costs = [], []
@@ -28,7 +28,8 @@ def test_a_solve_calls_callables_as_often_as_the_page_says(method, rollouts):
         costs.clear()
         controller.solve([1, 0], elapsed=0.1)
         assert len(calls) == 7 * rollouts and sum(costs) == sum(calls)
-        assert len(costs) == (rollouts if method == "svg_mppi" else 7 * rollouts)  # its batches are small
+        assert len(costs) == sum(1 if size <= 512 else 7 for size in calls[::7])
+        assert method != "svg_mppi" or len(costs) == rollouts
 
 
 def test_callables_may_take_the_index_of_the_step():

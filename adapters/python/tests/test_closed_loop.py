@@ -66,8 +66,7 @@ def test_a_rollout_may_tell_costs_alone():
         plan.controller.problem.step([1, 0], [0])
 
 
-@pytest.mark.parametrize("changes, error, text", [
-    ({"rollout": 3}, ValueError, "rollout: must be callable or None"),
+@pytest.mark.parametrize("changes, error, text", [({"rollout": 3}, ValueError, "rollout: must be callable or None"),
     ({"cost": cost}, ValueError, "rollout: takes the place of dynamics, cost and terminal_cost"),
     ({"input_levels": 3}, ValueError, "input_levels: needs input_min and input_max"),
     ({"input_levels": 1.5, "input_min": 0, "input_max": 1}, ValueError, "input_levels: 1.5.* must be 0 or a whole number"),

@@ -108,8 +108,7 @@ def test_mistakes_of_compiled_problems_have_the_compilers_words(monkeypatch):
 def network(activation="tanh", residual=True):
     random = np.random.default_rng(0)
     layers = [(random.normal(size=(16, 3)), random.normal(size=16)), (random.normal(size=(2, 16)) / 16, np.zeros(2))]
-    return Mlp(layers, activation, input_mean=[0.1, 0.2, 0], input_scale=[1, 2, 1], output_scale=[0.5, 1],
-               residual=residual)
+    return Mlp(layers, activation, input_mean=[0.1, 0.2, 0], input_scale=[1, 2, 1], output_scale=[0.5, 1], residual=residual)
 
 
 PARTS = {"goal": [1, 0], "state_weights": [1, 0.1], "terminal_weights": 2, "input_weights": 0.01, "dt": 0.1,
@@ -223,8 +222,7 @@ def test_a_network_as_a_problem_looks_up_maps_as_callables_do():
     (lambda: slalom.MlpProblem(Mlp([(np.zeros((2, 2)), np.zeros(2))])), ValueError, "maps 2 values to 2, must map"),
     (lambda: slalom.MlpProblem(network(), goal=[1, 2, 3]), ValueError, "goal: has 3 values, must have 1 or 2"),
     (lambda: slalom.MlpProblem(network(), gaol=1), TypeError, "unexpected keyword argument 'gaol'"),
-    (lambda: slalom.Mppi(slalom.MlpProblem(network(), dt=-1)), ValueError, "-1.* must be finite and at least 0"),
-])
+    (lambda: slalom.Mppi(slalom.MlpProblem(network(), dt=-1)), ValueError, "-1.* must be finite and at least 0"),])
 def test_mistakes_of_networks_as_problems(make, error, text):
     with pytest.raises(error, match=text):
         make()

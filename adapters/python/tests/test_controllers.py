@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import slalom
 
-CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom.Cem, slalom.Icem,
-           slalom.DialMpc]
+CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom.Cem, slalom.Icem, slalom.DialMpc]
 
 
 def dynamics(x, u):
@@ -63,8 +62,7 @@ def test_every_option_is_a_keyword_with_its_default():
           (slalom.SvMpc, np.zeros((10, 1)), "proposals: the method sv_mpc does not accept proposals"))),
     *((lambda theirs=theirs: slalom.Mppi(linear(), **{theirs: 1}), TypeError, f"'{theirs}'; did you mean '{ours}'")
       for theirs, ours in {"num_samples": "samples", "K": "samples", "T": "horizon", "lambda_": "temperature",
-                           "noise_sigma": "variance", "u_min": "input_min", "u_max": "input_max"}.items()),
-])
+                           "noise_sigma": "variance", "u_min": "input_min", "u_max": "input_max"}.items()),])
 def test_mistakes_name_the_option_the_value_and_the_rule(make, error, text):
     with pytest.raises(error, match=text):
         make()
@@ -97,8 +95,7 @@ def test_the_callable_problem_agrees_with_the_one_of_ours():
         return np.stack([x[:, 0] + np.float32(0.02) * rate, rate]).T
 
     def cost(x, u):
-        return np.float32(0.02) * (
-            10 * (1 - np.cos(x[:, 0])) + np.float32(0.1) * x[:, 1] ** 2 + np.float32(0.01) * u[:, 0] ** 2)
+        return np.float32(0.02) * (10 * (1 - np.cos(x[:, 0])) + np.float32(0.1) * x[:, 1] ** 2 + np.float32(0.01) * u[:, 0] ** 2)
 
     def terminal_cost(x):
         return (x[:, 1] ** 2 / 2 + np.float32(9.81) * (np.cos(x[:, 0]) - 1)) ** 2
@@ -131,12 +128,10 @@ def test_collisions_of_callables_are_reported():
     assert plan.status == "all_collided" and plan.collided
 
 
-@pytest.mark.parametrize("changes, error, text", [
-    ({"cost": lambda x, u: 1 / 0}, ZeroDivisionError, "division"),
+@pytest.mark.parametrize("changes, error, text", [({"cost": lambda x, u: 1 / 0}, ZeroDivisionError, "division"),
     ({"cost": lambda x, u: np.zeros(3)}, ValueError, r"cost: returned shape \(3,\), must be \(1920,\)"),
     ({"cost": lambda x, u: 0.0}, TypeError, "cost: returned <class 'float'>, must be an array"),
-    ({"dynamics": lambda x, u: x[:, :1]}, ValueError, r"dynamics: returned shape \(64, 1\), must be \(64, 2\)"),
-])
+    ({"dynamics": lambda x, u: x[:, :1]}, ValueError, r"dynamics: returned shape \(64, 1\), must be \(64, 2\)"),])
 @pytest.mark.parametrize("threads", [1, 3])
 def test_what_a_callable_throws_is_thrown_by_solve(changes, error, text, threads):
     controller = slalom.Mppi(linear(**changes), samples=64, threads=threads)
@@ -209,8 +204,7 @@ def test_the_cost_of_a_plan_is_told_by_name():
 
 @pytest.mark.parametrize("method", CLASSES)
 def test_bounds_of_a_problem_hold_besides_those_of_the_options(method):
-    controller = method(pushed(input_min=-0.5, input_max=[0.25, 2]), horizon=6, samples=128, variance=4,
-                        input_max=[3, 1])
+    controller = method(pushed(input_min=-0.5, input_max=[0.25, 2]), horizon=6, samples=128, variance=4, input_max=[3, 1])
     assert controller.options["input_min"] == -0.5 and controller.options["input_max"] == [0.25, 1]
     seen = np.concatenate([controller.solve([x, 0]).inputs.copy() for x in (-50, 50, -50, 50)])
     assert seen.min() >= -0.5 and np.all(seen.max(axis=0) <= [0.25, 1])
@@ -285,6 +279,14 @@ def test_proposals_compete_with_the_samples():
         assert plan.inputs == pytest.approx(right)
     assert np.all(plan.samples[-2] == 3) and plan.weights[-2] == pytest.approx(1)
     assert np.all(np.abs(slalom.Mppi(problem, **options).solve([0, 0], proposals=[]).inputs) < 1)
+
+
+@pytest.mark.parametrize("method", [slalom.Mppi, slalom.SvgMppi, slalom.Icem])
+def test_a_plan_costs_at_most_as_much_as_a_proposal(method):
+    options, x = {"horizon": 150, "input_min": -10, "input_max": 10}, [0, 0, 0.2, 0]
+    holding = slalom.run(slalom.CartPole(), slalom.SvgMppi(slalom.CartPole(), **{**options, "horizon": 40}), x, 150).inputs
+    plain, plan = method(slalom.CartPole(), **options).solve(x), method(slalom.CartPole(), **options).solve(x, proposals=holding)
+    assert plan.cost <= slalom.CartPole().predict(x, holding)[1] + 1e-3 < 0.1 * plain.cost
 
 
 def test_signatures_name_options_and_arguments():

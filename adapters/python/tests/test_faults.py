@@ -11,8 +11,7 @@ from slalom.mlp import Mlp
 from test_controllers import cost, dynamics, linear
 
 
-@pytest.mark.parametrize("part, argument", [("dynamics", 0), ("dynamics", 1), ("cost", 0), ("cost", 1),
-                                            ("terminal_cost", 0)])
+@pytest.mark.parametrize("part, argument", [("dynamics", 0), ("dynamics", 1), ("cost", 0), ("cost", 1), ("terminal_cost", 0)])
 def test_callables_cannot_write_what_they_are_lent(part, argument):
     def writes(*arguments):
         arguments[argument][:] = 0
@@ -93,8 +92,14 @@ def keeps_network(agent):
     agent.network = slalom.MlpProblem(network)
 
 
+def keeps_navigator(agent):
+    costmap = slalom.Costmap(slalom.OccupancyGrid(np.zeros((30, 30)), 0.1))
+    agent.navigator = slalom.Navigator(slalom.Footprint.rectangle(0.2, 0.2, 0.3), costmap)
+    agent.navigator.set_cost(agent.cost)
+
+
 @pytest.mark.parametrize("keep", [
-    keeps_controller, keeps_network, lambda agent: setattr(agent, "mine", agent.problem()),
+    keeps_controller, keeps_network, *[keeps_navigator] * bool(slalom._driving), lambda agent: setattr(agent, "mine", agent.problem()),
     lambda agent: setattr(agent, "mine", slalom.RiskEvaluator(slalom.Pendulum(), agent.variant)),
     lambda agent: setattr(agent, "mine", slalom.Mppi(slalom.RiskEvaluator(agent.problem(), lambda _: agent.problem())))])
 def test_an_object_whose_methods_are_the_callables_is_freed(keep):

@@ -16,8 +16,7 @@ def test_a_field_interpolates_its_samples():
 
 
 def test_a_field_of_a_function_is_that_function():
-    field = slalom.Field.from_function(lambda x, y: 2 * x - y, width=30, height=20, resolution=0.1,
-                                       origin=(-1, -1, 0.2))
+    field = slalom.Field.from_function(lambda x, y: 2 * x - y, width=30, height=20, resolution=0.1, origin=(-1, -1, 0.2))
     x, y = np.array([0.1, 0.4]), np.array([0.2, -0.1])
     for dtype in np.float64, np.float32:
         value, dx, dy = field.value_and_gradient(x.astype(dtype), y.astype(dtype))
@@ -46,8 +45,7 @@ def test_a_ros_map_is_loaded(tmp_path):
         slalom.load_ros_map(str(tmp_path / "missing.yaml"))
 
 
-@pytest.mark.parametrize("make, text", [
-    (lambda: slalom.Field([1.0, 2.0], 0.1), "has 1 dimensions, must have 2"),
+@pytest.mark.parametrize("make, text", [(lambda: slalom.Field([1.0, 2.0], 0.1), "has 1 dimensions, must have 2"),
     (lambda: slalom.Field([[1.0, np.nan]], 0.1), "row 0, column 1: nan: must be a finite float32 value"),
     (lambda: slalom.Field([[1.0]], 0), "field.resolution: 0: must be finite and above 0"),
     (lambda: slalom.Field([[1.0]], 1, (1,)), "origin: has 1 values, must have 2 or 3"),
@@ -56,8 +54,7 @@ def test_a_ros_map_is_loaded(tmp_path):
     (lambda: slalom.Field([[1.0]], 1).value([1, 2], [1, 2, 3]), "x, y: must have the same shape"),
     (lambda: slalom.OccupancyGrid([[0, 101]], 1), r"101 must be in \[-1, 100\]"),
     (lambda: slalom.OccupancyGrid([0, 100], 1), "has 1 dimensions, must have 2"),
-    (lambda: slalom.signed_distance(slalom.OccupancyGrid([[0]], -1)), "map: resolution -1 must be finite and above 0"),
-])
+    (lambda: slalom.signed_distance(slalom.OccupancyGrid([[0]], -1)), "map: resolution -1 must be finite and above 0"),])
 def test_what_is_no_map_is_rejected(make, text):
     with pytest.raises(ValueError, match=text):
         make()

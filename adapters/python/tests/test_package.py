@@ -99,6 +99,7 @@ def objects():
         course = slalom.Course("wren")
         costmap, body = slalom.Costmap(slalom.OccupancyGrid(np.zeros((30, 30)), 0.1)), slalom.Footprint.rectangle(0.2, 0.2, 0.3)
         made += [course, slalom.World(course), slalom.Planner(course), costmap, body, slalom.Navigator(body, costmap)]
+        made.append(slalom.PredictedObstacle(np.zeros((1, 1, 5)), length=1, width=1))
     return made
 
 
@@ -139,7 +140,8 @@ def test_the_stubs_name_everything():
     names = set()
     for stub in FOLDER.glob("*.pyi"):
         names |= {node.name for node in ast.parse(stub.read_text()).body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
-    assert set(slalom.__all__) - {"CompileError", "MlpProblem", "Run", "SymptomWarning", "__version__", "run", "show"} <= names
+    assert set(slalom.__all__) - {
+        "CompileError", "Feedback", "Linearization", "MlpProblem", "Run", "SymptomWarning", "__version__", "linearize", "run", "show"} <= names
     assert "gradient_samples: int = ..." in (FOLDER / "_slalom.pyi").read_text()
 
 
@@ -155,6 +157,8 @@ inputs: list[float] = plan.inputs[0].tolist()
 terms: dict[str, float] = plan.cost_terms
 total: float = slalom.run(slalom.CartPole(), controller, np.zeros(4), steps=3).costs.sum()
 step = controller.problem.step([0, 0, 0, 0], [1.0])
+gains: list[float] = slalom.linearize(controller.problem, step, [1.0]).state_jacobian.tolist()
+near: list[float] = slalom.Feedback(controller).input_at(0.01, step).tolist()
 walls = slalom.signed_distance(slalom.OccupancyGrid(np.zeros((3, 3), bool), resolution=0.1))
 """
 
@@ -211,7 +215,11 @@ def test_a_plan_is_drawn(tmp_path):
         controller = make(slalom.DifferentialDrive(), horizon=20, input_min=[-0.5, -2], input_max=[0.5, np.inf])
         controller.solve([0, 0, 0])
         plan = controller.solve([0, 0, 0], elapsed=0.1)
-        figure = slalom.plot.plan(plan)
+        figure = slalom.plot.plan(plan, ["x, m", "y, m", "yaw, rad"], ["speed, m/s", "turn, rad/s"])
+        names = [axis.get_ylabel() for axis in figure.subfigs[0].axes]
+        legend = [text.get_text() for text in figure.subfigs[1].axes[0].get_legend().get_texts()]
+        assert names == ["speed, m/s", "turn, rad/s"] and legend == ["x, m", "y, m", "yaw, rad"]
+        assert "state 2" in str([*map(str, slalom.plot.plan(plan).subfigs[1].axes[0].get_legend().get_texts())])
         figure.savefig(tmp_path / "plan.png")
         titles = [axis.get_title(loc="left") for part in figure.subfigs for axis in part.axes]
         assert len(titles) == 6 and titles[0].startswith("at a bound in ") and "effective sample size" in titles[4]

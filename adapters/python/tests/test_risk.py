@@ -46,8 +46,7 @@ def test_the_cost_of_a_sample_is_the_measure_of_its_costs_in_all_variants(measur
     each = np.stack([slalom.Mppi(risk.variant(m), **common).solve([1.0]).costs for m in range(5)])
     assert each.std(axis=0).min() > 0
     np.testing.assert_allclose(plan.costs, expected(each), rtol=1e-5)
-    assert plan.cost == pytest.approx(expected(np.array(
-        [cost_of(risk.variant(m), plan.inputs) for m in range(5)])), rel=1e-4)
+    assert plan.cost == pytest.approx(expected(np.array([cost_of(risk.variant(m), plan.inputs) for m in range(5)])), rel=1e-4)
     assert list(plan.cost_terms) == ["total"]
 
 
@@ -62,8 +61,7 @@ def cost_of(problem, inputs):
 def test_built_in_problems_have_variants_too():
     risk = slalom.RiskEvaluator(slalom.CartPole(), cart, variants=3, measure="worst")
     assert risk.variant(1).track != slalom.CartPole().track and risk.problem.track == slalom.CartPole().track
-    plans = [slalom.SvgMppi(risk, horizon=10, samples=200, threads=n, seed=2).solve([2, 0, 0.1, 0]).inputs.copy()
-             for n in (1, 3)]
+    plans = [slalom.SvgMppi(risk, horizon=10, samples=200, threads=n, seed=2).solve([2, 0, 0.1, 0]).inputs.copy() for n in (1, 3)]
     assert np.array_equal(*plans)
 
 
@@ -81,13 +79,11 @@ def test_it_prints_and_is_pickled():
         assert repr(same) == repr(risk) and same.variant(2).track == risk.variant(2).track
 
 
-@pytest.mark.parametrize("arguments, error, text", [
-    (dict(randomize=3), ValueError, "randomize: must be callable"),
+@pytest.mark.parametrize("arguments, error, text", [(dict(randomize=3), ValueError, "randomize: must be callable"),
     (dict(randomize=lambda random: 1), TypeError, "randomize: returned <class 'int'>, must be a problem"),
     (dict(randomize=cart), ValueError, "4 states and 1 inputs, must have 1 and 1"),
     (dict(variants=0), ValueError, "risk_variants: 0 must be in"),
-    (dict(measure="luck"), ValueError, "RiskEvaluator.risk_measure: 'luck'"),
-])
+    (dict(measure="luck"), ValueError, "RiskEvaluator.risk_measure: 'luck'"),])
 def test_mistakes_are_named(arguments, error, text):
     with pytest.raises(error, match=text):
         slalom.RiskEvaluator(pushed(), **{"randomize": windy, **arguments})

@@ -135,8 +135,7 @@ def test_a_plan_on_the_page_keeps_the_rates_of_the_problem():
 
 
 def test_a_cost_whose_terms_change_is_an_error():
-    view = slalom._slalom._View(garden(lambda x, u: {"far" if x[:, 0].max() > 0.01 else "near": x[:, 0]}), [0, 0, 0],
-                                port=0)
+    view = slalom._slalom._View(garden(lambda x, u: {"far" if x[:, 0].max() > 0.01 else "near": x[:, 0]}), [0, 0, 0], port=0)
     _client = Client(view.address)
     with pytest.raises(ValueError, match="the term 'far' is not among those"):
         for _ in range(100):
