@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -108,6 +109,14 @@ TEST(CourseCheck, FindsNoWallInTheOpenForACarOfAnyWidth) {
         check_course(course, {.half_width = millimetres * 1e-3, .margin = 0.055, .limits = {}});
     EXPECT_TRUE(check.walls.stretches.empty()) << millimetres;
   }
+  EXPECT_TRUE(check_course(course, {.half_width = 1e6, .margin = 0, .limits = {}}).walls.stretches.empty());
+}
+
+TEST(ReachableMap, APointThatIsNoNumberReachesNothing) {
+  Course course = circle(4, 4);
+  course.waypoints.assign(3, {std::nan(""), std::nan(""), 0, 1, 0});
+  const auto cells = reachable_map(course).cells;
+  EXPECT_EQ(std::count(cells.begin(), cells.end(), maps::Occupancy::free), 0);
 }
 
 TEST(CourseCheck, FindsAProfileThatAsksForTooMuchGrip) {
