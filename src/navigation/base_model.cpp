@@ -109,6 +109,7 @@ class BaseModelOf final : public BaseModel {
       : controller_(NavigationEvaluator<Base>(NavigationProblem<Base>(options.base, options.costs, footprint,
                                                                       resolution, options.time_step)),
                     solver),
+        deadline_(options.deadline),
         plan_(controller_.solver().horizon() + 1) {
     if (!controller_.solver().takes_proposals()) return;
     // Braking, reversing, and turns either way.
@@ -128,6 +129,7 @@ class BaseModelOf final : public BaseModel {
     controller_.evaluator().set_maps(maps);
     origin_ = maps.origin;
     SolveRequest request{.elapsed = elapsed};
+    if (deadline_ > 0) request.deadline = deadline_;
     if (proposals_) request.proposals = *proposals_;
     const auto plan = controller_.solve(
         {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, Base::input(velocity)},
@@ -162,6 +164,7 @@ class BaseModelOf final : public BaseModel {
   Controller<NavigationEvaluator<Base>> controller_;
   std::optional<Proposals<NavigationEvaluator<Base>>> proposals_;  ///< plans that every solve weighs
   maps::Point origin_;  ///< m, map frame, where the states of the last plan begin
+  double deadline_;     ///< s; 0: none
   Velocity command_;
   std::vector<maps::Pose> plan_;
 };

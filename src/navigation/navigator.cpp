@@ -230,7 +230,12 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
   model_->solve(maps_, pose, velocity, since_solve_);
   since_solve_ = 0;
   NavigationResult result;
-  if (plan_collides(costmap, velocity)) {
+  bool collides = plan_collides(costmap, velocity);
+  for (int again = 0; collides && again < options_.retries; ++again) {
+    model_->solve(maps_, pose, velocity, 0);
+    collides = plan_collides(costmap, velocity);
+  }
+  if (collides) {
     result = stand(NavigationStatus::braking, velocity, elapsed);
   } else {
     result.command = model_->command();

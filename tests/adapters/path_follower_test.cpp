@@ -140,6 +140,21 @@ TEST(PathFollower, TakesInflatedCostsForFreeAndUnknownCellsAsItIsTold) {
   EXPECT_EQ(drive.drive(1, {7, 2, 0}).problem, Problem::no_control);
 }
 
+TEST(PathFollower, ADetourAvoidsAZoneOfHighCosts) {
+  const auto least_y = [](const char* price) {
+    StraightDrive drive;
+    drive.follower.change({{"cell_price", price}});
+    drive.room.fill(3.5, 1.4, 4.2, 2.7);
+    drive.room.fill(3, 0, 5, 1.35, 200);  // the shorter way round
+    drive.step();
+    double least = 2;
+    for (const maps::Pose& pose : drive.follower.path()) least = std::min(least, pose.y);
+    return least;
+  };
+  EXPECT_LT(least_y("0"), 1.3) << "the test would not show anything";
+  EXPECT_GT(least_y("2"), 1.9);
+}
+
 TEST(PathFollower, KeepsToSpeedLimitsInPercentAndInMetresPerSecond) {
   StraightDrive drive;
   const auto fastest_in = [&](double duration) {

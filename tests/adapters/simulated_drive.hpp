@@ -15,6 +15,7 @@
 #include "logic/localiser_core.hpp"
 #include "logic/planner_core.hpp"
 #include "logic/simulated_car.hpp"
+#include "slalom/sim/pure_pursuit.hpp"
 #include "support/allocations.hpp"
 
 namespace slalom::nodes::testing {
@@ -85,10 +86,18 @@ struct Fault {
   bool lasts = true;                                   ///< whether the car stays stopped until `end`
 };
 
-/// A simulated car on `wren` among three parked ones, its planner and localiser, with simulated clocks.
+/// How a drive differs from the usual one.
+struct DriveSetup {
+  std::string course = "wren", others = "none";
+  std::uint64_t seed = 1;
+  int parked = 3;
+  double other_speed = 0;  ///< share of the course's speeds of a car that starts 5 m ahead; 0: there is none
+};
+
+/// A simulated car among three parked ones, its planner and localiser, with simulated clocks.
 class Drive {
  public:
-  Drive() {
+  explicit Drive(DriveSetup setup = {}) : setup_(std::move(setup)) {
     commands_.reserve(20000);  // so that a command allocates nothing
     planner_.change({{"svg_mppi.samples", "500"}});
     planner_.use_course();
@@ -107,7 +116,7 @@ class Drive {
   /// Starts a localiser that continues from the place that an earlier one has kept.
   void start_localiser() {
     LocaliserCore::Settings settings;
-    settings.course = wren;
+    settings.course = place(setup_);
     settings.earlier = kept_;
     const auto say = log("localiser");
     localiser_.emplace(
@@ -142,6 +151,22 @@ class Drive {
   }
 
   PlannerCore& planner() { return planner_; }
+  const SimulatedCar& car() const { return car_; }
+  /// The way (m) along the course by which the other car is ahead, at most half a lap.
+  double other_ahead() const {
+    const sim::World& world = car_.world();
+    const double length = world.track().lap_path()->length();
+    const auto arc = [&](std::size_t car) {
+      return world.track().lap_path()->project({world.state(car).x, world.state(car).y}).arc;
+    };
+    return std::remainder(arc(1) - arc(0), length);
+  }
+  /// All commands that were sent.
+  std::vector<Command> commands() const {
+    std::vector<Command> all;
+    for (const Sent& each : commands_) all.push_back(each.command);
+    return all;
+  }
   /// The number of allocations of the planner, from a scan to its command, since the last call.
   long allocations() { return std::exchange(allocations_, 0); }
   double time() const { return time_; }                     ///< s
@@ -192,7 +217,7 @@ class Drive {
   }
 
  private:
-  static constexpr const char* wren = SLALOM_COURSES "/wren";
+  static std::string place(const DriveSetup& setup) { return SLALOM_COURSES "/" + setup.course; }
   static constexpr double period = 0.025;  ///< s, of the car
 
   struct Sent {
@@ -225,10 +250,11 @@ class Drive {
     action();
     allocations_ += slalom::testing::allocations() - before;
   }
-  static PlannerCore::Settings planner_settings() {
+  static PlannerCore::Settings planner_settings(const DriveSetup& setup) {
     PlannerCore::Settings settings;
     settings.configuration = SLALOM_CONFIGS "/default.yaml";
-    settings.course = wren;
+    settings.course = place(setup);
+    settings.others = setup.others;
     return settings;
   }
   Transforms transforms() {
@@ -253,7 +279,12 @@ class Drive {
       count_allocations([this] { planner_.tick(); });
     }
     const bool commanded = !commands_.empty() && time_ - commands_.back().time < 0.2;
-    car_.step(commanded ? commands_.back().command : Command{});
+    Command other;
+    if (other_) {
+      const sim::CarState& at = car_.world().state(1);
+      other = other_->command({at.x, at.y, at.yaw});
+    }
+    car_.step(commanded ? commands_.back().command : Command{}, other);
     Messages messages = messages_of_car();
     if (fault_.change) fault_.change(*this, messages);
     for (const StampedPose& pose : messages.transforms) odometry_to_base_.add(pose);
@@ -267,6 +298,17 @@ class Drive {
       if (localiser_) localiser_->hear_scan(m.stamp, "laser", m.view, m.angle_max);
       count_allocations([&] { planner_.tick(); });
     }
+  }
+  std::optional<maps::Pose> place_other() {
+    if (setup_.other_speed == 0) return {};
+    std::vector<sim::PathPoint> path;
+    for (const vehicle::Waypoint& p : course_.waypoints)
+      path.push_back({{p.x, p.y}, setup_.other_speed * p.speed});
+    other_.emplace(path);
+    double way = 0;
+    std::size_t i = 1;
+    for (; way < 5; ++i) way += maps::distance(path[i].point, path[i - 1].point);
+    return maps::Pose{path[i].point.x, path[i].point.y, course_.waypoints[i].yaw};
   }
   Messages messages_of_car() const {
     const Stamp now = stamp_of(time_ + ahead_);
@@ -282,14 +324,16 @@ class Drive {
   Clocks clocks_{[this] { return time_ + ahead_; }, [this] { return time_; }};
   std::vector<Sent> commands_;
   std::vector<Line> said_;
-  vehicle::Course course_ = load_course(wren);
-  SimulatedCar car_{course_, 1, 3};
+  DriveSetup setup_;
+  vehicle::Course course_ = load_course(place(setup_));
+  std::optional<sim::PurePursuit> other_;
+  SimulatedCar car_{course_, setup_.seed, setup_.parked, place_other()};
   TransformHistory map_to_odometry_, odometry_to_base_;
   Fault fault_;
   std::optional<KnownPose> kept_;  ///< by the localiser
   long ticks_ = 0, allocations_ = 0;
   PlannerCore planner_{
-      planner_settings(), clocks_, transforms(),
+      planner_settings(setup_), clocks_, transforms(),
       PlannerCore::Outputs{[this](const Command& command) {
                              commands_.push_back({time_, command});
                            },

@@ -81,6 +81,24 @@ TEST(NavigatorOthers, TheRobotBrakesBeforeWhatIsTooNear) {
   EXPECT_LT(meeting.velocity.forward, before);
 }
 
+TEST(NavigatorOthers, TheRobotPlansAgainAsOftenAsItIsToldBeforeItBrakes) {
+  const auto solves = [](int retries) {
+    NavigatorOptions options;
+    options.retries = retries;
+    Meeting meeting({{30, 0}, {0, 0}}, options);
+    meeting.drive(2, true);
+    meeting.other = {{meeting.pose.x + 1.0, meeting.pose.y}, {-2, 0}};  // no plan avoids it
+    int count = 0;
+    meeting.navigator->set_cost(
+        [&](const RolloutStates& states, std::span<double>) { count += states.step == 0; });
+    EXPECT_EQ(meeting.step().status, NavigationStatus::braking);
+    return count;
+  };
+  const int once = solves(0);
+  EXPECT_GE(once, 1);
+  EXPECT_EQ(solves(3), 4 * once);
+}
+
 TEST(NavigatorOthers, TheRobotDoesNotTouchSomebodyWhoStopsBesideIt) {
   // They are expected to walk on, through the robot, and the robot may not turn into them to get away.
   for (const double x : {0.8, 1.1, 1.3}) {

@@ -65,6 +65,16 @@ TEST(Planner, FollowsAFreeLaneAtItsSpeed) {
   }
 }
 
+TEST(Planner, AGoalSpeedLimitsThatOfThePath) {
+  Planner planner = make_planner(), told = make_planner();
+  PlannerInput input{free_lane.view(), {{5, 0, 0}, 3}};
+  for (const double goal : {1.5, nan, 0.5, -1.0, 7.0}) {
+    input.goal_speed = goal;
+    const double speed = planner.update({free_lane.view(), {{5, 0, 0}, 3}}).command.speed;
+    EXPECT_DOUBLE_EQ(told.update(input).command.speed, goal > 0 ? std::min(goal, speed) : speed) << goal;
+  }
+}
+
 TEST(Planner, SteersRoundAnObstacleOnTheSideThatIsFree) {
   Planner planner = make_planner();
   const testing::LaneScan scan = corridor(3, 0.1);

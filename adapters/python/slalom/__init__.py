@@ -25,7 +25,7 @@ if importlib.util.find_spec("slalom._driving"):
 else:  # built without the layers for cars
     _driving = None  # type: ignore[assignment]
 
-_DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "World", "courses", "drive_lap", "plan_path")
+_DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "PredictedObstacle", "World", "courses", "drive_lap", "plan_path")
 
 
 class SymptomWarning(RuntimeWarning):

@@ -51,6 +51,15 @@ py::dict lap_dict(const evaluation::LapResult& lap, const std::vector<std::array
   return py::module_::import("slalom.plot").attr("Lap")(results, waypoints);
 }
 
+py::dict output_dict(const vehicle::PlannerOutput& output) {
+  const auto predicted = rows_of(output.predicted, [](const auto& state) {
+    return std::array{state.pose.x, state.pose.y, state.pose.yaw, state.speed};
+  });
+  return py::dict("status"_a = vehicle::name(output.status), "steer"_a = output.command.steer,
+                  "speed"_a = output.command.speed, "predicted"_a = predicted,
+                  "tick_time"_a = output.tick_time, "corrections"_a = output.corrections);
+}
+
 void bind_planner(py::module_& module) {
   py::class_<vehicle::Planner>(module, "Planner", "Computes steering and speed from LiDAR scan and odometry.",
                                guarded())
@@ -69,27 +78,41 @@ void bind_planner(py::module_& module) {
           [](vehicle::Planner& self,
              const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, double angle_min,
              double angle_increment, double range_min, double range_max, const std::array<double, 3>& pose,
-             double speed) {
+             double speed, const vehicle::PoseCovariance& covariance,
+             const std::vector<std::array<double, 2>>& obstacles,
+             const std::optional<std::array<double, 3>>& imu, const std::vector<Prediction>& others,
+             const std::optional<std::array<double, 2>>& obeyed, const std::optional<double>& goal_speed) {
             const maps::LaserScanView scan{{ranges.data(), static_cast<std::size_t>(ranges.size())},
                                            angle_min,
                                            angle_increment,
                                            range_min,
                                            range_max};
+            vehicle::PlannerInput input{
+                .scan = scan, .odometry = {.pose = to_pose(pose), .speed = speed, .covariance = covariance}};
+            std::vector<maps::Point> points;
+            for (const auto& [x, y] : obstacles) points.push_back({x, y});
+            const std::vector<maps::PredictedObstacle> views = views_of(others);
+            input.obstacles = points;
+            input.others = views;
+            if (imu) input.imu = ImuReading{(*imu)[0], (*imu)[1], (*imu)[2]};
+            if (obeyed) input.obeyed = Command{(*obeyed)[0], (*obeyed)[1]};
+            input.goal_speed = goal_speed;
             const vehicle::PlannerOutput* output = nullptr;
             {
               const py::gil_scoped_release unlock;
-              output = &self.update({scan, {to_pose(pose), speed}});
+              output = &self.update(input);
             }
-            const auto predicted = rows_of(output->predicted, [](const auto& state) {
-              return std::array{state.pose.x, state.pose.y, state.pose.yaw, state.speed};
-            });
-            return py::dict("status"_a = vehicle::name(output->status), "steer"_a = output->command.steer,
-                            "speed"_a = output->command.speed, "predicted"_a = predicted,
-                            "tick_time"_a = output->tick_time, "corrections"_a = output->corrections);
+            return output_dict(*output);
           },
           "ranges"_a, py::kw_only(), "angle_min"_a, "angle_increment"_a, "range_min"_a = 0.0, "range_max"_a,
-          "pose"_a, "speed"_a,
-          "`pose`: (x, y, yaw) of the rear axle. Returns status, steer (rad), speed (m/s), predicted [n, 4], "
+          "pose"_a, "speed"_a, "covariance"_a = vehicle::PoseCovariance{},
+          "obstacles"_a = std::vector<std::array<double, 2>>{}, "imu"_a = py::none(),
+          "others"_a = std::vector<Prediction>{}, "obeyed"_a = py::none(), "goal_speed"_a = py::none(),
+          "`pose`: (x, y, yaw) of the rear axle, with its `covariance` [3, 3]. `obstacles`: further points "
+          "[n, 2] (m), relative to the car. `imu`: yaw rate, and acceleration forward and to the left. "
+          "`others`: PredictedObstacle of other cars. `obeyed`: steer and speed, if the car obeys another "
+          "command. `goal_speed`: m/s, at most planner.max_speed. Returns status, steer (rad), speed (m/s), "
+          "predicted [n, 4], "
           "tick_time (s) and corrections, the number of values that the final check changed.")
       .def("reset", &vehicle::Planner::reset, "seed"_a = 0,
            "Discards all state and starts the random numbers from `seed`.");

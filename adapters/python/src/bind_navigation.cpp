@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -127,7 +128,30 @@ struct PythonNavigator : Navigator {
   std::shared_ptr<PythonCost> cost;
 };
 
+Prediction make_prediction(const Numbers& poses, double length, double width, double interval,
+                           const std::vector<double>& weights, int id) {
+  const auto count = static_cast<py::ssize_t>(weights.size());
+  if (poses.ndim() != 3 || poses.shape(2) != 5 || poses.shape(0) != count || poses.shape(1) < 1 ||
+      count < 1 || count > maps::PredictedObstacle::max_hypotheses)
+    throw py::value_error("PredictedObstacle.poses: must have shape (n, times, 5), with n weights, 1 to 4");
+  Prediction made;
+  maps::PredictedObstacle& each = made.obstacle;
+  each.id = id, each.length = length, each.width = width, each.interval = interval;
+  each.hypotheses = static_cast<int>(count);
+  std::copy(weights.begin(), weights.end(), each.weights.begin());
+  for (const double* at = poses.data(); at < poses.data() + poses.size(); at += 5)
+    made.poses.push_back({{at[0], at[1], at[2]}, at[3], at[4]});
+  return made;
+}
+
 void bind_navigator(py::module_& module) {
+  py::class_<Prediction>(
+      module, "PredictedObstacle", guarded(),
+      "A box that moves, in hypotheses with probabilities `weights`. `poses` [hypothesis, time, "
+      "5]: x, y, yaw, and standard deviations along and across it (m, rad), now and every "
+      "`interval` s.")
+      .def(py::init(&make_prediction), "poses"_a, py::kw_only(), "length"_a, "width"_a, "interval"_a = 0.1,
+           "weights"_a = std::vector<double>{1}, "id"_a = 0);
   const std::string words =
       "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
       "with the options of `solver`. Other options:\n\n" +
@@ -149,11 +173,13 @@ void bind_navigator(py::module_& module) {
       .def(
           "update",
           [](PythonNavigator& self, const std::array<double, 3>& pose, const std::array<double, 3>& velocity,
-             const Costmap& costmap, double elapsed) {
+             const Costmap& costmap, double elapsed, const std::vector<Prediction>& others) {
+            const std::vector<maps::PredictedObstacle> views = views_of(others);
             navigation::NavigationResult result;
             {
               const py::gil_scoped_release unlock;
-              result = self.update(to_pose(pose), {velocity[0], velocity[1], velocity[2]}, costmap, elapsed);
+              result = self.update(to_pose(pose), {velocity[0], velocity[1], velocity[2]}, costmap, elapsed,
+                                   views);
             }
             self.check_term();
             const navigation::Velocity& command = result.command;
@@ -162,9 +188,11 @@ void bind_navigator(py::module_& module) {
                             "remaining"_a = result.remaining, "delay"_a = result.delay,
                             "plan"_a = rows_of(result.plan), "path"_a = rows_of(result.path));
           },
-          "pose"_a, "velocity"_a, "costmap"_a, "elapsed"_a,
+          "pose"_a, "velocity"_a, "costmap"_a, "elapsed"_a, "others"_a = std::vector<Prediction>{},
           "The command for the next control period, `elapsed` (s) after the last update. `velocity` is that "
-          "of the robot: forward, left (m/s), turn (rad/s). Returns status, command (as velocity), remaining "
+          "of the robot: forward, left (m/s), turn (rad/s). `others`: PredictedObstacle of what moves, which "
+          "the "
+          "costmap should not show. Returns status, command (as velocity), remaining "
           "(m of path), delay (s), plan [n, 3] and path [n, 3].")
       .def("set_cost", &PythonNavigator::set_term, "function"_a,
            "Adds a term of your own to the cost of plans: function(x, y, yaw, forward, left, turn, step) "

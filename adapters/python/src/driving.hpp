@@ -5,6 +5,7 @@
 
 #include "keywords.hpp"
 #include "slalom/evaluation/environment.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::python {
@@ -35,6 +36,18 @@ py::array_t<double> rows_of(const Items& items, Numbers&& numbers) {
 /// An array [pose][x, y, yaw].
 inline py::array_t<double> rows_of(std::span<const maps::Pose> poses) {
   return rows_of(poses, [](const maps::Pose& pose) { return std::array{pose.x, pose.y, pose.yaw}; });
+}
+
+/// The prediction of a moving obstacle, with its poses.
+struct Prediction {
+  maps::PredictedObstacle obstacle;
+  std::vector<maps::PredictedPose> poses;
+};
+/// Views of predictions, which must outlive them.
+inline std::vector<maps::PredictedObstacle> views_of(const std::vector<Prediction>& predictions) {
+  std::vector<maps::PredictedObstacle> views;
+  for (const Prediction& each : predictions) views.emplace_back(each.obstacle).poses = each.poses;
+  return views;
 }
 
 void bind_navigation(py::module_& module);

@@ -40,6 +40,29 @@ def test_a_planner_drives_by_scan_and_odometry():
     assert world.observe()["progress"] > 2
 
 
+def test_a_planner_takes_every_input():
+    course = slalom.Course("wren")
+    world = slalom.World(course)
+    world.reset(1, [course.start])
+    seen = world.observe()
+    x, y, yaw = course.start
+    scan = {name: seen[name] for name in ("angle_min", "angle_increment", "range_max")}
+    ahead = [[(x + 2 * np.cos(yaw), y + 2 * np.sin(yaw), yaw, 0.05, 0.05)] * 10]
+    inputs = {"covariance": np.diag([0.01, 0.01, 0.01]), "obstacles": [(1.2, -0.1), (1.2, 0), (1.2, 0.1)],
+              "imu": (0.5, 1, 0.2), "others": [slalom.PredictedObstacle(ahead, length=0.5, width=0.3)],
+              "obeyed": (0.3, 2), "goal_speed": 0.5}
+
+    def command(**more):
+        planner = slalom.Planner(course, "svg_mppi", {"samples": 256}, config="default")
+        for _ in range(3):
+            made = planner.update(seen["ranges"], **scan, pose=(x, y, yaw), speed=1.5, **more)
+        return made["steer"], made["speed"]
+
+    assert command() == command(goal_speed=1000)
+    for name, value in inputs.items():
+        assert command() != command(**{name: value}), name
+
+
 def test_a_configuration_drives_a_lap():
     lap = slalom.drive_lap(slalom.Course("wren"), "svg_mppi", seed=1, config="default", options={"samples": 256})
     if importlib.util.find_spec("matplotlib"):

@@ -54,6 +54,29 @@ def test_a_cost_of_ones_own_slows_the_robot():
     assert steps == set(range(56))
 
 
+def test_people_of_ones_own_detector_are_met_where_they_will_be():
+    def nearest(told):
+        costmap, body = slalom.Costmap(slalom.OccupancyGrid(np.zeros((60, 100), bool), 0.1)), slalom.Footprint.rectangle(
+            0.3, 0.3, 0.4)
+        navigator = slalom.Navigator(body, costmap, solver={"samples": 500})
+        navigator.reset(1)
+        navigator.set_path([(1, 3, 0), (8, 3, 0)])
+        pose, velocity, least = np.array([1.0, 3.0, 0.0]), (0.0, 0.0, 0.0), 9.0
+        for step in range(200):
+            person = np.array([4, 0.4 + 0.42 * 0.05 * step])
+            way = [[(4, person[1] + 0.42 * 0.1 * k, np.pi / 2, 0.02, 0.02) for k in range(30)]]
+            others = [slalom.PredictedObstacle(way, length=0.5, width=0.5)] if told else []
+            velocity = navigator.update(pose, velocity, costmap, 0.05, others)["command"]
+            turned = pose[2] + 0.025 * velocity[2]
+            pose = pose + 0.05 * np.array([velocity[0] * np.cos(turned), velocity[0] * np.sin(turned), velocity[2]])
+            least = min(least, np.linalg.norm(pose[:2] - person))
+        return least
+
+    assert nearest(False) < 0.45 < 0.55 < nearest(True)
+    with pytest.raises(ValueError, match="must have shape"):
+        slalom.PredictedObstacle(np.zeros((1, 3, 2)), length=1, width=1)
+
+
 def test_errors_of_a_cost_reach_the_caller():
     for function, error, words in [(lambda *_: np.zeros(3), ValueError, "must return one number, or shape"),
                                    (lambda *_: 1 / 0, ZeroDivisionError, "division")]:

@@ -99,6 +99,7 @@ def objects():
         course = slalom.Course("wren")
         costmap, body = slalom.Costmap(slalom.OccupancyGrid(np.zeros((30, 30)), 0.1)), slalom.Footprint.rectangle(0.2, 0.2, 0.3)
         made += [course, slalom.World(course), slalom.Planner(course), costmap, body, slalom.Navigator(body, costmap)]
+        made.append(slalom.PredictedObstacle(np.zeros((1, 1, 5)), length=1, width=1))
     return made
 
 

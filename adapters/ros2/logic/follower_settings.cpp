@@ -27,7 +27,8 @@ constexpr Renamed renamed_options[] = {{"base", nullptr},         // motion_mode
                                        {"max_sideways_acceleration", "ay_max"},
                                        {"max_turn_acceleration", "az_max"},
                                        {"min_turning_radius", "AckermannConstraints.min_turning_r"},
-                                       {"time_step", "model_dt"}};
+                                       {"time_step", "model_dt"},
+                                       {"retries", "retry_attempt_limit"}};
 /// The same for options of the method.
 constexpr Renamed renamed_of_method[] = {{"horizon", "time_steps"},
                                          {"samples", "batch_size"},
@@ -54,6 +55,7 @@ bool follows(const OptionEntry& entry) {
 
 FollowerSettings::FollowerSettings(std::string method) : method_(std::move(method)) {
   nav::method_options(method_, {});  // throws on an unknown method
+  navigator_.retries = 1;
 }
 
 /// Calls `visit(owner, option)` for every option.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "logic/named_option.hpp"
+#include "logic/others_watch.hpp"
 #include "slalom/navigation/navigator.hpp"
 
 namespace slalom::nodes {
@@ -27,6 +28,8 @@ struct FollowerOptions {
   double wz_std = 0;
   bool open_loop = false;
   navigation::UnknownCells unknown_cells = navigation::UnknownCells::priced;
+  OthersFrom others = OthersFrom::none;
+  double cell_price = 2;
   bool visualize = false;
   double transform_tolerance = 0.1;
 };
@@ -44,6 +47,11 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.open_loop, {"open_loop", "", "plan from the last command instead of the measured velocity"});
   visit(o.unknown_cells, {"unknown_cells", "",
                           "unknown cells and what lies off the costmap: obstacles, or places with a price"});
+  visit(o.others, {"others", "", "where it learns of people: nowhere, from scans, or from a topic"});
+  visit(o.cell_price, {"cell_price", "",
+                       "price of a cell with cost 252, as of an unknown cell; falls with the square of the "
+                       "cost; 0: only obstacles count",
+                       0, 1000});
   visit(o.visualize, {"visualize", "", "publish local_plan and transformed_global_plan"});
   visit(o.transform_tolerance,
         {"transform_tolerance", "s", "time to wait for a transform at the time of a pose", 0, 60});

@@ -1,7 +1,7 @@
 # The library slalom_logic: the part of the ROS 2 packages that needs no ROS. Needs the package slalom, or its
 # targets.
 add_library(slalom_logic STATIC)
-foreach(name follower_settings installed localiser_core path_follower planner_core simulated_car)
+foreach(name follower_settings installed localiser_core path_follower planner_core planner_inputs simulated_car)
   target_sources(slalom_logic PRIVATE ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
 endforeach()
 target_compile_features(slalom_logic PUBLIC cxx_std_20)

@@ -67,11 +67,11 @@ struct Dropped {
 };
 constexpr const char* every_cusp =
     "the robot drives to every cusp, and reverses where the yaws of the path say so";
-constexpr const char* distances_count = "distances to obstacles count, not costs of cells: costs.clearance";
+constexpr const char* distances_count =
+    "distances to obstacles count (costs.clearance), and costs of cells as prices (cell_price)";
 constexpr Dropped dropped[] = {
     {"iteration_count", "there is one solve in a period; svg_mppi.guide_iterations moves its guides"},
     {"gamma", "the weights have no control cost; svg_mppi.control_cost_discount would add it"},
-    {"retry_attempt_limit", "patience is the time that there may be no way"},
     {"regenerate_noises", "the noise is drawn anew in every solve"},
     {"prune_distance", "the path counts as far as the robot can drive in a plan"},
     {"max_robot_pose_search_dist", "the nearest pose is searched 0.3 m back and 1 m ahead on the path"},

@@ -9,6 +9,7 @@
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose_limits.hpp"
+#include "slalom/tracking/people.hpp"
 
 namespace slalom::nodes {
 namespace {
@@ -18,11 +19,14 @@ using Problem = FollowerAnswer::Problem;
 
 /// The costs of nav2_costmap_2d with a special meaning.
 constexpr unsigned char lethal = 254, unknown = 255;
+constexpr double dearest = 252;  // cost of a cell, of those without an obstacle
 
 constexpr double longest_period = 1;   ///< s; after a longer one the robot was not controlled in between
 constexpr double usual_period = 0.05;  ///< s, of the first update
 constexpr double longest_braking = 3;  ///< s, after which a cancellation waits no longer
 constexpr double notable = 0.02;       ///< m by which a point of the plan moves
+constexpr double around = 0.15;        ///< m around people where cells of the costmap are theirs
+constexpr double lag = 0.4;            ///< s by which these cells may be late
 constexpr double behind = 0.5;         ///< m of the plan behind the robot that the navigator takes
 
 bool stands(const nav::Velocity& v) {
@@ -45,6 +49,11 @@ std::string why_of(nav::NavigationStatus status) {
 }
 
 }  // namespace
+
+PathFollower::PathFollower(const std::string& method)
+    : settings_(method),
+      people_(tracking::ObjectTracker(tracking::people_tracker_options()),
+              tracking::Predictor(tracking::people_predictor_options())) {}
 
 void PathFollower::change(const Changes& changes) {
   FollowerSettings changed = settings_;
@@ -81,6 +90,7 @@ void PathFollower::use_costmap(const CostGrid& from) {
     grid.height = from.height;
     grid.resolution = from.resolution;
     grid.cells.resize(static_cast<std::size_t>(from.width) * static_cast<std::size_t>(from.height));
+    prices_.resize(grid.cells.size());
   }
   grid.origin = {from.x, from.y, 0};
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
@@ -88,8 +98,10 @@ void PathFollower::use_costmap(const CostGrid& from) {
     grid.cells[i] = cost == unknown  ? maps::Occupancy::unknown
                     : cost == lethal ? maps::Occupancy::occupied
                                      : maps::Occupancy::free;
+    const double share = cost < lethal ? std::min(cost / dearest, 1.0) : 0;
+    prices_[i] = static_cast<float>(settings_.own().cell_price * share * share);
   }
-  if (!costmap_->update(grid)) throw std::invalid_argument("costmap: its origin must be finite");
+  if (!costmap_->update(grid, prices_)) throw std::invalid_argument("costmap: its origin must be finite");
 }
 
 void PathFollower::use_plan(const std::vector<maps::Pose>& plan) {
@@ -100,6 +112,29 @@ void PathFollower::use_plan(const std::vector<maps::Pose>& plan) {
   placed_frame_.reset();
   remaining_ = std::numeric_limits<double>::infinity();
   cancelling_ = false;
+}
+
+/// Takes people who are predicted off the costmap, which shows them where they were when it was made.
+void PathFollower::clear(std::span<const maps::PredictedObstacle> others) {
+  if (others.empty()) return;
+  const auto is_near = [&](const maps::Point& cell, const maps::PredictedObstacle& each) {
+    const maps::Pose now = each.at(each.likeliest(), 0).pose, next = each.at(each.likeliest(), lag).pose;
+    const maps::Point step{next.x - now.x, next.y - now.y}, to{cell.x - now.x, cell.y - now.y};
+    const double square = std::max(step.x * step.x + step.y * step.y, 1e-9);
+    const double back = std::clamp((to.x * step.x + to.y * step.y) / square, -1.0, 0.0);
+    return std::hypot(to.x - back * step.x, to.y - back * step.y) <
+           0.5 * std::max(each.length, each.width) + around;
+  };
+  for (std::size_t i = 0; i < grid_.cells.size(); ++i) {
+    if (grid_.cells[i] != maps::Occupancy::occupied && prices_[i] == 0) continue;
+    const auto row = i / static_cast<std::size_t>(grid_.width), column = i - row * grid_.width;
+    const maps::Point cell{grid_.origin.x + (column + 0.5) * grid_.resolution,
+                           grid_.origin.y + (row + 0.5) * grid_.resolution};
+    if (std::none_of(others.begin(), others.end(), [&](auto& each) { return is_near(cell, each); })) continue;
+    grid_.cells[i] = maps::Occupancy::free;
+    prices_[i] = 0;
+  }
+  costmap_->update(grid_, prices_);
 }
 
 void PathFollower::limit_speed(double limit, bool percentage) {
@@ -193,7 +228,11 @@ FollowerAnswer PathFollower::update(const FollowerInput& input) try {
   if (!footprint_) return {Problem::no_control, "the robot has no footprint", "", {}, 0};
   make_navigator(input.tolerance);
   if (!plan_.empty()) place_plan(input.plan_frame);
-  const nav::NavigationResult result = navigator_->update(input.pose, velocity_, *costmap_, elapsed);
+  const std::span<const maps::PredictedObstacle> others = others_from() == OthersFrom::none
+                                                              ? std::span<const maps::PredictedObstacle>{}
+                                                              : people_.predict(input.time);
+  clear(others);
+  const nav::NavigationResult result = navigator_->update(input.pose, velocity_, *costmap_, elapsed, others);
   predicted_.assign(result.plan.begin(), result.plan.end());
   path_.assign(result.path.begin(), result.path.end());
   const FollowerAnswer answer = judge(result, elapsed);

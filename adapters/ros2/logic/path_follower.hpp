@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +12,9 @@
 /// The logic of a controller of nav2, without its transport.
 namespace slalom::nodes {
 
-/// The cells of a nav2_costmap_2d::Costmap2D, row by row, row 0 at the bottom: 0 to 252 free, 253 free for a
-/// point but not for the middle of the robot, 254 an obstacle, 255 unknown. The footprint decides what
-/// collides, so 253 counts as free. `costs` must stay valid while it is used.
+/// The cells of a nav2_costmap_2d::Costmap2D, row by row, row 0 at the bottom: 0 to 252 free at a price, 253
+/// free for a point but not for the middle of the robot, 254 an obstacle, 255 unknown. The footprint decides
+/// what collides, so 253 counts as 252. `costs` must stay valid while it is used.
 struct CostGrid {
   int width = 0, height = 0;             ///< cells
   double resolution = 0;                 ///< m
@@ -56,9 +57,12 @@ struct FollowerAnswer {
 class PathFollower {
  public:
   /// Throws std::exception that lists the names if the method is unknown.
-  explicit PathFollower(const std::string& method = "svg_mppi") : settings_(method) {}
+  explicit PathFollower(const std::string& method = "svg_mppi");
 
   std::vector<NamedOption> options() const { return settings_.list(); }
+  /// Where it learns of people. A node then lets `people` see or hear them, in the frame of the costmap.
+  OthersFrom others_from() const { return settings_.own().others; }
+  OthersWatch& people() { return people_; }
   /// Whether a node should publish the plans.
   bool visualizes() const { return settings_.own().visualize; }
   /// The time (s) for which a node should wait for a transform.
@@ -92,6 +96,7 @@ class PathFollower {
   const std::vector<maps::Pose>& path() const { return path_; }
 
  private:
+  void clear(std::span<const maps::PredictedObstacle> others);
   void make_navigator(const std::optional<GoalTolerance>& told);
   void place_plan(const maps::Pose& plan_frame);
   double elapsed_until(double time);
@@ -103,7 +108,9 @@ class PathFollower {
   std::optional<navigation::Footprint> footprint_;
   std::vector<maps::Point> vertices_;  ///< vertices of the footprint
   maps::OccupancyGrid grid_;
+  std::vector<float> prices_;  ///< prices of the cells
   std::optional<navigation::Costmap> costmap_;
+  OthersWatch people_;
   std::optional<navigation::Navigator> navigator_;  ///< none: the next update makes it
   std::optional<GoalTolerance> tolerance_;          ///< tolerance of that navigator
   std::vector<maps::Pose> plan_;                    ///< in its own frame

@@ -14,6 +14,12 @@ namespace {
 constexpr double patience = 1.6;  // control periods without a command, after which the inputs are checked
 constexpr double wait_for_pose = 0.8;  // control periods that a scan waits for the transforms of its time
 
+OthersFrom from_name(const std::string& name) {
+  for (const OthersFrom each : {OthersFrom::none, OthersFrom::scan, OthersFrom::topic})
+    if (name == enum_names(each)[static_cast<int>(each)]) return each;
+  throw std::invalid_argument("others: '" + name + "' must be one of none, scan, topic");
+}
+
 /// Whether the end of a path is near its start.
 bool is_closed(const PlannerCore::Path& path) {
   double length = 0;
@@ -32,7 +38,9 @@ PlannerCore::PlannerCore(const Settings& settings, Clocks clocks, Transforms tra
       settings_(settings),
       watch_(settings.limits, clocks_),
       log_(clocks_.steady, outputs_.warn),
-      configuration_(load_configuration(settings.configuration)) {
+      configuration_(load_configuration(settings.configuration)),
+      others_from_(from_name(settings.others)) {
+  for (auto* each : {&heard_points_, &points_, &points_of_car_}) each->reserve(4096);
   solver_options(settings.method);  // throws on an unknown method
 }
 
@@ -65,6 +73,7 @@ void PlannerCore::save(const std::string& file) const {
 void PlannerCore::use_course() {
   if (settings_.course.empty()) return;
   const vehicle::Course course = load_course(settings_.course);
+  map_ = course.map;
   Path path;
   for (const vehicle::Waypoint& w : course.waypoints) path.push_back({w.x, w.y, w.yaw, w.speed});
   use_path(path, course.closed);
@@ -72,6 +81,10 @@ void PlannerCore::use_course() {
 
 void PlannerCore::use_path(const Path& path, bool closed) {
   planner_ = make_planner(configuration_, path);
+  others_watch_.reset();
+  if (others_from_ != OthersFrom::none)
+    others_watch_.emplace(map_ ? tracking::ObjectTracker(*map_) : tracking::ObjectTracker(),
+                          tracking::Predictor(path));
   path_ = path;
   laps_.reset();
   if (closed) {
@@ -94,9 +107,7 @@ bool PlannerCore::scan_is_due() const {
 void PlannerCore::start_anew() {
   transforms_.forget();
   scan_stamp_ = used_ = odometry_stamp_ = 0;
-  imu_sum_ = {};
-  imu_count_ = 0;
-  imu_mounts_.clear();
+  forget_inputs();
   new_scan_ = false;
   watch_.forget();
 }
@@ -123,49 +134,8 @@ void PlannerCore::hear_odometry(Stamp stamp, double speed) {
   speed_ = speed;
 }
 
-/// Rotates a sample to the axes of the base frame. The distance of the unit from the centre of gravity is
-/// neglected: it changes the accelerations by the distance times the squared yaw rate.
-void PlannerCore::hear_imu(const ImuMessage& sample) {
-  const Mount* const mount = imu_mount(sample.frame);
-  if (!mount) return;
-  const ImuReading reading{along(2, *mount, sample.turn), along(0, *mount, sample.acceleration),
-                           along(1, *mount, sample.acceleration)};
-  if (!plausible(reading)) return;
-  imu_sum_.yaw_rate += reading.yaw_rate;
-  imu_sum_.forward += reading.forward;
-  imu_sum_.leftward += reading.leftward;
-  ++imu_count_;
-}
-
-/// The mount of the unit; null if tf does not know it. Then it is looked up again after a second.
-const Mount* PlannerCore::imu_mount(const std::string& frame) {
-  const auto found = imu_mounts_.find(frame);
-  if (found != imu_mounts_.end()) return &found->second;
-  const double now = clocks_.steady();
-  if (now < imu_retry_) return nullptr;
-  imu_retry_ = now + 1;
-  try {
-    return &imu_mounts_.emplace(frame, transforms_.mount(frame)).first->second;
-  } catch (const std::exception& error) {
-    // Not through the throttled log, whose other messages say why the car stops.
-    if (!std::exchange(imu_warned_, true)) outputs_.warn(std::string("imu is not used; tf: ") + error.what());
-    return nullptr;
-  }
-}
-
 void PlannerCore::hear_other_command(const std::string& name) {
   watch_.report("another node commands the car" + (name.empty() ? "" : ": " + name));
-}
-
-void PlannerCore::hear_goal_speed(double speed) {
-  if (!std::isfinite(speed)) return log_("goal speed is not finite; ignored");
-  stopped_by_goal_ = speed <= 0;
-  if (stopped_by_goal_) return;
-  try {
-    change({{"planner.max_speed", std::to_string(std::clamp(speed, 0.01, 100.0))}});
-  } catch (const std::exception& error) {
-    log_(std::string("goal_speed: ") + error.what());
-  }
 }
 
 void PlannerCore::hear_path(const Path& path) {
@@ -234,23 +204,19 @@ void PlannerCore::plan() {
   const bool scanned = std::exchange(new_scan_, false);
   maps::Pose pose;
   const bool well = planner_ ? watch_.fresh("scan", in_seconds(scan_stamp_)) &&
-                                   watch_.fresh("odometry", in_seconds(odometry_stamp_))
+                                   watch_.fresh("odometry", in_seconds(odometry_stamp_)) && has_fresh_inputs()
                              : (watch_.report_consequence("no waypoints yet"), false);
   const bool placed = well && (!scanned || find_pose(pose));
   const std::string fault = watch_.fault();
   if (!fault.empty()) return stop(fault);
   if (!placed) return stop("input");
-  if (stopped_by_goal_) return stop("goal speed is 0");
+  if (goal_speed_ == 0.0) return stop("goal speed is 0");
   if (!scanned) return;  // the scan is slightly late; the last command remains valid
   count_laps(pose);
   if (laps_to_drive_ > 0 && laps() >= laps_to_drive_) return stop("all laps are driven");
   vehicle::PlannerInput input{.scan = scan_, .odometry = {.pose = pose, .speed = speed_}};
-  const double samples = imu_count_;
-  if (imu_count_ > 0)
-    input.imu = {imu_sum_.yaw_rate / samples, imu_sum_.forward / samples, imu_sum_.leftward / samples};
+  complete(input);
   const vehicle::PlannerOutput& out = planner_->update(input);
-  imu_sum_ = {};
-  imu_count_ = 0;
   used_ = scan_stamp_;
   known_ = out.parameters;
   slip_ = out.slip_estimate;
@@ -272,6 +238,7 @@ void PlannerCore::plan() {
 void PlannerCore::stop(const std::string& why) {
   ++second_.stops;
   second_.why = why;
+  last_stop_ = why + ", at " + seconds(clocks_.now());
   log_("stopping: " + why);
   send({last_steer_, 0});
 }
@@ -283,6 +250,7 @@ void PlannerCore::halt() {
 
 void PlannerCore::send(const Command& command) {
   sent_ = clocks_.steady();
+  sent_lately_[next_sent_++ % sent_lately_.size()] = command;
   outputs_.drive(command);
 }
 
@@ -310,6 +278,11 @@ Report PlannerCore::report() {
     r.add("steering delay, ms", 1e3 * known_.delay);
     r.add("slip angle, rad", slip_);
   }
+  if (others_watch_) r.add("other cars", others_);
+  if (goal_speed_) r.add("goal speed, m/s", *goal_speed_);
+  if (points_stamp_ != 0) r.add("obstacle points", points_.size());
+  if (obeyed()) r.add("commands", "of somebody else");
+  if (!last_stop_.empty()) r.add("last stop", last_stop_);
   if (second_.plans > 0) r.add("least effective sample size", second_.min_samples);
   r.message = second_.why.empty() ? "driving" : second_.why;
   r.level = second_.stops > 0 || second_.plans == 0    ? Level::error

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -10,9 +11,11 @@
 #include "logic/input_watch.hpp"
 #include "logic/installed.hpp"
 #include "logic/named_option.hpp"
+#include "logic/others_watch.hpp"
 #include "logic/reports.hpp"
 #include "logic/transforms.hpp"
 #include "slalom/maps/command.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/sim/laps.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 
@@ -47,8 +50,9 @@ class PlannerCore {
     std::string method = "svg_mppi";
     std::string course;  ///< a name or a folder, whose path is driven; empty: the path comes as a message
     WatchLimits limits;
-    double rear_axle = 0;      ///< m, x of the middle of the rear axle in the base frame
-    double scan_interval = 0;  ///< s, scans that come sooner after the last one used are not used
+    std::string others = "none";  ///< where it learns of other cars: a name of OthersFrom
+    double rear_axle = 0;         ///< m, x of the middle of the rear axle in the base frame
+    double scan_interval = 0;     ///< s, scans that come sooner after the last one used are not used
   };
   /// The messages that the node sends; called from within the functions below.
   struct Outputs {
@@ -73,11 +77,20 @@ class PlannerCore {
 
   // Messages.
   void hear_scan(Stamp stamp, const std::string& frame, const maps::LaserScanView& scan, double angle_max);
-  void hear_odometry(Stamp stamp, double speed);  ///< m/s
-  void hear_imu(const ImuMessage& sample);
+  void hear_odometry(Stamp stamp, double speed);     ///< m/s
   void hear_other_command(const std::string& name);  ///< a command that another node sent to the car
-  void hear_goal_speed(double speed);                ///< m/s; 0 stops the car
   void hear_path(const Path& path);
+  // Messages that a car need not send.
+  void hear_imu(const ImuMessage& sample);
+  void hear_goal_speed(double speed);  ///< m/s; 0 stops the car
+  /// The covariance (x, y, yaw) of the pose in tf.
+  void hear_covariance(Stamp stamp, const vehicle::PoseCovariance& covariance);
+  void hear_executed(const Command& command);  ///< the car executes this, where others may command it
+  /// Points of obstacles (m) in a sensor's frame; their heights do not count. Once heard they must stay
+  /// recent.
+  void hear_points(Stamp stamp, const std::string& frame, std::span<const std::array<double, 3>> points);
+  /// The objects that another node tracks, map frame; needed with `others` = "topic".
+  void hear_objects(Stamp stamp, std::span<const tracking::TrackedObject> objects);
 
   /// Ends the drive after this many laps; 0: never. Throws std::exception without a closed path or below 0.
   void drive_laps(int laps);
@@ -109,6 +122,10 @@ class PlannerCore {
   bool scan_is_due() const;
   void start_anew();
   const Mount* imu_mount(const std::string& frame);
+  std::optional<Command> obeyed() const;
+  bool has_fresh_inputs();
+  void complete(vehicle::PlannerInput& input);
+  void forget_inputs();
   void use_path(const Path& path, bool closed);
   bool find_pose(maps::Pose& pose);
   void place_laser();
@@ -132,18 +149,30 @@ class PlannerCore {
   std::map<std::string, Mount> imu_mounts_;
   double imu_retry_ = -1e9;  ///< s, steady clock
   bool imu_warned_ = false;
-  std::vector<float> ranges_;  ///< the last scan, which `scan_` shows
+  std::optional<double> goal_speed_;  ///< m/s
+  vehicle::PoseCovariance covariance_{};
+  std::array<Command, 16> sent_lately_{};  ///< the latest commands
+  std::size_t next_sent_ = 0, others_ = 0;
+  Command executed_;
+  double executed_heard_ = -1e9;                                    ///< s, steady clock
+  std::vector<maps::Point> heard_points_, points_, points_of_car_;  ///< m, base, map and robot frame
+  OthersFrom others_from_;
+  std::optional<OthersWatch> others_watch_;  ///< none without a path or others
+  std::optional<maps::OccupancyGrid> map_;   ///< map of the course, if there is one
+  std::vector<float> ranges_;                ///< the last scan, which `scan_` shows
   maps::LaserScanView scan_;
   std::string scan_frame_;
-  Stamp scan_stamp_ = 0, odometry_stamp_ = 0;
+  Stamp scan_stamp_ = 0, odometry_stamp_ = 0, covariance_stamp_ = 0, heard_points_stamp_ = 0,
+        points_stamp_ = 0, objects_stamp_ = 0;
   Stamp used_ = 0;    ///< stamp of the last scan with a plan
   double speed_ = 0;  ///< m/s
-  bool new_scan_ = false, stopped_by_goal_ = false;
+  bool new_scan_ = false;
   int laps_to_drive_ = 0;
   double last_steer_ = 0;                   ///< rad
   double sent_ = -1e9, scan_heard_ = -1e9;  ///< s, steady clock
   vehicle::ParameterEstimate known_;        ///< estimates of car and ground, from the last plan
   double slip_ = 0;                         ///< rad, the same
+  std::string last_stop_;                   ///< the reason for the last stop, and when (s, clock of stamps)
   RecentValues latency_;                    ///< s, from the stamp of a scan to its command
   Second second_;
 };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "slalom/sim/placement.hpp"
 
@@ -16,7 +17,8 @@ sim::WorldOptions world_options(const evaluation::Environment& environment) {
 
 }  // namespace
 
-SimulatedCar::SimulatedCar(const vehicle::Course& course, std::uint64_t seed, int obstacles)
+SimulatedCar::SimulatedCar(const vehicle::Course& course, std::uint64_t seed, int obstacles,
+                           const std::optional<maps::Pose>& other)
     : environment_(evaluation::make_environment(course, evaluation::Protocol::true_physics)),
       seed_(seed),
       world_(world_options(*environment_), environment_->track),
@@ -24,19 +26,22 @@ SimulatedCar::SimulatedCar(const vehicle::Course& course, std::uint64_t seed, in
   const maps::Pose& start = environment_->start;
   parked_ = sim::place_apart(environment_->course.obstacle_path, environment_->obstacle_room, obstacles, seed,
                              {start.x, start.y});
+  starts_ = {start};
+  if (other) starts_.push_back(*other);
   reset();
 }
 
 void SimulatedCar::reset() {
-  world_.reset(seed_, std::array{environment_->start}, parked_);
+  world_.reset(seed_, starts_, parked_);
   odometry_.reset(world_.state(0));
   collisions_ = 0;
 }
 
-void SimulatedCar::step(const Command& command) {
+void SimulatedCar::step(const Command& command, const Command& other) {
   const double time_step = world_.options().time_step;
+  const std::array commands{command, other};
   for (int steps = static_cast<int>(std::lround(period / time_step)); steps > 0; --steps) {
-    world_.step(std::array{command});
+    world_.step(std::span(commands).first(starts_.size()));
     odometry_.update(world_.state(0), time_step);
   }
   const bool collides = world_.observe(0).collides();

@@ -41,6 +41,8 @@ struct NavigatorOptions {
   double patience = 0.3;
   double stuck_after = 4;
   double goal_room = 0.3;
+  int retries = 0;
+  double deadline = 0;
 };
 
 template <class Options, class Visit>
@@ -61,6 +63,11 @@ void visit_options(Options& o, Visit&& visit) {
                         "way; after five of them it is stuck for 10 s",
                         0.1, 3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
+  visit(o.retries, {"retries", "",
+                    "further solves in an update while the plan meets an obstacle, before it "
+                    "brakes",
+                    0, 100});
+  visit(o.deadline, {"deadline", "s", "time limit of a solve; 0: none", 0, 1});
 }
 
 /// The behaviour of a navigator.

@@ -52,7 +52,7 @@ class DynamicPlanner final : public PlannerBase {
     field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), time_in_view());
     obstacles_.charge_time_behind(field_, origin_, start.pose);
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
-    conditions_.top_speed = options_.max_speed;
+    conditions_.top_speed = top_speed_;
     conditions_.margin_share = conditions_.soft_share = 1;
     if (traits_.tyres.seeks_lap_time && options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);
     if (options_.back_up && traits_.obstacles.map == ObstacleMap::clearance)
@@ -81,12 +81,15 @@ class DynamicPlanner final : public PlannerBase {
   }
 
   /// Sets the friction of the ground for plans. The speeds of the path change only if it changes by more than
-  /// 2 %.
+  /// 2 %, or with the top speed.
   void set_friction(double friction) noexcept {
     conditions_.friction = friction;
-    if (std::abs(friction - path_friction_) <= 0.02 * path_friction_) return;
-    path_friction_ = friction;
-    speeds_.update(driving_limits(traits_, friction));
+    const bool same = std::abs(friction - path_friction_) <= 0.02 * path_friction_;
+    if (same && top_speed_ == path_top_speed_) return;
+    if (!same) path_friction_ = friction;
+    DrivingLimits limits = driving_limits(traits_, path_friction_);
+    limits.top_speed = path_top_speed_ = top_speed_;
+    speeds_.update(limits);
     field_.set_speeds(speeds_.speeds());
   }
 
@@ -239,8 +242,9 @@ class DynamicPlanner final : public PlannerBase {
   Manoeuvre manoeuvre_;
   WaysAround ways_;
   DrivingConditions conditions_;
-  double path_friction_ = 0;  ///< friction for which the path's speeds were computed
-  bool on_detour_ = false;    ///< plans follow the detour, not the path
+  double path_friction_ = 0;   ///< friction for which the path's speeds were computed
+  double path_top_speed_ = 0;  ///< m/s, the same
+  bool on_detour_ = false;     ///< plans follow the detour, not the path
 };
 
 }  // namespace

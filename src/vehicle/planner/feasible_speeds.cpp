@@ -46,8 +46,8 @@ FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path,
 
 void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
   for (std::size_t i = 0; i < speed_.size(); ++i)
-    speed_[i] =
-        std::min(own_[i], std::sqrt(limits.grip * share_[i] / std::max(std::abs(curvature_[i]), 1e-6)));
+    speed_[i] = std::min({own_[i], limits.top_speed,
+                          std::sqrt(limits.grip * share_[i] / std::max(std::abs(curvature_[i]), 1e-6))});
   const auto speed_up = [&](std::size_t from, std::size_t to, double gap) {
     const double power =
         limits.acceleration * std::min(1.0, limits.switch_speed / std::max(speed_[from], 0.1));

@@ -17,6 +17,7 @@ struct DrivingLimits {
   double delay = 0;          ///< s; the car follows the speeds this late
   double lead = 0;           ///< s from the look-up of a speed until the car has it
   double switch_speed = 7;   ///< m/s, above it the motor's power is the limit
+  double top_speed = 1e3;    ///< m/s
 };
 
 /// The limits of a model with tyres that slip, on ground of this friction.

@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/recovery.hpp"
 #include "vehicle/planner/command_history.hpp"
+#include "vehicle/planner/map_options.hpp"
 #include "vehicle/planner/planner_base.hpp"
 
 namespace slalom::vehicle::detail {
@@ -17,7 +20,11 @@ class KinematicPlanner final : public PlannerBase {
       : PlannerBase(parts),
         history_(options_.control_period, options_.latency + traits_.dead_time,
                  options_.observer_time_constant, traits_.wheelbase),
-        recovery_(maps::RecoveryLengths::of(traits_.body.front + traits_.body.rear)) {}
+        recovery_(maps::RecoveryLengths::of(traits_.body.front + traits_.body.rear)) {
+    for (const maps::ReferencePoint& point : limited_path(parts.path, options_, traits_))
+      path_speeds_.push_back(point.speed);
+    speeds_ = path_speeds_;
+  }
   std::unique_ptr<PlannerBase> clone() const override { return std::make_unique<KinematicPlanner>(*this); }
 
  private:
@@ -30,6 +37,10 @@ class KinematicPlanner final : public PlannerBase {
     const bool jumps = traits_.speed.unlimited_acceleration;
     const double gain = jumps ? 0 : traits_.max_acceleration * horizon_time();
     const double fastest = std::max(std::abs(odometry.speed), 1.0) + gain;
+    if (std::exchange(field_top_speed_, top_speed_) != top_speed_) {
+      for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] = std::min(path_speeds_[i], top_speed_);
+      field_.set_speeds(speeds_);
+    }
     field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), jumps ? horizon_time() : 0);
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     if (must_stop(here)) return stop(PlannerStatus::off_course);
@@ -56,7 +67,7 @@ class KinematicPlanner final : public PlannerBase {
 
   /// Returns the speed to command; `here` is the speed of the path.
   double command_speed(double here) const noexcept {
-    if (!traits_.speed.follows_path) return std::min(traits_.speed.reference, options_.max_speed);
+    if (!traits_.speed.follows_path) return std::min(traits_.speed.reference, top_speed_);
     const bool planned = traits_.speed.planned;
     if (options_.speed_lookahead <= 0 && !planned) return here;
     const std::span<const PredictedState> states = choice_.states();
@@ -114,8 +125,10 @@ class KinematicPlanner final : public PlannerBase {
 
   CommandHistory history_;
   maps::Recovery recovery_;
-  double driven_ = 0;         ///< m, forward less backward
-  double planned_steer_ = 0;  ///< rad, before it was limited
+  std::vector<double> path_speeds_, speeds_;     ///< m/s, of the path, and within the top speed
+  double field_top_speed_ = options_.max_speed;  ///< m/s, of `speeds_`
+  double driven_ = 0;                            ///< m, forward less backward
+  double planned_steer_ = 0;                     ///< rad, before it was limited
 };
 
 }  // namespace

@@ -96,6 +96,7 @@ PlannerBase::PlannerBase(PlannerParts& parts)
 const PlannerOutput& PlannerBase::update(const PlannerInput& input) noexcept {
   const auto begin = std::chrono::steady_clock::now();
   const bool placed = plausible(input.odometry);
+  top_speed_ = input.goal_speed >= 0.0 ? std::min(*input.goal_speed, options_.max_speed) : options_.max_speed;
   output_.scan = obstacles_.update(input, placed);
   output_.steer_estimate = steer_estimate();
   brakes_ = false;
@@ -144,8 +145,9 @@ void PlannerBase::begin_rollouts(const maps::Pose& robot, const VehicleStart& st
 void PlannerBase::take_own_maps() noexcept {
   if (!rollouts_) return;
   model_->set_maps(obstacles_.seen_from(rollouts_->robot, followed(), origin_));
-  model_->set_start(rollouts_->start,
-                    traits_.speed.follows_path ? rollouts_->path_speed : traits_.speed.reference);
+  model_->set_start(rollouts_->start, traits_.speed.follows_path
+                                          ? rollouts_->path_speed
+                                          : std::min(traits_.speed.reference, top_speed_));
 }
 
 const SolveResult& PlannerBase::solve() noexcept {
@@ -198,6 +200,7 @@ void PlannerBase::check_output(const Odometry& odometry) noexcept {
 }
 
 void PlannerBase::reset(std::uint64_t seed) noexcept {
+  top_speed_ = options_.max_speed;
   forget();
   choice_.reset();
   solver_->reset(seed);

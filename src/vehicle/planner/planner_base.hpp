@@ -78,7 +78,8 @@ class PlannerBase {
   Obstacles obstacles_;
   maps::ReferenceField field_;
   SequenceChoice choice_;
-  bool brakes_ = false;  ///< the command must not be faster than the car
+  double top_speed_ = options_.max_speed;  ///< m/s, with the goal speed of the last input
+  bool brakes_ = false;                    ///< the command must not be faster than the car
   PlannerOutput output_;
 
  private:

@@ -5,11 +5,8 @@
 #include <exception>
 #include <utility>
 
-#include <tf2_ros/buffer.h>
 #include <nav2_core/controller_exceptions.hpp>
 #include <pluginlib/class_list_macros.hpp>
-
-#include "conversions.hpp"
 
 namespace slalom_nav2 {
 namespace {
@@ -30,6 +27,18 @@ std::optional<GoalTolerance> tolerance_of(nav2_core::GoalChecker* checker) {
                        tolerance(slalom_ros::yaw_of(pose.orientation))};
 }
 
+/// A parameter that is fixed once the controller is configured.
+std::string setting(Controller::Node& node, const std::string& name, const std::string& value,
+                    const char* description) {
+  if (!node.has_parameter(name)) {
+    rcl_interfaces::msg::ParameterDescriptor descriptor;
+    descriptor.description = description;
+    descriptor.read_only = true;
+    node.declare_parameter<std::string>(name, value, descriptor);
+  }
+  return node.get_parameter(name).as_string();
+}
+
 nav_msgs::msg::Path message_of(const std::vector<Pose>& poses, const std::string& frame,
                                const rclcpp::Time& time) {
   nav_msgs::msg::Path path;
@@ -45,10 +54,10 @@ nav_msgs::msg::Path message_of(const std::vector<Pose>& poses, const std::string
 
 }  // namespace
 
-void Controller::configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& parent, std::string name,
+void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
                            std::shared_ptr<tf2_ros::Buffer> transforms,
                            std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) {
-  const std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node = parent.lock();
+  const std::shared_ptr<Node> node = parent.lock();
   if (!node) throw nav2_core::ControllerException("the node of the controller is gone");
   clock_ = node->get_clock();
   logger_ = node->get_logger();
@@ -56,14 +65,8 @@ void Controller::configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& paren
   costmap_ = std::move(costmap);
 
   const std::string prefix = name + ".";
-  if (!node->has_parameter(prefix + "method")) {
-    rcl_interfaces::msg::ParameterDescriptor descriptor;
-    descriptor.description = "method that plans; `slalom options` lists them";
-    descriptor.read_only = true;
-    node->declare_parameter<std::string>(prefix + "method", "svg_mppi", descriptor);
-  }
-  follower_ =
-      std::make_unique<slalom::nodes::PathFollower>(node->get_parameter(prefix + "method").as_string());
+  follower_ = std::make_unique<slalom::nodes::PathFollower>(
+      setting(*node, prefix + "method", "svg_mppi", "method that plans; `slalom options` lists them"));
   parameters_ = std::make_unique<slalom_ros::OptionParameters>(
       *node,
       [this] {
@@ -79,11 +82,44 @@ void Controller::configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& paren
     RCLCPP_WARN(logger_, "parameter %s has no meaning for this controller", unused.c_str());
   predicted_out_ = node->create_publisher<nav_msgs::msg::Path>("local_plan", 1);
   path_out_ = node->create_publisher<nav_msgs::msg::Path>("transformed_global_plan", 1);
+  subscribe(*node, prefix);
+}
+
+/// Listens to people, as the option `others` says.
+void Controller::subscribe(Node& node, const std::string& prefix) {
+  using slalom::nodes::OthersFrom;
+  const auto topic = [&](const char* name) {
+    return setting(node, prefix + name + "_topic", name, "used by the option `others`");
+  };
+  const auto hear = [this](OthersFrom from, const auto& m, const auto& take) {
+    try {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (follower_ && follower_->others_from() == from)
+        take(frame_in_costmap(m.header.frame_id, m.header.stamp), rclcpp::Time(m.header.stamp).seconds());
+    } catch (const std::exception& error) {
+      RCLCPP_WARN_ONCE(logger_, "people were ignored: %s", error.what());
+    }
+  };
+  scans_ = node.create_subscription<sensor_msgs::msg::LaserScan>(
+      topic("scan"), rclcpp::SensorDataQoS(), [this, hear](const sensor_msgs::msg::LaserScan& m) {
+        hear(OthersFrom::scan, m, [&](const Pose& sensor, double stamp) {
+          follower_->people().see({.scan = slalom_ros::scan_of(m), .sensor = sensor, .stamp = stamp});
+        });
+      });
+  objects_ = node.create_subscription<slalom_msgs::msg::TrackedObjects>(
+      topic("tracked_objects"), rclcpp::SensorDataQoS(),
+      [this, hear](const slalom_msgs::msg::TrackedObjects& m) {
+        hear(OthersFrom::topic, m, [&](const Pose& frame, double stamp) {
+          follower_->people().hear(slalom_ros::objects_of(m, frame), stamp);
+        });
+      });
 }
 
 void Controller::cleanup() {
   // The parameters call back and take the lock, so they end first, without it.
   parameters_.reset();
+  scans_.reset();
+  objects_.reset();
   const std::lock_guard<std::mutex> lock(mutex_);
   follower_.reset();
   predicted_out_.reset();
@@ -103,7 +139,7 @@ void Controller::deactivate() {
   path_out_->on_deactivate();
 }
 
-void Controller::setPlan(const nav_msgs::msg::Path& plan) {
+void Controller::use_plan(const nav_msgs::msg::Path& plan) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (plan.header.frame_id.empty()) throw nav2_core::InvalidPath("path: its frame has no name");
   std::vector<Pose> poses;
@@ -146,9 +182,9 @@ void Controller::read_costmap() try {
   throw nav2_core::ControllerException(error.what());
 }
 
-geometry_msgs::msg::TwistStamped Controller::computeVelocityCommands(
-    const geometry_msgs::msg::PoseStamped& pose, const geometry_msgs::msg::Twist& velocity,
-    nav2_core::GoalChecker* goal_checker) {
+geometry_msgs::msg::TwistStamped Controller::command(const geometry_msgs::msg::PoseStamped& pose,
+                                                     const geometry_msgs::msg::Twist& velocity,
+                                                     nav2_core::GoalChecker* goal_checker) {
   const std::lock_guard<std::mutex> lock(mutex_);
   read_costmap();
   slalom::nodes::FollowerInput input;
@@ -163,13 +199,13 @@ geometry_msgs::msg::TwistStamped Controller::computeVelocityCommands(
   if (answer.problem == FollowerAnswer::Problem::invalid_path) throw nav2_core::InvalidPath(answer.why);
   if (answer.problem == FollowerAnswer::Problem::no_control) throw nav2_core::NoValidControl(answer.why);
 
-  geometry_msgs::msg::TwistStamped command;
-  command.header.stamp = pose.header.stamp;
-  command.header.frame_id = costmap_->getBaseFrameID();
-  command.twist.linear.x = answer.command.forward;
-  command.twist.linear.y = answer.command.left;
-  command.twist.angular.z = answer.command.turn;
-  return command;
+  geometry_msgs::msg::TwistStamped sent;
+  sent.header.stamp = pose.header.stamp;
+  sent.header.frame_id = costmap_->getBaseFrameID();
+  sent.twist.linear.x = answer.command.forward;
+  sent.twist.linear.y = answer.command.left;
+  sent.twist.angular.z = answer.command.turn;
+  return sent;
 }
 
 void Controller::publish(const rclcpp::Time& time) {

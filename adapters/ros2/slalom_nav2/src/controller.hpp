@@ -8,30 +8,52 @@
 
 #include "logic/path_follower.hpp"
 #include "option_parameters.hpp"
+#include "tracked_objects.hpp"
 
 namespace slalom_nav2 {
 
-/// A controller of nav2's controller server that drives with slalom::navigation. Its logic is in
-/// slalom::nodes::PathFollower; this has messages, frames and parameters. The server may call its functions
-/// and change its parameters from several threads.
+#if SLALOM_NAV2_MINOR >= 5
+using ServerNode = nav2::LifecycleNode;
+#else
+using ServerNode = rclcpp_lifecycle::LifecycleNode;
+#endif
+
+/// A controller of nav2's controller server that drives with slalom::navigation, for nav2 1.3 and 1.5, of
+/// which SLALOM_NAV2_MINOR is one. Its logic is in slalom::nodes::PathFollower; this has messages, frames and
+/// parameters. The server may call its functions and change its parameters from several threads.
 class Controller : public nav2_core::Controller {
  public:
+  using Node = rclcpp_lifecycle::LifecycleNode;
+
   /// Throws std::exception if a parameter or the footprint breaks a rule.
-  void configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& parent, std::string name,
+  void configure(const ServerNode::WeakPtr& parent, std::string name,
                  std::shared_ptr<tf2_ros::Buffer> transforms,
                  std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) override;
   void cleanup() override;
   void activate() override;
   void deactivate() override;
 
-  /// Throws nav2_core::InvalidPath if it has no poses, one is not finite, or it has no frame.
-  void setPlan(const nav_msgs::msg::Path& plan) override;
-  /// Throws nav2_core::InvalidPath without a plan, ControllerTFError without a transform, NoValidControl if
-  /// the path is blocked and there is no way round, and ControllerException if the costmap or the footprint
-  /// is none that Slalom takes.
+#if SLALOM_NAV2_MINOR >= 5
+  void newPathReceived(const nav_msgs::msg::Path& plan) override {
+    use_plan(plan);
+  }
   geometry_msgs::msg::TwistStamped computeVelocityCommands(const geometry_msgs::msg::PoseStamped& pose,
                                                            const geometry_msgs::msg::Twist& velocity,
-                                                           nav2_core::GoalChecker* goal_checker) override;
+                                                           nav2_core::GoalChecker* goal_checker,
+                                                           nav_msgs::msg::Path&,
+                                                           const geometry_msgs::msg::Pose&) override {
+    return command(pose, velocity, goal_checker);
+  }
+#else
+  void setPlan(const nav_msgs::msg::Path& plan) override {
+    use_plan(plan);
+  }
+  geometry_msgs::msg::TwistStamped computeVelocityCommands(const geometry_msgs::msg::PoseStamped& pose,
+                                                           const geometry_msgs::msg::Twist& velocity,
+                                                           nav2_core::GoalChecker* goal_checker) override {
+    return command(pose, velocity, goal_checker);
+  }
+#endif
   /// Begins to brake; true once the robot stands.
   bool cancel() override;
   void setSpeedLimit(const double& limit, const bool& percentage) override;
@@ -40,7 +62,16 @@ class Controller : public nav2_core::Controller {
  private:
   using PathPublisher = rclcpp_lifecycle::LifecyclePublisher<nav_msgs::msg::Path>;
 
+  /// Throws nav2_core::InvalidPath if it has no poses, one is not finite, or it has no frame.
+  void use_plan(const nav_msgs::msg::Path& plan);
+  /// Throws nav2_core::InvalidPath without a plan, ControllerTFError without a transform, NoValidControl if
+  /// the path is blocked and there is no way round, and ControllerException if the costmap or the footprint
+  /// is none that Slalom takes.
+  geometry_msgs::msg::TwistStamped command(const geometry_msgs::msg::PoseStamped& pose,
+                                           const geometry_msgs::msg::Twist& velocity,
+                                           nav2_core::GoalChecker* goal_checker);
   slalom::maps::Pose frame_in_costmap(const std::string& frame, const rclcpp::Time& time) const;
+  void subscribe(Node& node, const std::string& prefix);
   void read_costmap();
   void publish(const rclcpp::Time& time);
 
@@ -54,6 +85,7 @@ class Controller : public nav2_core::Controller {
   std::unique_ptr<slalom::nodes::PathFollower> follower_;
   std::unique_ptr<slalom_ros::OptionParameters> parameters_;
   std::shared_ptr<PathPublisher> predicted_out_, path_out_;
+  rclcpp::SubscriptionBase::SharedPtr scans_, objects_;
   std::string plan_frame_;
 };
 

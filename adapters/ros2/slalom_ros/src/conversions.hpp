@@ -5,7 +5,11 @@
 #include <cstdint>
 #include <string>
 
+#if __has_include(<tf2/buffer_core.hpp>)
+#include <tf2/buffer_core.hpp>
+#else
 #include <tf2/buffer_core.h>
+#endif
 #include <builtin_interfaces/msg/time.hpp>
 #include <geometry_msgs/msg/pose.hpp>
 #include <geometry_msgs/msg/transform_stamped.hpp>

@@ -8,6 +8,7 @@
 #include <nav_msgs/msg/path.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/imu.hpp>
+#include <sensor_msgs/point_cloud2_iterator.hpp>
 #include <slalom_msgs/msg/planner_metrics.hpp>
 #include <slalom_msgs/msg/waypoints.hpp>
 #include <slalom_msgs/srv/drive_laps.hpp>
@@ -17,6 +18,7 @@
 
 #include "core_node.hpp"
 #include "logic/planner_core.hpp"
+#include "tracked_objects.hpp"
 
 namespace slalom_ros {
 
@@ -28,6 +30,7 @@ using sensor_msgs::msg::Imu;
 using sensor_msgs::msg::LaserScan;
 using slalom::vehicle::PlannerOutput;
 using slalom_msgs::msg::PlannerMetrics;
+using slalom_msgs::msg::TrackedObjects;
 using slalom_msgs::msg::Waypoints;
 using slalom_msgs::srv::DriveLaps;
 using slalom_msgs::srv::Save;
@@ -45,6 +48,8 @@ class PlannerNode : public CoreNode<PlannerCore> {
     settings_.scan_interval =
         setting("scan_interval", settings_.scan_interval,
                 "scans that come sooner after the last one used are not used; 0: all are used [s]");
+    settings_.others =
+        setting("others", settings_.others, "where the planner learns of other cars: none, scan or topic");
     drive_.header.frame_id = base_;
     path_.header.frame_id = map_;
     make_marker();
@@ -83,6 +88,13 @@ class PlannerNode : public CoreNode<PlannerCore> {
     subscribe<Odometry>("odom", sensor, [this](const Odometry& m) {
       core_->hear_odometry(stamp_of(m.header.stamp), m.twist.twist.linear.x);
     });
+    subscribe<Odometry>("pf/pose/odom", sensor, [this](const Odometry& m) { hear_pose(m); });
+    subscribe<AckermannDriveStamped>("executed", sensor, [this](const AckermannDriveStamped& m) {
+      core_->hear_executed({static_cast<double>(m.drive.steering_angle), static_cast<double>(m.drive.speed)});
+    });
+    subscribe<sensor_msgs::msg::PointCloud2>("obstacle_points", sensor,
+                                             [this](const auto& m) { hear_points(m); });
+    subscribe<TrackedObjects>("tracked_objects", sensor, [this](const auto& m) { hear_objects(m); });
     subscribe<Imu>("imu", rclcpp::SensorDataQoS().keep_last(50), [this](const Imu& m) { hear_imu(m); });
     subscribe<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
@@ -138,6 +150,31 @@ class PlannerNode : public CoreNode<PlannerCore> {
     const auto &turn = m.angular_velocity, &acceleration = m.linear_acceleration;
     core_->hear_imu(
         {m.header.frame_id, {turn.x, turn.y, turn.z}, {acceleration.x, acceleration.y, acceleration.z}});
+  }
+
+  void hear_pose(const Odometry& m) {
+    constexpr std::size_t row[3] = {0, 1, 5};
+    slalom::vehicle::PoseCovariance covariance{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) covariance[i][j] = m.pose.covariance[6 * row[i] + row[j]];
+    core_->hear_covariance(stamp_of(m.header.stamp), covariance);
+  }
+
+  void hear_points(const sensor_msgs::msg::PointCloud2& m) try {
+    points_.clear();
+    for (sensor_msgs::PointCloud2ConstIterator<float> x(m, "x"), y(m, "y"), z(m, "z"); x != x.end();
+         ++x, ++y, ++z)
+      points_.push_back({*x, *y, *z});
+    core_->hear_points(stamp_of(m.header.stamp), m.header.frame_id, points_);
+  } catch (const std::exception& error) {
+    RCLCPP_WARN_ONCE(get_logger(), "obstacle_points: %s; ignored", error.what());
+  }
+
+  void hear_objects(const TrackedObjects& m) {
+    if (m.header.frame_id == map_)
+      core_->hear_objects(stamp_of(m.header.stamp), objects_of(m));
+    else
+      RCLCPP_WARN_ONCE(get_logger(), "tracked_objects: must be in the frame %s; ignored", map_.c_str());
   }
 
   void hear_waypoints(const Waypoints& m) {
@@ -215,6 +252,7 @@ class PlannerNode : public CoreNode<PlannerCore> {
   LifecyclePublisher<PlannerMetrics>* metrics_out_ = nullptr;
   LifecyclePublisher<MarkerArray>* markers_out_ = nullptr;
   LifecyclePublisher<nav_msgs::msg::Path>* path_out_ = nullptr;
+  std::vector<std::array<double, 3>> points_;
   // These messages are kept so that their memory is reused.
   AckermannDriveStamped drive_;
   PlannerMetrics metrics_;

@@ -73,6 +73,9 @@ struct PlannerInput {
   /// The command that the car obeys from now on, if it is not the planner's: that of a person who drives, or
   /// of a recording. Ignored if it is not finite.
   std::optional<Command> obeyed{};
+  /// The highest speed from now on, m/s, if it is below `max_speed`. Nothing that was learned changes.
+  /// Ignored if it is negative or not a number.
+  std::optional<double> goal_speed{};
 };
 
 /// Estimates of the car and the ground.
