@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/solvers/option_groups.hpp"
@@ -171,6 +172,24 @@ void SolverBase::watch() noexcept {
   result_.suspicion = found;
 }
 
+bool SolverBase::samples_diverge() const noexcept {
+  const double far = highest_cost_ > 0 ? 1e9 * highest_cost_ : std::numeric_limits<double>::infinity();
+  const auto diverged = std::count_if(result_.costs.begin(), result_.costs.end(), [&](float cost) {
+    return !std::isfinite(cost) || static_cast<double>(cost) > far;
+  });
+  return 2 * static_cast<std::size_t>(diverged) > result_.costs.size();
+}
+
+bool SolverBase::first_input_swings() noexcept {
+  constexpr double rate = 0.1;  ///< weight of a solve
+  const double first = static_cast<double>(result_.inputs[0]);
+  const double range = static_cast<double>(high_[0] - low_[0]);
+  const double difference = std::abs(first - 2 * past_input_[0] + past_input_[1]);
+  if (std::isfinite(range) && range > 0) swing_ += rate * (difference / range - swing_);
+  past_input_[1] = std::exchange(past_input_[0], first);
+  return swing_ > 0.2;
+}
+
 /// The first symptom of which the present result has the sign.
 Symptom SolverBase::suspicion() noexcept {
   if (result_.status == Status::degenerate || result_.costs.empty()) return Symptom::none;
@@ -178,6 +197,8 @@ Symptom SolverBase::suspicion() noexcept {
   const bool steady = std::abs(least - steady_cost_) <= 0.02 * std::abs(steady_cost_);
   if (!steady) steady_cost_ = least;
   highest_cost_ = std::max(highest_cost_, least);
+  if (samples_diverge()) return Symptom::samples_diverge;
+  const bool swings = first_input_swings();
   if (result_.temperature > 0 && effective < 3) return Symptom::few_samples;
 
   const double rounding = std::numeric_limits<float>::epsilon() * std::abs(least);
@@ -195,6 +216,7 @@ Symptom SolverBase::suspicion() noexcept {
     saturated += std::isfinite(range) && std::min(value - low_[r], high_[r] - value) <= 0.1f * range;
   }
   if (10 * saturated >= 9 * rows()) return Symptom::saturated_inputs;
+  if (swings) return Symptom::noisy_plan;
   return steady && 4 * least > highest_cost_ ? Symptom::no_progress : Symptom::none;
 }
 

@@ -93,7 +93,7 @@ class SolverBase : public Solver {
   void restart(std::uint64_t seed) noexcept {
     seed_ = seed;
     solves_ = 0;
-    steady_cost_ = highest_cost_ = 0;
+    steady_cost_ = highest_cost_ = swing_ = 0;
   }
 
   /// Returns one value for each row, [step][input], from one for each input.
@@ -126,6 +126,8 @@ class SolverBase : public Solver {
   SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
              std::uint64_t seed, std::shared_ptr<ThreadPool> pool);
   void watch() noexcept;
+  bool samples_diverge() const noexcept;
+  bool first_input_swings() noexcept;
   Symptom suspicion() noexcept;
 
   int horizon_;
@@ -137,6 +139,8 @@ class SolverBase : public Solver {
   SequenceBatch compared_;                 ///< the solution and proposals
   bool small_variance_ = false;            ///< whether the deviations are below a hundredth of the ranges
   double steady_cost_ = 0;                 ///< least cost of the solve since which it has stayed the same
+  double swing_ = 0;                       ///< mean |second difference| of the first input, in ranges
+  double past_input_[2] = {};              ///< the first input of the last two solves
   double highest_cost_ = 0;                ///< highest least cost since the last reset
 };
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 #include "slalom/solvers/controllers.hpp"
@@ -44,6 +45,33 @@ TEST(Symptoms, AreNamedWhenTheyStay) {
   }
 }
 
+/// A point that is held at 0 with a long horizon, and the symptom after that.
+Symptom while_holding(const char* method, double horizon_steps) {
+  SolverOptions options = solver_options(method);
+  *options.find<int>("horizon") = static_cast<int>(horizon_steps);
+  *options.find<PerInput>("input_min") = -10;
+  *options.find<PerInput>("input_max") = 10;
+  Controller controller(testing::DoubleIntegrator{}, options);
+  testing::DoubleIntegrator::State<double> x{0, 0};
+  for (int k = 0; k < 200; ++k)
+    x = controller.problem().step(x, controller.solve(x, {.elapsed = 0.1}).inputs[0]);
+  return controller.solve(x, {.elapsed = 0.1}).stats.symptom();
+}
+
+TEST(Symptoms, TellNoisyPlans) {
+  EXPECT_EQ(while_holding("mppi", 80), Symptom::noisy_plan);
+  EXPECT_EQ(while_holding("svg_mppi", 80), Symptom::none);
+}
+
+TEST(Symptoms, TellSamplesThatDiverge) {
+  for (const double high : {1e12, std::numeric_limits<double>::quiet_NaN()}) {
+    const auto cost = [high](double u) { return u > 0 ? high : 1 - u; };
+    EXPECT_EQ(after_solves(MppiOptions{}, cost), Symptom::samples_diverge) << high;
+  }
+  EXPECT_NE(after_solves(MppiOptions{}, [](double u) { return u > 0 ? 1e6 : 1 - u; }),
+            Symptom::samples_diverge);
+}
+
 TEST(Symptoms, AreNoneOnTheWayAndAtTheGoal) {
   for (const char* method : {"mppi", "svg_mppi", "icem", "cem", "dial_mpc"}) {
     SolverOptions options = solver_options(method);
@@ -65,7 +93,7 @@ TEST(Symptoms, EndWithAReset) {
   for (int i = 1; i < 4; ++i) EXPECT_EQ(solver->solve(evaluator, {}).suspicious_solves, i);
   solver->reset(1);
   EXPECT_EQ(solver->solve(evaluator, {}).suspicious_solves, 1);
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 8; ++i)
     EXPECT_EQ(std::string(explanation(static_cast<Symptom>(i))).empty(), i == 0) << i;
 }
 
