@@ -87,26 +87,26 @@ bool PathCurve::is_boundary(std::size_t i, bool turns_on_the_spot) const noexcep
 }
 
 /// Moves a point to the given pose within a step at which the direction changes most; of equal ones, to the
-/// nearest along the path.
-void PathCurve::snap(std::size_t i, std::span<const Pose> poses) noexcept {
+/// nearest along the path. `before` is a pose further back, from which the next point begins, too.
+void PathCurve::snap(std::size_t i, std::span<const Pose> poses, Reached& before) noexcept {
   const double wanted = step_ * static_cast<double>(i);
-  double along = 0, best = -1, before = 0;
-  for (std::size_t k = 0; k < poses.size() && along <= wanted + step_; ++k) {
+  double best = -1;
+  for (Reached at = before; at.way <= wanted + step_;) {
+    if (at.way < wanted - step_) before = at;
+    const std::size_t k = at.pose;
     std::size_t next = k + 1;  // beyond poses at the same position
     while (next < poses.size() && distance(position(poses[k]), position(poses[next])) == 0) ++next;
     const bool ends = next >= poses.size();
-    const double after = ends ? before : direction(poses[k], poses[next]);
-    const double turn = k > 0 ? std::abs(wrap_angle(after - before)) : 0,
-                 off = std::abs(along - wanted) / step_;
+    const double after = ends ? at.direction : direction(poses[k], poses[next]);
+    const double turn = k > 0 ? std::abs(wrap_angle(after - at.direction)) : 0,
+                 off = std::abs(at.way - wanted) / step_;
     if (off <= 1 && turn + 0.1 * (1 - off) > best) {
       best = turn + 0.1 * (1 - off);
       points_[i].x = poses[k].x;
       points_[i].y = poses[k].y;
     }
     if (ends) break;
-    along += distance(position(poses[k]), position(poses[next]));
-    before = after;
-    k = next - 1;
+    at = {next, at.way + distance(position(poses[k]), position(poses[next])), after};
   }
 }
 
@@ -132,9 +132,10 @@ void PathCurve::set(std::span<const Pose> poses, bool turns_on_the_spot, double 
     return;
   }
   std::size_t first = 0;
+  Reached before;
   for (std::size_t i = 1; i < last; ++i) {
     if (step_ == 0 || !is_boundary(i, turns_on_the_spot && step_ * static_cast<double>(i) > smooth)) continue;
-    snap(i, poses);
+    snap(i, poses, before);
     add_leg(first, i, turns_on_the_spot);
     first = i;
   }

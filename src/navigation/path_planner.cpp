@@ -83,11 +83,12 @@ PathPlanner::Way PathPlanner::way_off(const Costmap& costmap, const maps::Point&
   Way best{{}, std::numeric_limits<double>::infinity()};
   const double margin = half_width_ + 3 * geometry_.resolution;
   const double half_x = 0.5 * geometry_.length_x() - margin, half_y = 0.5 * geometry_.length_y() - margin;
+  const double diagonal = std::hypot(geometry_.length_x(), geometry_.length_y());  // beyond it lies no cell
   const auto try_from = [&](double x, double y) {
     const maps::Point from{geometry_.center_x + x, geometry_.center_y + y};
     const double away = distance(from, point), cost = cost_to(from) + away;
     if (cost >= std::min(most, best.cost)) return;
-    for (double along = 0; along < away; along += geometry_.resolution) {
+    for (double along = 0; along < std::min(away, diagonal); along += geometry_.resolution) {
       const double share = along / away;
       const maps::Point here{from.x + share * (point.x - from.x), from.y + share * (point.y - from.y)};
       if (knows(costmap, here) && !has_room(costmap, here)) return;

@@ -15,8 +15,8 @@ namespace {
 /// Calls `visit` with column and row of the cell at a position, if there is one.
 template <class Visit>
 void visit_cell(const maps::OccupancyGrid& grid, const maps::Point& at, Visit&& visit) {
-  const int column = saturate_cast<int>(std::floor((at.x - grid.origin.x) / grid.resolution)),
-            row = saturate_cast<int>(std::floor((at.y - grid.origin.y) / grid.resolution));
+  const int column = saturate_cast<int>(std::floor((at.x - grid.origin.x) / grid.resolution), -1),
+            row = saturate_cast<int>(std::floor((at.y - grid.origin.y) / grid.resolution), -1);
   if (grid.contains(column, row)) visit(column, row);
 }
 
@@ -32,7 +32,7 @@ void ScanMap::add(const RangeScan& scan) noexcept {
   const std::size_t count = scan.ranges.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double range = scan.ranges[i];
-    if (!(range >= 0 && std::isfinite(range))) continue;
+    if (!(range > 0 && std::isfinite(range))) continue;
     const double angle = scan.pose.yaw + maps::beam_angle(i, count);
     const double cosine = std::cos(angle), sine = std::sin(angle);
     const bool hit = range < scan.max_range;

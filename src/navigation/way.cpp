@@ -12,7 +12,7 @@
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr double longest_path = 1e6;    // steps of a path
+constexpr double longest_path = 2.1e5;  // steps of a path, which an update takes anew where it is blocked
 constexpr double search_period = 0.1;   // s between searches while there is no way
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as

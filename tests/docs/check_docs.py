@@ -16,6 +16,7 @@ from pathlib import Path
 
 FENCED = re.compile(r"^```([^\n]*)\n(.*?)^```[^\n]*$", re.S | re.M)
 EXCERPT = re.compile(r"\]\(([^)]+)\):\n\n```c\+\+\n(.*?)\n```", re.S)
+OPTIONAL = ("gymnasium", "matplotlib", "mujoco", "torch")
 LINK = re.compile(r"(?<!\\)\[[^\]]*\]\(([^)\s]+)[^)]*\)")
 
 
@@ -123,10 +124,10 @@ def check_python(root):
                 try:
                     exec(compile(text, f"{page}:{line}", "exec"), names)
                 except Exception as error:
-                    if isinstance(error, ModuleNotFoundError) and error.name.split(".")[0] in ("torch", "matplotlib"):
+                    if isinstance(error, ModuleNotFoundError) and error.name.split(".")[0] in OPTIONAL:
                         missing = error.name.split(".")[0]
                     if missing and isinstance(error, (ModuleNotFoundError, NameError)):  # or what another block would define
-                        print(f"{page.relative_to(root)}:{line}: not run, since {missing} is missing (Debian: python3-{missing})")
+                        print(f"{page.relative_to(root)}:{line}: not run, since {missing} is missing")
                     else:
                         errors.append(f"{page}:{line}: {type(error).__name__}: {error}")
             os.chdir(root)

@@ -314,7 +314,7 @@ TEST(ScanMap, AScanTakesNoLongerThanTheMapIsWide) {
 TEST(ScanMap, DropsInvalidBeamsAndAllocatesNothing) {
   ScanMap map(walled());
   const std::vector<Occupancy> before = map.grid().cells;
-  const std::vector<double> ranges{std::nan(""), -1, INFINITY, std::nan("")};
+  const std::vector<double> ranges{std::nan(""), -1, INFINITY, 0};
   const std::vector<double> away{1, 1, 1, 1};
   const long allocations = testing::allocations();
   map.add({{0.01, 0.01, 0}, ranges, 8});

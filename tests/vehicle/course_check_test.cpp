@@ -108,6 +108,13 @@ TEST(CourseCheck, FindsNoWallInTheOpenForACarOfAnyWidth) {
         check_course(course, {.half_width = millimetres * 1e-3, .margin = 0.055, .limits = {}});
     EXPECT_TRUE(check.walls.stretches.empty()) << millimetres;
   }
+  EXPECT_TRUE(check_course(course, {.half_width = 1e6, .margin = 0, .limits = {}}).walls.stretches.empty());
+}
+
+TEST(ReachableMap, APointThatIsNoNumberReachesNothing) {
+  Course course = circle(4, 4);
+  course.waypoints.assign(3, {std::nan(""), std::nan(""), 0, 1, 0});
+  for (const maps::Occupancy cell : reachable_map(course).cells) EXPECT_NE(cell, maps::Occupancy::free);
 }
 
 TEST(CourseCheck, FindsAProfileThatAsksForTooMuchGrip) {

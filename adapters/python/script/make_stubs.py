@@ -5,8 +5,9 @@ import re
 import sys
 from pathlib import Path
 
-import slalom
-from slalom import _slalom
+sys.path.insert(0, str(Path(sys.argv[1]).parent))  # PYTHONPATH names the packages of an isolated build of pip
+import slalom  # noqa: E402
+from slalom import _slalom  # noqa: E402
 
 OPTIONS = {"flag": "bool", "integer": "int", "number": "float", "numbers": "float | Sequence[float]", "choice": "str"}
 GENERIC = {"dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "list": "list[Any]", "object": "Any", "function": "Any"}

@@ -69,10 +69,15 @@ class PathCurve {
   }
 
  private:
+  /// A pose of the path with the way to it (m) and the direction in which it is reached.
+  struct Reached {
+    std::size_t pose = 0;
+    double way = 0, direction = 0;
+  };
   void resample(std::span<const Pose> poses) noexcept;
   bool is_boundary(std::size_t i, bool turns_on_the_spot) const noexcept;
   double turn_at(std::size_t i) const noexcept;
-  void snap(std::size_t i, std::span<const Pose> poses) noexcept;
+  void snap(std::size_t i, std::span<const Pose> poses, Reached& before) noexcept;
   void add_leg(std::size_t first, std::size_t last, bool turns_on_the_spot) noexcept;
 
   Pose goal_;

@@ -155,7 +155,7 @@ class Navigator {
   /// on the spot if it can. The goal is the end of the path, even if the path passes there before. A path
   /// that ends like the one that is followed, to half of goal_distance, changes nothing, and neither does one
   /// to the same goal once the robot is there. Throws std::invalid_argument unless there is at least one
-  /// pose, all are within maps::PoseLimits, and the path is at most 49 km long.
+  /// pose, all are within maps::PoseLimits, and the path is at most 10 km long.
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time

@@ -22,8 +22,8 @@ class ScanMap {
   /// Starts with this map. Throws std::invalid_argument if its origin is turned or it has no cells.
   explicit ScanMap(maps::OccupancyGrid known);
 
-  /// Adds a scan. Beams whose range is not finite or below 0 are dropped, all if the pose is not plausible. A
-  /// beam from off the map clears and marks the cells of the map that it crosses.
+  /// Adds a scan. Beams whose range is not finite or not above 0 are dropped, all if the pose is not
+  /// plausible. A beam from off the map clears and marks the cells of the map that it crosses.
   void add(const RangeScan& scan) noexcept;
 
   const maps::OccupancyGrid& grid() const noexcept { return seen_; }  ///< the map with the additions

@@ -250,7 +250,8 @@ maps::OccupancyGrid reachable_map(const Course& course) {
   std::vector<char> reached(free.regions().size(), 0);
   for (const Waypoint& point : course.waypoints) {
     const maps::Point cell = in_cells(map, {point.x, point.y});
-    const int column = saturate_cast<int>(std::floor(cell.x)), row = saturate_cast<int>(std::floor(cell.y));
+    const int column = saturate_cast<int>(std::floor(cell.x), -1),
+              row = saturate_cast<int>(std::floor(cell.y), -1);
     if (!map.contains(column, row)) continue;
     if (const int region = free.at(column, row); region >= 0) reached[region] = 1;
   }

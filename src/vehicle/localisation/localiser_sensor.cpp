@@ -47,8 +47,8 @@ double cast(const maps::DistanceField& walls, double x, double y, double dx, dou
   double travelled = 0;  // cells
   const double end = most / walls.resolution;
   while (travelled < end) {
-    const int column = saturate_cast<int>(std::floor(x + travelled * dx));
-    const int row = saturate_cast<int>(std::floor(y + travelled * dy));
+    const int column = saturate_cast<int>(std::floor(x + travelled * dx), -1);
+    const int row = saturate_cast<int>(std::floor(y + travelled * dy), -1);
     if (column < 0 || row < 0 || column >= walls.width || row >= walls.height) return most;
     const double clear = walls.at(column, row) / walls.resolution;
     if (clear <= 0) return travelled * walls.resolution;

@@ -43,13 +43,12 @@ double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point
                         bool unknown_is_wall) {
   const maps::Point at = maps::inverse_transform(map.origin, point);
   const double column = at.x / map.resolution, row = at.y / map.resolution;
-  const int cells = saturate_cast<int>(std::ceil(reach / map.resolution)) + 1;
-  const int x0 = saturate_cast<int>(std::floor(column)), y0 = saturate_cast<int>(std::floor(row));
-  const double most = reach / map.resolution;
+  const double most = reach / map.resolution, cells = std::ceil(most) + 1;
+  const auto on_map = [](double i, int count) { return saturate_cast<int>(std::clamp(i, 0.0, count - 1.0)); };
   double nearest = most;
-  for (int y = y0 - cells; y <= y0 + cells; ++y)
-    for (int x = x0 - cells; x <= x0 + cells; ++x) {
-      if (!map.contains(x, y) || map.at(x, y) == maps::Occupancy::free) continue;
+  for (int y = on_map(row - cells, map.height), to = on_map(row + cells, map.height); y <= to; ++y)
+    for (int x = on_map(column - cells, map.width), end = on_map(column + cells, map.width); x <= end; ++x) {
+      if (map.at(x, y) == maps::Occupancy::free) continue;
       if (!unknown_is_wall && map.at(x, y) != maps::Occupancy::occupied) continue;
       const double dx = std::max({x - column, column - (x + 1), 0.0});
       const double dy = std::max({y - row, row - (y + 1), 0.0});
