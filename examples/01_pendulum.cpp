@@ -63,9 +63,6 @@ int main() {
                                    .temperature = 0.2,
                                    .input_min = {-5},
                                    .input_max = {5},
-                                   .guides = {.gradient_variance = 1},
-                                   .variance_min = 1,
-                                   .variance_max = 4,
                                    .seed = seed}});
   });
   return report("the pendulum is upright", mppi, svg_mppi, 20);

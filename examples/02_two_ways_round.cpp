@@ -41,12 +41,6 @@ int main() {
                                       .temperature = temperature,
                                       .input_min = {0, -2},
                                       .input_max = {1.5, 2},
-                                      .guides = {.step = {0.1, 0.4},
-                                                 .variance = {0.2, 0.8},
-                                                 .gradient_variance = {0.2, 0.8},
-                                                 .gradient_temperature = temperature},
-                                      .variance_min = {0.04, 0.16},
-                                      .variance_max = {0.4, 1.6},
                                       .seed = seed}});
     });
     std::printf("temperature %g, ", temperature);

@@ -12,16 +12,12 @@ using namespace slalom;
 
 /// Whether the car drives a lap within 20 s without a collision.
 bool drives_a_lap(const evaluation::Environment& environment, std::uint64_t seed) {
-  const SvgMppiOptions options{
-      .horizon = 14,
-      .samples = 2000,
-      .temperature = 3,
-      .input_min = -0.4189,
-      .input_max = 0.4189,
-      .guides = {.step = 0.005, .variance = 0.01, .gradient_variance = 0.01, .gradient_temperature = 3},
-      .variance_min = 0.001,
-      .variance_max = 0.1,
-      .seed = seed};
+  const SvgMppiOptions options{.horizon = 14,
+                               .samples = 2000,
+                               .temperature = 3,
+                               .input_min = -0.4189,
+                               .input_max = 0.4189,
+                               .seed = seed};
   vehicle::Planner planner({}, vehicle::make_vehicle_model({}), environment.path, make_solver(options, 1));
   sim::WorldOptions world_options = environment.world_options();
   sim::World world(world_options, environment.track);

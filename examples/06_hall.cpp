@@ -76,18 +76,8 @@ int main(int argc, char** argv) try {
         robot, {.horizon = 40, .samples = 1024, .temperature = 0.5, .variance = {2, 4}, .seed = seed}});
   });
   const int svg_mppi = succeeded([&](auto seed) {
-    return arrives(slalom::SvgMppi{robot,
-                                   {.horizon = 40,
-                                    .samples = 1024,
-                                    .temperature = 0.5,
-                                    .guides = {.step = 0.25,
-                                               .variance = {0.5, 1},
-                                               .gradient_variance = {0.5, 1},
-                                               .gradient_temperature = 0.5,
-                                               .restart_variance = {1, 2}},
-                                    .variance_min = {0.25, 0.5},
-                                    .variance_max = {2, 4},
-                                    .seed = seed}});
+    return arrives(
+        slalom::SvgMppi{robot, {.horizon = 40, .samples = 1024, .temperature = 0.5, .seed = seed}});
   });
   return report("the robot arrives", mppi, svg_mppi, 18);
 } catch (const std::exception& error) {  // a file that cannot be read

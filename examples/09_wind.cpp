@@ -97,14 +97,7 @@ bool passes(Controller controller, std::uint64_t seed) {
 
 int main() {
   const auto options = [](std::uint64_t seed) {
-    return slalom::SvgMppiOptions{
-        .horizon = 40,
-        .samples = 1024,
-        .temperature = 1,
-        .guides = {.step = 0.56, .variance = 1.12, .gradient_variance = 1.12, .restart_variance = 2.25},
-        .variance_min = 0.56,
-        .variance_max = 2.25,
-        .seed = seed};
+    return slalom::SvgMppiOptions{.horizon = 40, .samples = 1024, .temperature = 1, .seed = seed};
   };
   using Winds = slalom::RiskEvaluator<Hovercraft>;
   const slalom::RiskOptions nine_winds{.variants = 9, .measure = slalom::RiskMeasure::cvar};

@@ -72,12 +72,7 @@ int main() {
     return slalom::Mppi{Robot{}, {.horizon = 40, .samples = 512, .control_cost_discount = 1, .seed = seed}};
   };
   const auto svg_mppi = [](auto seed) {
-    return slalom::SvgMppi{Robot{},
-                           {.horizon = 40,
-                            .samples = 512,
-                            .guides = {.step = 0.25, .variance = 0.5, .gradient_variance = 0.5},
-                            .variance_min = 0.25,
-                            .seed = seed}};
+    return slalom::SvgMppi{Robot{}, {.horizon = 40, .samples = 512, .seed = seed}};
   };
   const int alone = succeeded([&](auto seed) { return stops(mppi(seed), false); });
   const int braked = succeeded([&](auto seed) { return stops(mppi(seed), true); });

@@ -50,7 +50,6 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
   options.variance_min = variances(base, 0.15, 0.15);
   options.variance_max = variances(base, 0.4, 0.2);
   options.guides.variance = variances(base, 0.05, 0.05);
-  options.guides.restart_variance = variances(base, 0.4, 0.4);
   options.guides.step = variances(base, 0.06, 0.06);  // about a third of a step to the samples' mean
   options.guides.gradient_temperature = options.temperature;
   options.guides.count = 1;  // the best of several changes from solve to solve, and with it the variances
