@@ -38,9 +38,8 @@ std::string_view query_value(std::string_view target, std::string_view key) {
 
 /// Compares in a time that does not depend on how many characters are right.
 bool same_secret(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  int difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) difference |= a[i] ^ b[i];
+  int difference = a.size() != b.size();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference |= a[i] ^ b[i];
   return difference == 0;
 }
 
