@@ -176,6 +176,15 @@ void LapStore::complete() {
   fs::remove(folder_ / journal_name);
 }
 
+std::optional<LapRow> drive_row(const Evaluation& evaluation, const LapSetup& setup, int experiment, int lap,
+                                const std::atomic<bool>& cancel) {
+  const auto begin = Clock::now();
+  const std::uint64_t seed = lap_seed(evaluation.seed0, lap, setup.settings.obstacles);
+  const LapResult result = run_lap(setup, seed, {}, &cancel);
+  if (result.cancelled) return std::nullopt;
+  return make_row(experiment, lap, result, seconds_since(begin));
+}
+
 bool drive_laps(const Evaluation& evaluation, LapStore& store, int jobs,
                 const std::function<void(const EvaluationProgress&)>& on_progress,
                 const std::atomic<bool>& cancel) {
@@ -191,13 +200,10 @@ bool drive_laps(const Evaluation& evaluation, LapStore& store, int jobs,
   const auto drive = [&](int task) {
     const auto [experiment, lap] = tasks[static_cast<std::size_t>(task)];
     const LapSetup& setup = setups[static_cast<std::size_t>(experiment)];
-    const auto lap_begin = Clock::now();
-    const std::uint64_t seed = lap_seed(evaluation.seed0, lap, setup.settings.obstacles);
-    const LapResult result = run_lap(setup, seed, {}, &cancel);
-    if (result.cancelled) return;
-    const LapRow row = make_row(experiment, lap, result, seconds_since(lap_begin));
+    const std::optional<LapRow> row = drive_row(evaluation, setup, experiment, lap, cancel);
+    if (!row) return;
     const std::lock_guard lock(mutex);
-    store.add(row);
+    store.add(*row);
     ++progress.laps_done;
     const int driven = progress.laps_done - progress.laps_resumed;
     progress.seconds_left = seconds_since(begin) / driven * (progress.laps_total - progress.laps_done);

@@ -1,10 +1,20 @@
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
 #include <memory>
+#include <system_error>
 
 #include "json/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
+#include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -22,10 +32,43 @@ struct EvalArguments {
   int laps = 20;
   int obstacles = 5;
   bool report = false;
+  std::string cluster, part;
   std::string conditions = "ideal";
 };
 
+/// Becomes a process of Python that calls `main` of a module of the package that was built or installed with
+/// this program; it has the words of this command line after the command's name. The interpreter is
+/// $SLALOM_PYTHON, or else that of the system. Throws IoError if it cannot be started.
+[[noreturn]] void become_python(const std::string& module) {
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"),
+                              prefix = program.parent_path().parent_path();
+  const char *const chosen = std::getenv("SLALOM_PYTHON"), *const others = std::getenv("PYTHONPATH");
+  const std::string python = chosen                                        ? chosen
+                             : std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3"
+                                                                           : "python3";
+  const std::string path = (prefix / "adapters/python:").string() +
+                           (prefix / "lib/python3/dist-packages").string() +
+                           (others ? ":" + std::string(others) : "");
+  ::setenv("PYTHONPATH", path.c_str(), 1);
+  ::setenv("SLALOM_PROGRAM", program.c_str(), 1);
+  std::vector<std::string> words{python, "-c",
+                                 "from slalom import study, " + module + " as m; study.end_with(m.main)"};
+  std::ifstream line("/proc/self/cmdline", std::ios::binary);
+  int index = 0;
+  for (std::string word; std::getline(line, word, '\0');)
+    if (++index > 2) words.push_back(word);
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  ::execvp(python.c_str(), pointers.data());
+  throw IoError(python, 0, "cannot be started: " + std::generic_category().message(errno));
+}
+
 int eval(const EvalArguments& arguments) {
+  if (!arguments.part.empty()) {
+    const std::string settings{std::istreambuf_iterator<char>(std::cin), {}};
+    return drive_part(settings, arguments.part) ? 0 : 1;
+  }
   if (arguments.evaluation.out.empty()) throw CommandLineError("--out", "is required");
   std::vector<std::string> sweeps = arguments.sweeps;
   if (arguments.conditions == "car") {
@@ -36,7 +79,9 @@ int eval(const EvalArguments& arguments) {
   const auto experiments =
       make_experiments(arguments.methods, arguments.scenarios, arguments.laps, arguments.obstacles, sweeps);
   Evaluated evaluated;
-  if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return 1;
+  if (!arguments.cluster.empty()) become_python("study");
+  if (!run_evaluation(arguments.evaluation, experiments, evaluated))
+    return arguments.evaluation.prepare ? 0 : 1;
   const auto summary = evaluated.summary();
   const std::string file = arguments.evaluation.out + "/summary.json";
   write_json(summary, file);
@@ -89,6 +134,13 @@ void declare_eval(Subcommand& command) {
       "each for friction 0.5, 0.7 and 1.0, which the planner is not told; ideal: none of these");
   command.flag("--report", arguments->report, "Also write report.html and its figures");
   add_evaluation_options(command, arguments->evaluation);
+  command.option("--cluster", arguments->cluster,
+                 "Address of a Dask scheduler whose workers drive (docs/studies.md)");
+  command.flag("--prepare", arguments->evaluation.prepare, "Only make the folder, without laps, for a study");
+  command.option(
+      "--part", arguments->part,
+      "EXPERIMENT:LAP ...: drive these laps of the settings.json on standard input for a study, and "
+      "print their rows");
   command.examples({"eval --course eel --methods svg_mppi,mppi --laps 20 --out OUT --report",
                     "eval --course eel --set temperature=1,3,10 --laps 5 --out OUT"});
   command.action([arguments] { return eval(*arguments); });

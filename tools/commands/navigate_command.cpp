@@ -5,6 +5,7 @@
 
 #include "json/json.hpp"
 #include "slalom/core/files/write_file.hpp"
+#include "slalom/core/option_access.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "tools/commands/commands.hpp"
@@ -21,15 +22,25 @@ using evaluation::RoomScenario;
 struct NavigateArguments {
   std::string scenario = "rooms", json, table, pictures, barn;
   int barn_step = 1;
-  std::vector<std::string> methods{"svg_mppi", "mppi"};
+  std::vector<std::string> methods{"svg_mppi", "mppi"}, set;
   int seeds = 5, jobs = 1;
   std::uint64_t first_seed = 1;
 };
 
-RoomDriver driver_of(const std::string& method, const RoomScenario& scenario) {
+RoomDriver driver_of(const NavigateArguments& arguments, const std::string& method,
+                     const RoomScenario& scenario) {
   RoomDriver driver;
   driver.predict_movers = scenario.optimal_time == 0;  // nothing moves in BARN
   driver.solver = navigation::method_options(method, scenario.base);
+  for (const std::string& text : arguments.set) {
+    const std::string key = text.substr(0, text.find('=')),
+                      value = text.substr(std::min(text.size(), key.size() + 1));
+    const bool known = for_option("--set", [&] {
+      return set_option(driver.solver, key, value) || set_option(driver.navigator, key, value);
+    });
+    if (!known)
+      throw CommandLineError("--set", text, "must be key=value with an option of navigator or " + method);
+  }
   return driver;
 }
 
@@ -58,7 +69,7 @@ void drive_all(const NavigateArguments& arguments, std::uint64_t seed, std::vect
     const auto k = static_cast<std::size_t>(i);
     const RoomScenario& scenario = *all[k].scenario;
     const double timeout = arguments.barn.empty() ? 60 : 100;
-    drives[k] = drive_room(scenario, driver_of(all[k].driver, scenario), seed, timeout);
+    drives[k] = drive_room(scenario, driver_of(arguments, all[k].driver, scenario), seed, timeout);
   });
   for (std::size_t k = 0; k < all.size(); ++k) all[k].drives.push_back(std::move(drives[k]));
 }
@@ -78,6 +89,7 @@ int navigate(const NavigateArguments& arguments) {
         for_option("--scenario", [&] { return &evaluation::room_scenario(arguments.scenario); }));
   }
   check_methods(arguments.methods);
+  for (const std::string& method : arguments.methods) driver_of(arguments, method, *scenarios.front());
   std::vector<RoomSeries> all;
   for (const RoomScenario* scenario : scenarios)
     for (const std::string& method : arguments.methods) all.push_back({scenario, method, {}});
@@ -115,6 +127,9 @@ void declare_navigate(Subcommand& command) {
   command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario",
                  {1, 100000});
   command.option("--seed", arguments->first_seed, "Seed of the first drive");
+  command
+      .option("--set", arguments->set, "key=value: an option of the navigator or its method; can be repeated")
+      .repeatable();
   command.option("--jobs", arguments->jobs, "Number of drives that run in parallel", {1, 1024});
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
   command.option("--table", arguments->table,

@@ -108,6 +108,7 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
   for (int i = 0; i < static_cast<int>(experiments.size()); ++i)
     lap_setup(evaluated.evaluation, i).validate();
   LapStore store(arguments.out, evaluated.evaluation, arguments.resume);
+  if (arguments.prepare) return false;
   const InterruptFlag interrupt;
   bool is_whole = false;
   {

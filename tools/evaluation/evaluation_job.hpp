@@ -20,7 +20,8 @@ struct EvaluationArguments {
   std::string out;
   bool resume = false;
   bool any_build = false;
-  std::string json;  ///< a copy of the summary: a file, or - for standard output
+  bool prepare = false;  ///< only make the folder
+  std::string json;      ///< a copy of the summary: a file, or - for standard output
 };
 
 /// Adds the options of add_world_options, and --seed, --jobs, --resume, --any-build, --json and --out.
@@ -60,7 +61,7 @@ evaluation::Evaluation make_evaluation(const EvaluationArguments& arguments, con
                                        const std::vector<evaluation::Experiment>& experiments);
 
 /// Drives what is still missing in `arguments.out`, with a progress line. False, without results, if it was
-/// interrupted. Throws CommandLineError, IoError and the errors of a lap.
+/// interrupted or is only prepared. Throws CommandLineError, IoError and the errors of a lap.
 bool run_evaluation(const EvaluationArguments& arguments,
                     const std::vector<evaluation::Experiment>& experiments, Evaluated& evaluated);
 

@@ -1,9 +1,15 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 
+#include <cstdio>
+#include <sstream>
+
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
+#include "slalom/core/instruction_set.hpp"
 #include "slalom/core/read_file.hpp"
+#include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
+#include "tools/terminal/interrupt.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -71,14 +77,8 @@ void with_settings(const StoredEvaluation& stored, const Read& read) {
 
 }  // namespace
 
-StoredEvaluation load_evaluation(const fs::path& folder) {
-  StoredEvaluation stored;
-  stored.folder = folder;
-  const fs::path file = folder / "settings.json";
-  if (!fs::exists(file))
-    throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
-  stored.settings = read_file(file, max_json_bytes);
-  std::uint64_t seed0 = 0;
+StoredEvaluation parse_evaluation(const std::string& text, const fs::path& folder) {
+  StoredEvaluation stored{folder, text, {}, {}, false};
   with_settings(stored, [&](const Json& settings) {
     evaluation::verify_checksum(stored.settings);
     for (const auto& e : member(settings, "experiments")) {
@@ -88,8 +88,17 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
                                     count_of(e, "laps", 1, 1000000)});
     }
     if (stored.experiments.empty()) throw std::invalid_argument("experiments: must be at least one");
-    seed0 = member<std::uint64_t>(settings, "seed0");
   });
+  return stored;
+}
+
+StoredEvaluation load_evaluation(const fs::path& folder) {
+  const fs::path file = folder / "settings.json";
+  if (!fs::exists(file))
+    throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
+  StoredEvaluation stored = parse_evaluation(read_file(file, max_json_bytes), folder);
+  std::uint64_t seed0 = 0;
+  with_settings(stored, [&](const Json& settings) { seed0 = member<std::uint64_t>(settings, "seed0"); });
   const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
   stored.complete = fs::exists(table);
   stored.rows =
@@ -146,6 +155,36 @@ evaluation::Evaluation rebuild_evaluation(const StoredEvaluation& stored, const 
     evaluation.settings = stored.settings;
   });
   return evaluation;
+}
+
+bool drive_part(const std::string& settings, const std::string& part) {
+  const StoredEvaluation stored = parse_evaluation(settings, "standard input");
+  with_settings(stored, [&](const Json& json) {
+    const std::pair<std::string, std::string> ours[] = {
+        {"build", build_id()}, {"instruction_set", simd::name(simd::active_target())}};
+    for (const auto& [key, here] : ours)
+      if (const auto wanted = member<std::string>(json, key.c_str()); !wanted.ends_with(here))
+        throw IoError("standard input", 0,
+                      key + ": is " + wanted + ", but " + here + " here, whose laps may differ");
+  });
+  Scenario scenario;
+  const evaluation::Evaluation evaluation = rebuild_evaluation(stored, "", scenario);
+  const InterruptFlag interrupt;
+  std::istringstream words(part);
+  for (std::string word; words >> word;) {
+    std::size_t experiment = 0;
+    int lap = -1;
+    char colon = 0;
+    std::istringstream numbers(word);
+    if (!(numbers >> experiment >> colon >> lap) || colon != ':' || experiment >= stored.experiments.size() ||
+        lap < 0 || lap >= stored.experiments[experiment].laps)
+      throw CommandLineError("--part", word, "must be EXPERIMENT:LAP of the evaluation");
+    const int index = static_cast<int>(experiment);
+    const auto row = drive_row(evaluation, lap_setup(evaluation, index), index, lap, interrupt.raised());
+    if (!row) return false;
+    std::printf("%s\n", evaluation::checked_line(csv_line(*row, stored.experiments)).c_str());
+  }
+  return true;
 }
 
 }  // namespace slalom::tools

@@ -18,6 +18,7 @@ from .compiler import CompileError, compile  # noqa: E402
 from .derivatives import Feedback, Linearization, linearize  # noqa: E402
 from .network import MlpProblem  # noqa: E402
 from .show import show  # noqa: E402
+from . import study  # noqa: E402
 
 if importlib.util.find_spec("slalom._driving"):
     from . import _driving
@@ -41,7 +42,7 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, "compile", "gpu", "plot"])
+    return sorted([*__all__, "compile", "gpu", "plot", "study"])
 
 
 display.install(_slalom)

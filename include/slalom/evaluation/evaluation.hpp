@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ struct Evaluation {
 /// `lap`, bit for bit. Throws std::invalid_argument if an option cannot be set, std::out_of_range if there is
 /// no such experiment.
 LapSetup lap_setup(const Evaluation& evaluation, int experiment);
+
+/// Drives a lap of the experiment whose setup this is, and measures its wall time; none if `cancel` ended it.
+std::optional<LapRow> drive_row(const Evaluation& evaluation, const LapSetup& setup, int experiment, int lap,
+                                const std::atomic<bool>& cancel);
 
 /// The progress of an evaluation.
 struct EvaluationProgress {
