@@ -135,7 +135,7 @@ const Target server_target(
               "w" + frame(0x01, "in two") + frame(0x80, " parts") + frame(0x8a, "")};
     },
     [](std::string_view bytes) {
-      static view::Server server({.max_message = max_message}, {{"/", {"text/html", "compressed", true}}});
+      static view::Server server({.max_message = max_message}, {{"/", {"text/html", "plain", "compressed"}}});
       if (bytes.empty()) return false;
       std::string answer;
       {

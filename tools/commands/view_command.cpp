@@ -72,7 +72,7 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
 int view(const ViewArguments& arguments) {
   view::ServerOptions address = server_options(arguments.host, arguments.port, arguments.token);
   if (!arguments.room.empty() || !arguments.problem.empty()) address.framed_by = view::notebooks;
-  view::Server server(address, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
+  view::Server server(address, {{"/", {"text/html; charset=utf-8", view::page_html(), view::page_gzip()}}});
   view::SessionOptions options;
   std::unique_ptr<view::Subject> subject;
   if (!arguments.room.empty()) {

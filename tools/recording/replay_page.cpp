@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "view/embedded.hpp"
-#include "view/recording/encodings.hpp"
 #include "view/recording/replay.hpp"
 
 namespace slalom::tools {
@@ -14,7 +13,7 @@ std::string page_of_recording(const std::filesystem::path& recording) {
   if (lost > 0)
     std::fprintf(stderr, "note: %s was cut: its last %llu bytes cannot be read\n", recording.c_str(),
                  static_cast<unsigned long long>(lost));
-  return view::replay_page(view::gunzip(view::page_gzip()), segments);
+  return view::replay_page(view::page_html(), segments);
 }
 
 }  // namespace slalom::tools

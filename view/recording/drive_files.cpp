@@ -40,7 +40,7 @@ Message make_replay(const StoredDrive& drive, const RecorderOptions& files) {
   ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); },
                         files.everything);
   write(drive, replay);
-  return file_message(drive.name + ".html", replay_page(gunzip(page_gzip()), segments));
+  return file_message(drive.name + ".html", replay_page(page_html(), segments));
 }
 
 Message make_recording(const StoredDrive& drive, RecorderOptions files) {

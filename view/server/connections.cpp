@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <regex>
 
 namespace slalom::view {
 namespace {
@@ -27,22 +28,18 @@ std::string path_of(std::string_view target) {
 
 /// The value of a key in the query of a target; empty if there is none.
 std::string_view query_value(std::string_view target, std::string_view key) {
-  std::size_t at = target.find('?');
-  while (at != std::string_view::npos) {
-    const std::size_t end = target.find('&', at + 1);
-    const std::string_view pair = target.substr(at + 1, end == std::string_view::npos ? end : end - at - 1);
+  for (std::size_t at = target.find('?'); at != target.npos; at = target.find('&', at + 1)) {
+    const std::string_view pair = target.substr(at + 1, target.substr(at + 1).find('&'));
     const std::size_t equals = pair.find('=');
-    if (pair.substr(0, equals) == key && equals != std::string_view::npos) return pair.substr(equals + 1);
-    at = end;
+    if (pair.substr(0, equals) == key && equals != pair.npos) return pair.substr(equals + 1);
   }
   return {};
 }
 
 /// Compares in a time that does not depend on how many characters are right.
 bool same_secret(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  int difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) difference |= a[i] ^ b[i];
+  int difference = a.size() != b.size();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference |= a[i] ^ b[i];
   return difference == 0;
 }
 
@@ -140,10 +137,14 @@ void HttpConnection::answer() {
   if (verdict.status == 200) {
     const Resource& resource = all_.resources.at(path_of(target));
     response_.set(http::field::content_type, resource.type);
-    if (resource.is_gzip) response_.set(http::field::content_encoding, "gzip");
+    // A client that asks for gzip, and not with the weight 0 (RFC 9110, 12.5.3).
+    static const std::regex gzip(R"((^|[ \t,])gzip[ \t]*(,|$|;[ \t]*q=(1|0?[.]0*[1-9])))", std::regex::icase);
+    const std::string_view asks = view_of(request[http::field::accept_encoding]);
+    const bool packed = !resource.gzip.empty() && std::regex_search(asks.begin(), asks.end(), gzip);
+    if (packed) response_.set(http::field::content_encoding, "gzip");
     // The page declares its policy in its head, but browsers take this part of it from the header alone.
     response_.set("Content-Security-Policy", "frame-ancestors " + all_.options.framed_by);
-    body = resource.body;
+    body = packed ? resource.gzip : resource.body;
   } else {
     ++all_.refused;
     response_.set(http::field::content_type, "text/plain; charset=utf-8");

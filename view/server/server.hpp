@@ -36,9 +36,9 @@ inline constexpr const char* notebooks = "http://localhost:* http://127.0.0.1:* 
 
 /// A resource that is served under a path.
 struct Resource {
-  std::string type;      ///< Content-Type
-  std::string body;      ///< content
-  bool is_gzip = false;  ///< whether the body is compressed with gzip, which every browser accepts
+  std::string type;    ///< Content-Type
+  std::string body;    ///< content
+  std::string gzip{};  ///< the body compressed with gzip, for clients that ask for it; empty: none
 };
 
 /// A message to clients; shared, so that one copy serves all.

@@ -21,7 +21,7 @@ ServerOptions server_options(const ServeOptions& given) {
 
 struct View::Implementation {
   Implementation(std::unique_ptr<Subject> subject, const ServeOptions& options)
-      : server(server_options(options), {{"/", {"text/html; charset=utf-8", page_gzip(), true}}}),
+      : server(server_options(options), {{"/", {"text/html; charset=utf-8", page_html(), page_gzip()}}}),
         session((subject->restart(), std::move(subject)), server) {
     address = address_of(server, server_options(options));
     if (options.ready) options.ready(address);
