@@ -145,7 +145,7 @@ void Controller::finish(std::int64_t nan_costs) {
   if (solves_ == 1) check_repeats();
   // A robot that has arrived makes no progress, either, and many a task takes all that the inputs can do.
   if (result().suspicious_solves == SolveResult::symptom_patience &&
-      result().suspicion != Symptom::no_progress && result().suspicion != Symptom::saturated_inputs)
+      result().suspicion < Symptom::saturated_inputs)
     warn(std::string(name(result().suspicion)) + " in " + std::to_string(SolveResult::symptom_patience) +
          " solves in a row: " + explanation(result().suspicion));
 }
