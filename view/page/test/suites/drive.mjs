@@ -107,11 +107,11 @@ export default async function (h) {
   });
 
   await h.test("says why plans are poor", async () => {
-    await h.send({ do: "set", key: "svg_mppi.temperature", value: "1e-6" });
-    await h.says("label", "few samples");
-    assert.match(await page.getAttribute("#label", "title"), /effective sample size/);
+    await h.send({ do: "set", key: "svg_mppi.variance", value: "[1e-9, 1e-9]" });
+    await h.says("label", "small variance");
+    assert.match(await page.getAttribute("#label", "title"), /standard deviation/);
     await h.send({ do: "undo" });
-    await h.until(() => !document.getElementById("label").textContent.includes("few samples"));
+    await h.until(() => !document.getElementById("label").textContent.includes("small variance"));
   });
 
   await h.test("opponents drive along the line", async () => {
