@@ -31,15 +31,13 @@ constexpr const char* explanation(Symptom symptom) noexcept {
       "the effective sample size is below 3, so plans follow single samples: leave the temperature at 0, or "
       "raise it, or draw more samples",
       "the costs of the samples hardly differ, so plans are averages of all samples: leave the temperature "
-      "at "
-      "0, or lower it; leave out large constant costs; let the cost depend on the inputs",
+      "at 0, or lower it; leave out large constant costs; let the cost depend on the inputs",
       "half of the samples cost more than anything meant, or are not finite, so the model runs away within "
       "the horizon: take smaller steps of time, shorten the horizon, or limit the state",
       "the standard deviation of the samples is below a hundredth of the inputs' range, so plans change "
       "slowly: leave the variance at 0, or raise it",
       "nine of ten inputs of the plan are near a bound: widen the bounds, raise the cost of inputs, or "
-      "accept "
-      "that the task takes all that the inputs can do",
+      "accept that the task takes all that the inputs can do",
       "the first input swings from solve to solve, so the robot trembles: draw more samples, shorten the "
       "horizon, or use svg_mppi, whose noise becomes fine",
       "the least cost has stayed the same, so the robot has arrived, or the horizon ends before the way out: "
