@@ -7,6 +7,7 @@ import contextlib
 import csv
 import ctypes
 import fcntl
+import importlib
 import json
 import os
 import re
@@ -72,11 +73,13 @@ class Study:
     figures: Callable[[Any], dict[str, Any]]  # those in the output of a run
 
     def __init__(self, out: Any, **options: Any):
-        self.out, self.options = Path(out), {"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32, **options}
+        self.out = Path(out)
+        self.options: dict[str, Any] = {"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32, **options}
         self.method, self.sets, self.seed = self.options["methods"], self.options["set"], int(self.options["seed"])
         self.build, self.counted = build_of(path_of(self.program)), int(self.options[self.count])
         places = str(self.options.get(self.where, "")).split(",")
-        self.experiments = [(self.method, place, " ".join(self.sets).replace(",", ";")) for place in places]
+        values = " ".join(self.sets).replace(",", ";")
+        self.experiments: list[tuple[str, ...]] = [(self.method, place, values) for place in places]
         self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
 
     def words(self, *without: str) -> list[str]:
@@ -178,7 +181,7 @@ class Suite(Study):
         return {"score": 1 - int(row["solved"]), "cost": row["median_cost"]}
 
 
-def _calls(function: Callable, seeds: list[int], values: dict[str, Any]) -> list[Any]:
+def _calls(function: Callable[..., Any], seeds: list[int], values: dict[str, Any]) -> list[Any]:
     return [function(seed, **values) for seed in seeds]
 
 
@@ -195,7 +198,7 @@ class Function(Study):
         return output if isinstance(output, dict) else {"score": output}
 
 
-def _timed(call: Callable, *arguments: Any) -> tuple[Any, float]:
+def _timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     """On a worker: what the call returns, and the seconds that it takes."""
     begin = time.monotonic()
     return call(*arguments), time.monotonic() - begin
@@ -208,7 +211,7 @@ def _end_with_parent() -> None:
 
 def _drive(study: Study, client: Any, jobs: int, seconds: float, quiet: bool) -> None:
     journal, spent, threads, begin = study.out / JOURNAL, 0.0, jobs or os.cpu_count() or 1, time.monotonic()
-    pending: dict[concurrent.futures.Future, list[tuple[int, int]]] = {}
+    pending: dict[concurrent.futures.Future[Any], list[tuple[int, int]]] = {}
     journal.touch()
     os.truncate(journal, journal.read_bytes().rfind(b"\n") + 1)
     done = {study.place(line) for line in journal.read_text().splitlines()[1:]}
@@ -286,7 +289,7 @@ def end_with(action: Callable[[], Any]) -> None:
 
 def connect(address: str) -> Any:
     """A Dask client of a scheduler, which waits ten minutes for one that was lost."""
-    from distributed import Client
+    Client: Any = importlib.import_module("distributed").Client
     Client(address, timeout=60, set_as_default=False).close()
     return Client(address, timeout=600, set_as_default=False)
 
