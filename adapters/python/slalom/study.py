@@ -70,7 +70,6 @@ class Study:
     place, of those that the option `where` names with commas between, has the seed `seed` + k. Others go to its program."""
 
     program, count, where = "slalom", "seeds", "scenario"
-    figures: Callable[[Any], dict[str, Any]]  # those in the output of a run
 
     def __init__(self, out: Any, **options: Any):
         self.out = Path(out)
@@ -90,6 +89,10 @@ class Study:
     def command(self, experiment: int, run_: int) -> list[str]:
         """The command that a run of an experiment is."""
         return [self.program, *self.words("seed", "seeds", self.where), "--seeds", "1", f"--{self.where}", self.experiments[experiment][1]]
+
+    def figures(self, output: Any) -> dict[str, Any]:
+        """Those in the output of a run."""
+        raise NotImplementedError
 
     def work(self, runs: list[tuple[int, int]]) -> tuple[Any, ...]:
         """A function and its arguments, for a worker."""
@@ -163,7 +166,7 @@ class Rooms(Study):
         words = ["--json", "-", "--seed", str(self.seed + run_), *(f"--set={each}" for each in self.sets)]
         return ["slalom", "navigate", *super().command(experiment, run_)[1:], *words]
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
+    def figures(self, output: Any) -> dict[str, Any]:
         return {name: int(each) if isinstance(each, bool) else each for name, each in json.loads(output)["results"][0]["by_seed"][0].items()}
 
 
@@ -176,7 +179,7 @@ class Suite(Study):
         words = ["--first-seed", str(self.seed + run_), "--methods", ":".join([self.method, *self.sets])]
         return [*super().command(experiment, run_), *words, *([] if "rollouts" in self.options else ["--rollouts", "64"])]
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
+    def figures(self, output: Any) -> dict[str, Any]:
         row = next(csv.DictReader(output.splitlines()))
         return {"score": 1 - int(row["solved"]), "cost": row["median_cost"]}
 
@@ -194,7 +197,7 @@ class Function(Study):
         values = {key: value_of(text) for key, text in (each.split("=", 1) for each in self.sets)}
         return _calls, self.options["function"], [self.seed + run_ for _, run_ in runs], values
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
+    def figures(self, output: Any) -> dict[str, Any]:
         return output if isinstance(output, dict) else {"score": output}
 
 
