@@ -77,8 +77,8 @@ class Study:
         self.method, self.sets, self.seed = self.options["methods"], self.options["set"], int(self.options["seed"])
         self.build, self.counted = build_of(path_of(self.program)), int(self.options[self.count])
         places = str(self.options.get(self.where, "")).split(",")
-        values = " ".join(self.sets).replace(",", ";")
-        self.experiments: list[tuple[str, ...]] = [(self.method, place, values) for place in places]
+        sets = " ".join(self.sets).replace(",", ";")
+        self.experiments: list[tuple[str, ...]] = [(self.method, place, sets) for place in places]
         self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
 
     def words(self, *without: str) -> list[str]:
@@ -92,7 +92,7 @@ class Study:
 
     def figures(self, output: Any) -> dict[str, Any]:
         """Those in the output of a run."""
-        raise NotImplementedError
+        return output if isinstance(output, dict) else {"score": output}
 
     def work(self, runs: list[tuple[int, int]]) -> tuple[Any, ...]:
         """A function and its arguments, for a worker."""
@@ -196,9 +196,6 @@ class Function(Study):
     def work(self, runs: list[tuple[int, int]]) -> tuple[Any, ...]:
         values = {key: value_of(text) for key, text in (each.split("=", 1) for each in self.sets)}
         return _calls, self.options["function"], [self.seed + run_ for _, run_ in runs], values
-
-    def figures(self, output: Any) -> dict[str, Any]:
-        return output if isinstance(output, dict) else {"score": output}
 
 
 def _timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
