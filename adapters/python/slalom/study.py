@@ -72,13 +72,11 @@ class Study:
     program, count, where = "slalom", "seeds", "scenario"
 
     def __init__(self, out: Any, **options: Any):
-        self.out = Path(out)
-        self.options: dict[str, Any] = {"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32, **options}
+        self.out, self.options = Path(out), dict[str, Any](methods="svg_mppi", set=[], seed=0, **{self.count: 32} | options)
         self.method, self.sets, self.seed = self.options["methods"], self.options["set"], int(self.options["seed"])
         self.build, self.counted = build_of(path_of(self.program)), int(self.options[self.count])
         places = str(self.options.get(self.where, "")).split(",")
-        sets = " ".join(self.sets).replace(",", ";")
-        self.experiments: list[tuple[str, ...]] = [(self.method, place, sets) for place in places]
+        self.experiments = [tuple[str, ...]([self.method, each, " ".join(self.sets).replace(",", ";")]) for each in places]
         self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
 
     def words(self, *without: str) -> list[str]:
