@@ -72,7 +72,7 @@ class Study:
     program, count, where = "slalom", "seeds", "scenario"
 
     def __init__(self, out: Any, **options: Any):
-        self.out, self.options = Path(out), dict[str, Any](methods="svg_mppi", set=[], seed=0, **{self.count: 32} | options)
+        self.out, self.options = Path(out), dict[str, Any]({"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32}, **options)
         self.method, self.sets, self.seed = self.options["methods"], self.options["set"], int(self.options["seed"])
         self.build, self.counted = build_of(path_of(self.program)), int(self.options[self.count])
         places = str(self.options.get(self.where, "")).split(",")
