@@ -19,6 +19,16 @@ struct SequenceList {
   int sequences = 0;              ///< number of sequences
 };
 
+/// States near the present one, in which a plan may really start or be after a step: each differs from it as
+/// an earlier prediction differed from what came.
+class NearbyStates {
+ public:
+  virtual ~NearbyStates() = default;
+  virtual int count() const noexcept = 0;  ///< 0 while all predictions were exact
+  /// Makes the evaluator start at one of them, or at the present state (-1).
+  virtual void start_at(int index) noexcept = 0;
+};
+
 /// The inputs of a solve that change from one to the next.
 struct SolveRequest {
   /// Time since the last solve, s, at least 0. Solvers that shift their warm start shift it by this time.
@@ -31,6 +41,8 @@ struct SolveRequest {
   /// the solver's horizon. Values outside the bounds are moved into them. Solvers without `takes_proposals`
   /// ignore them.
   SequenceList proposals{};
+  /// States near the present one, from which `svg_mppi` evaluates its plans, too. Controllers set it.
+  NearbyStates* nearby = nullptr;
 };
 
 /// Whether a controller can solve a request for a problem whose steps take `time_step` (s; 0: unknown):

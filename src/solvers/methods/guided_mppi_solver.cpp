@@ -10,6 +10,7 @@
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "solvers/methods/fine_noise.hpp"
 #include "solvers/methods/guide_search.hpp"
+#include "solvers/methods/last_choice.hpp"
 #include "solvers/methods/method_solver.hpp"
 #include "solvers/sampling/sample_kinds.hpp"
 #include "solvers/sampling/weigh_part.hpp"
@@ -21,6 +22,7 @@ namespace {
 // The numbers were chosen on the seeds from 76000 of the problem suite.
 constexpr int rollouts_of_guide = 100;    ///< a solve needs so many for each guide beyond the first
 constexpr int many = 50;                  ///< samples of guides in a batch from which their means count
+constexpr int rollouts_of_nearby = 12;    ///< a solve needs so many for each from a nearby state
 constexpr double least_of_guide = 0.125;  ///< share of either guide among their samples
 
 /// `svg_mppi` in batches. Three things are kept apart: the *plan* p, which is the cheapest sequence known and
@@ -30,6 +32,9 @@ constexpr double least_of_guide = 0.125;  ///< share of either guide among their
 ///     guide   v = m + D z            (GuideSearch)
 ///     fine    v = p + a s e^x D0 z   (FineNoise)
 ///     plan    p <- the cheapest of p, all v, all m, the mean of the fine v, and the proposals
+///
+/// At the end, the plan is the one of p, the last plan, the last m and the last mean of the fine v that costs
+/// least on average over the present state and those nearby, as far from it as the last predictions failed.
 ///
 /// w are weights as in `mppi`, each kind's own. A guide's m is moved on from solve to solve and never
 /// replaced by p, so it keeps looking elsewhere; its D starts anew in every solve. The second guide starts at
@@ -48,8 +53,8 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         guides_(static_cast<std::size_t>(
             std::clamp(std::min(options.guides.count, options.samples / rollouts_of_guide), 1, 2))),
         batches_(batches),
-        ends_(batches < options.samples / 8 ? guide_count() + 1 : 0),
-        total_(options.samples - ends_),
+        most_nearby_(options.nearby_states),
+        total_(options.samples),
         set_(options.horizon, inputs, (total_ + batches - 1) / batches,
              detail::NoiseShape(options.noise, options.horizon, inputs)),
         first_variance_(spread(options.variance)),
@@ -62,9 +67,8 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         path_(batches * guide_count(), rows()),
         sums_(size()),
         kinds_(set_.stride(), options.noise.knots == 0 && !options.noise.pinned),
-        last_(options.horizon, inputs, guide_count() + 1),
-        last_costs_(last_.stride()),
-        last_collided_(static_cast<std::size_t>(last_.stride())) {
+        last_(options.horizon, inputs, guide_count() + 3),
+        last_plan_(plan_) {
     for (detail::GuideSearch& guide : guides_) guide.variance = guide.deviation = first_variance_;
     set_.set_white(true);
     reset(options.seed);
@@ -96,6 +100,11 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
                const Deadline& deadline) noexcept {
     begin(shift_ ? warm_start_shift(evaluator, request) : 0, request.proposals);
+    last_plan_ = plan_;
+    const bool ends = batches_ < total_ / 8;  // otherwise the rollouts of the end would be too many
+    const int nearby = ends ? starts(evaluator, request.nearby) : 0;
+    const int ends_of_start = ends ? guide_count() + (nearby > 0 ? 3 : 1) : 0;
+    const int total = total_ - ends_of_start * (nearby + 1);
     detail::BatchStatistics all;
     result_.status = Status::ok;
     int batch = 0;
@@ -104,7 +113,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         result_.status = Status::deadline;
         break;
       }
-      set_.set_samples(total_ / batches_ + (batch < total_ % batches_));
+      set_.set_samples(total / batches_ + (batch < total % batches_));
       arrange();
       add(all, set_.draw_and_evaluate(evaluator, key(batch), mixture(), {known_.values(), known_count_},
                                       pool(), deadline));
@@ -116,7 +125,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
       result_.times.update += detail::seconds(start, detail::Clock::now());
     }
     result_.iterations = batch;
-    if (ends_ > 0 && result_.status == Status::ok) try_means(evaluator);
+    if (ends && result_.status == Status::ok) choose_last(evaluator, request.nearby, nearby);
     report(all);
     next_solve();
   }
@@ -286,14 +295,29 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
     std::copy_n(means_[index], size(), path_[batch * guide_count() + index]);
   }
 
-  /// Evaluates the last means. The cheapest one becomes the plan if it costs less.
-  void try_means(const BatchEvaluator& evaluator) noexcept {
-    last_.set_sample(0, fine_mean_);
-    for (int g = 0; g < guide_count(); ++g) last_.set_sample(g + 1, {means_[g], size()});
-    const int best = evaluate(evaluator, last_, {}, last_costs_.data(), last_collided_.data()).best;
-    if (!(last_costs_[best] < known_cost_)) return;
-    known_cost_ = last_costs_[best];
-    last_.get_sample(best, plan_);
+  /// Number of nearby states from which the last sequences are evaluated: an even one, with each error and
+  /// its opposite.
+  int starts(const BatchEvaluator& evaluator, const NearbyStates* nearby) const noexcept {
+    if (nearby == nullptr || evaluator.whole_batches()) return 0;
+    return std::min(
+        {nearby->count(), most_nearby_, total_ / (rollouts_of_nearby * (guide_count() + 3)) / 2 * 2});
+  }
+
+  /// Evaluates the last means, and makes the cheapest sequence the plan. With `count` nearby states, the plan
+  /// and the last one must win there, too.
+  void choose_last(const BatchEvaluator& evaluator, NearbyStates* nearby, int count) noexcept {
+    last_.clear();
+    if (count > 0) last_.add(plan_);
+    if (count > 0) last_.add(last_plan_);
+    last_.add(fine_mean_);
+    for (int g = 0; g < guide_count(); ++g) last_.add({means_[g], size()});
+    const int best = last_.cheapest(nearby, count, [&] {
+      (void)evaluate(evaluator, last_.sequences, {}, last_.costs.data(), last_.collided.data());
+    });
+    const float cost = static_cast<float>(last_.present[static_cast<std::size_t>(best)]);
+    if (count == 0 && !(cost < known_cost_)) return;
+    known_cost_ = cost;
+    last_.sequences.get_sample(best, plan_);
   }
 
   void report(const detail::BatchStatistics& all) noexcept {
@@ -311,8 +335,8 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   bool apart_;  ///< whether guides are kept apart from the plan
   double zero_share_, given_temperature_, effective_fraction_;
   std::vector<detail::GuideSearch> guides_;
-  int batches_;
-  int ends_, total_;  ///< rollouts of the last means, and of all batches
+  int batches_, most_nearby_;
+  int total_;  ///< rollouts of a solve
   detail::SampleSet set_;
   std::vector<float> first_variance_;  ///< [row]
   detail::FineNoise fine_;
@@ -322,9 +346,8 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   detail::Matrix<float> path_;                  ///< [batch x guide][row]
   std::vector<double> sums_;                    ///< [row]
   detail::SampleKinds kinds_;
-  SequenceBatch last_;        ///< the last means
-  AlignedBuffer last_costs_;  ///< theirs
-  std::vector<std::uint8_t> last_collided_;
+  detail::LastChoice last_;
+  std::vector<float> last_plan_;  ///< the plan with which the solve began [row]
   std::array<detail::Mixture::Source, 4> sources_;
   detail::WeightSums<double> weight_sums_;  ///< sums of the present weights, before they were normalised
   double fine_temperature_ = 0;
