@@ -35,7 +35,8 @@ struct SolveRequest {
   double elapsed = 0;
   /// Wall-clock time that the solve may take, s; 1e6 or more: no limit. When it has passed, the solver begins
   /// no new part of the samples and returns the best solution so far. It ends later by the part that is being
-  /// evaluated (with `whole_batches` the whole batch) and by the last update and check.
+  /// evaluated (with `whole_batches` the whole batch). A solver learns from late solves, whose status is
+  /// `deadline`, how much time to keep for the last update and check, at most 0.8 of what it has.
   double deadline = std::numeric_limits<double>::infinity();
   /// Control sequences of other controllers that compete with the samples of this solve (proposals.hpp), over
   /// the solver's horizon. Values outside the bounds are moved into them. Solvers without `takes_proposals`
