@@ -9,7 +9,7 @@ namespace slalom {
 /// How far the last predictions of a state were from what came. Each error and its opposite is a direction in
 /// which the present state may be wrong, too, or the next one.
 ///
-/// Of each scalar, no error counts more than the second largest of those kept: so a single jump, as of an
+/// No error of a scalar counts more than the second largest of those kept: so a single jump, as of an
 /// angle that starts anew at -pi, changes nothing. An error below the resolution of float32, in which
 /// rollouts are computed, is none.
 class PredictionErrors {

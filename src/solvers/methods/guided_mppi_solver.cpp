@@ -22,7 +22,6 @@ namespace {
 // The numbers were chosen on the seeds from 76000 of the problem suite.
 constexpr int rollouts_of_guide = 100;    ///< a solve needs so many for each guide beyond the first
 constexpr int many = 50;                  ///< samples of guides in a batch from which their means count
-constexpr int rollouts_of_nearby = 12;    ///< a solve needs so many for each from a nearby state
 constexpr double least_of_guide = 0.125;  ///< share of either guide among their samples
 
 /// `svg_mppi` in batches. Three things are kept apart: the *plan* p, which is the cheapest sequence known and
@@ -33,8 +32,7 @@ constexpr double least_of_guide = 0.125;  ///< share of either guide among their
 ///     fine    v = p + a s e^x D0 z   (FineNoise)
 ///     plan    p <- the cheapest of p, all v, all m, the mean of the fine v, and the proposals
 ///
-/// At the end, the plan is the one of p, the last plan, the last m and the last mean of the fine v that costs
-/// least on average over the present state and those nearby, as far from it as the last predictions failed.
+/// LastChoice ends a solve.
 ///
 /// w are weights as in `mppi`, each kind's own. A guide's m is moved on from solve to solve and never
 /// replaced by p, so it keeps looking elsewhere; its D starts anew in every solve. The second guide starts at
@@ -53,7 +51,6 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         guides_(static_cast<std::size_t>(
             std::clamp(std::min(options.guides.count, options.samples / rollouts_of_guide), 1, 2))),
         batches_(batches),
-        most_nearby_(options.nearby_states),
         total_(options.samples),
         set_(options.horizon, inputs, (total_ + batches - 1) / batches,
              detail::NoiseShape(options.noise, options.horizon, inputs)),
@@ -67,8 +64,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         path_(batches * guide_count(), rows()),
         sums_(size()),
         kinds_(set_.stride(), options.noise.knots == 0 && !options.noise.pinned),
-        last_(options.horizon, inputs, guide_count() + 3),
-        last_plan_(plan_) {
+        last_(options.horizon, inputs, guide_count() + 1, options.nearby_states) {
     for (detail::GuideSearch& guide : guides_) guide.variance = guide.deviation = first_variance_;
     set_.set_white(true);
     reset(options.seed);
@@ -100,11 +96,9 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
                const Deadline& deadline) noexcept {
     begin(shift_ ? warm_start_shift(evaluator, request) : 0, request.proposals);
-    last_plan_ = plan_;
+    NearbyStates* const nearby = evaluator.whole_batches() ? nullptr : request.nearby;
     const bool ends = batches_ < total_ / 8;  // otherwise the rollouts of the end would be too many
-    const int nearby = ends ? starts(evaluator, request.nearby) : 0;
-    const int ends_of_start = ends ? guide_count() + (nearby > 0 ? 3 : 1) : 0;
-    const int total = total_ - ends_of_start * (nearby + 1);
+    const int total = total_ - (ends ? last_.begin(plan_, nearby, total_) : 0);
     detail::BatchStatistics all;
     result_.status = Status::ok;
     int batch = 0;
@@ -115,8 +109,10 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
       }
       set_.set_samples(total / batches_ + (batch < total % batches_));
       arrange();
-      add(all, set_.draw_and_evaluate(evaluator, key(batch), mixture(), {known_.values(), known_count_},
-                                      pool(), deadline));
+      const detail::BatchStatistics drawn = set_.draw_and_evaluate(
+          evaluator, key(batch), mixture(), {known_.values(), known_count_}, pool(), deadline);
+      all += drawn;
+      if (drawn.evaluated < set_.samples()) result_.status = Status::deadline;
       const auto start = detail::Clock::now();
       choose_plan(batch > 0);
       refine();
@@ -125,7 +121,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
       result_.times.update += detail::seconds(start, detail::Clock::now());
     }
     result_.iterations = batch;
-    if (ends && result_.status == Status::ok) choose_last(evaluator, request.nearby, nearby);
+    if (ends && result_.status == Status::ok) choose_last(evaluator);
     report(all);
     next_solve();
   }
@@ -211,16 +207,6 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
     return kinds_.of(std::span(sources_).first(count), low().data(), high().data());
   }
 
-  /// Adds the statistics of a batch to those of a solve.
-  void add(detail::BatchStatistics& all, const detail::BatchStatistics& drawn) noexcept {
-    all.finite += drawn.finite;
-    all.collided += drawn.collided;
-    all.evaluated += drawn.evaluated;
-    result_.times.draw += drawn.draw_time;
-    result_.times.evaluate += drawn.evaluate_time;
-    if (drawn.evaluated < set_.samples()) result_.status = Status::deadline;
-  }
-
   /// The cheapest of the samples `first` to `end`, which are at least one.
   int best_of(int first, int end) const noexcept {
     const float* const costs = set_.costs().data();
@@ -295,33 +281,20 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
     std::copy_n(means_[index], size(), path_[batch * guide_count() + index]);
   }
 
-  /// Number of nearby states from which the last sequences are evaluated: an even one, with each error and
-  /// its opposite.
-  int starts(const BatchEvaluator& evaluator, const NearbyStates* nearby) const noexcept {
-    if (nearby == nullptr || evaluator.whole_batches()) return 0;
-    return std::min(
-        {nearby->count(), most_nearby_, total_ / (rollouts_of_nearby * (guide_count() + 3)) / 2 * 2});
-  }
-
-  /// Evaluates the last means, and makes the cheapest sequence the plan. With `count` nearby states, the plan
-  /// and the last one must win there, too.
-  void choose_last(const BatchEvaluator& evaluator, NearbyStates* nearby, int count) noexcept {
-    last_.clear();
-    if (count > 0) last_.add(plan_);
-    if (count > 0) last_.add(last_plan_);
+  /// Makes the best of the last sequences the plan.
+  void choose_last(const BatchEvaluator& evaluator) noexcept {
+    last_.clear(plan_);
     last_.add(fine_mean_);
     for (int g = 0; g < guide_count(); ++g) last_.add({means_[g], size()});
-    const int best = last_.cheapest(nearby, count, [&] {
-      (void)evaluate(evaluator, last_.sequences, {}, last_.costs.data(), last_.collided.data());
-    });
-    const float cost = static_cast<float>(last_.present[static_cast<std::size_t>(best)]);
-    if (count == 0 && !(cost < known_cost_)) return;
-    known_cost_ = cost;
-    last_.sequences.get_sample(best, plan_);
+    last_.compare(
+        [&] { (void)evaluate(evaluator, last_.sequences, {}, last_.costs.data(), last_.collided.data()); });
+    known_cost_ = last_.choose(known_cost_, plan_);
   }
 
   void report(const detail::BatchStatistics& all) noexcept {
     detail::report_samples(set_, all, weight_sums_, result_);
+    result_.times.draw = all.draw_time;
+    result_.times.evaluate = all.evaluate_time;
     result_.minimum_cost = known_cost_;
     result_.effective_sample_size = effective_size_;
     effective_size_ = 0;
@@ -335,7 +308,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   bool apart_;  ///< whether guides are kept apart from the plan
   double zero_share_, given_temperature_, effective_fraction_;
   std::vector<detail::GuideSearch> guides_;
-  int batches_, most_nearby_;
+  int batches_;
   int total_;  ///< rollouts of a solve
   detail::SampleSet set_;
   std::vector<float> first_variance_;  ///< [row]
@@ -347,7 +320,6 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   std::vector<double> sums_;                    ///< [row]
   detail::SampleKinds kinds_;
   detail::LastChoice last_;
-  std::vector<float> last_plan_;  ///< the plan with which the solve began [row]
   std::array<detail::Mixture::Source, 4> sources_;
   detail::WeightSums<double> weight_sums_;  ///< sums of the present weights, before they were normalised
   double fine_temperature_ = 0;

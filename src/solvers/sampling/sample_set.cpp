@@ -39,12 +39,6 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
       tile_sums_(tiles(), steps * inputs * moments),
       reached_(tiles()) {}
 
-/// Returns part `index` of the set, divided into parts of `size` samples.
-Range SampleSet::part(int index, int size) const noexcept {
-  const int first = index * size;
-  return {first, std::min(size, values_.stride() - first)};
-}
-
 /// Fills a range of samples with noise: values of the problem's sampler, or normal values if it has none.
 /// Then gives the noise its shape.
 void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, RandomKey key) noexcept {
@@ -137,15 +131,8 @@ BatchStatistics SampleSet::run_parts(ThreadPool& pool, const Deadline& deadline,
   all.minimum_cost = all.minimum_total = infinite;
   int end = 0;
   for (int i = 0; i < parts; ++i) {
-    const BatchStatistics& c = statistics_[i];
-    all.minimum_total = std::min(all.minimum_total, c.minimum_total);
-    all.minimum_cost = std::min(all.minimum_cost, c.minimum_cost);
-    all.finite += c.finite;
-    all.collided += c.collided;
-    all.evaluated += c.evaluated;
-    all.draw_time += c.draw_time;
-    all.evaluate_time += c.evaluate_time;
-    if (c.evaluated > 0) end = std::min((i + 1) * size, values_.stride());
+    all += statistics_[i];
+    if (statistics_[i].evaluated > 0) end = std::min((i + 1) * size, values_.stride());
   }
   reached_ = (end + tile_ - 1) / tile_;
   std::fill(weights_.data() + end, weights_.data() + values_.stride(), 0.0f);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <span>
@@ -31,6 +32,17 @@ struct BatchStatistics {
   int evaluated = 0;         ///< samples that were drawn and evaluated before the deadline
   double draw_time = 0;      ///< s, summed over threads
   double evaluate_time = 0;  ///< s, summed over threads
+
+  BatchStatistics& operator+=(const BatchStatistics& other) noexcept {
+    minimum_total = std::min(minimum_total, other.minimum_total);
+    minimum_cost = std::min(minimum_cost, other.minimum_cost);
+    finite += other.finite;
+    collided += other.collided;
+    evaluated += other.evaluated;
+    draw_time += other.draw_time;
+    evaluate_time += other.evaluate_time;
+    return *this;
+  }
 };
 
 /// A set of control sequences with their costs and weights. Work is divided into tiles of samples that fit
@@ -124,7 +136,10 @@ class SampleSet {
     return prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
   }
   Range range(int tile) const noexcept { return part(tile, tile_); }
-  Range part(int index, int size) const noexcept;
+  /// Part `index` of the set, divided into parts of `size` samples.
+  Range part(int index, int size) const noexcept {
+    return {index * size, std::min(size, values_.stride() - index * size)};
+  }
   int part_size(int threads) const noexcept;
   bool prepared(Range range) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
