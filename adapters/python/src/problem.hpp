@@ -148,7 +148,8 @@ class BuiltIn : public slalom::detail::ControlledEvaluator<P, Base> {
     CostTermsOf<P> terms;
     const Cost<double> cost = slalom::predict(problem(), to_state(state), to_inputs(inputs).data(),
                                               static_cast<int>(steps), states.data(), &terms);
-    Prediction result{std::vector<double>(sizeof(State) / sizeof(double) * states.size()), cost.value, cost.collided, {}};
+    Prediction result{
+        std::vector<double>(sizeof(State) / sizeof(double) * states.size()), cost.value, cost.collided, {}};
     for (const CostTerm& term : terms) result.terms.emplace_back(term.name, term.value);
     std::memcpy(result.states.data(), states.data(), result.states.size() * sizeof(double));
     return result;
