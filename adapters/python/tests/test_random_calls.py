@@ -111,7 +111,7 @@ def call_often(seed, count):
             pool = [*pool[:size], *own]
 
 
-# Names near that of an optional part, and functions with a mistake, with the words that the compiler must say.
+# Names near that of an optional part, and functions with a mistake; what the compiler must say.
 NEAR = {"terminalCost": "terminal_cost", "u_min": "input_min", "input_rate": "input_rate_max", "input_level": "input_levels",
         "lookUp": "look_up", "randomise": "randomize", "sampler": "sample", "h": "dt"}
 WRONG = {"if (x.m0 > T(0)) return T(1);": "select", "const bool far = x.m0 > T(2); return T(far);": "select",
