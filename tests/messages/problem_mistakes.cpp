@@ -78,7 +78,7 @@ struct Point {
   T terminal_cost(const State<T>& x) {
     return x.position;
   }
-#elif MISTAKE != 1
+#elif MISTAKE != 1 && MISTAKE != 19
   template <class T>
   T terminal_cost(const State<T>& x) const {
 #if MISTAKE == 13

@@ -94,9 +94,9 @@ def call_often(seed, count):
         print(owner, name, *map(type, arguments), {k: v if isinstance(v, (int, float, str)) else type(v) for k, v in named.items()},
               file=sys.stderr, flush=True)
         held, begin, error, made = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time(), None, None
-        signal.setitimer(signal.ITIMER_REAL, SECONDS)
         try:
             try:
+                signal.setitimer(signal.ITIMER_REAL, SECONDS)
                 made = call(*arguments, **named)
             finally:
                 signal.setitimer(signal.ITIMER_REAL, 0)  # an alarm may come here, too
