@@ -7,6 +7,7 @@ import contextlib
 import csv
 import ctypes
 import fcntl
+import importlib
 import json
 import os
 import re
@@ -69,14 +70,13 @@ class Study:
     place, of those that the option `where` names with commas between, has the seed `seed` + k. Others go to its program."""
 
     program, count, where = "slalom", "seeds", "scenario"
-    figures: Callable[[Any], dict[str, Any]]  # those in the output of a run
 
     def __init__(self, out: Any, **options: Any):
-        self.out, self.options = Path(out), {"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32, **options}
+        self.out, self.options = Path(out), dict[str, Any]({"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32}, **options)
         self.method, self.sets, self.seed = self.options["methods"], self.options["set"], int(self.options["seed"])
         self.build, self.counted = build_of(path_of(self.program)), int(self.options[self.count])
         places = str(self.options.get(self.where, "")).split(",")
-        self.experiments = [(self.method, place, " ".join(self.sets).replace(",", ";")) for place in places]
+        self.experiments = [tuple[str, ...]([self.method, each, " ".join(self.sets).replace(",", ";")]) for each in places]
         self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
 
     def words(self, *without: str) -> list[str]:
@@ -87,6 +87,10 @@ class Study:
     def command(self, experiment: int, run_: int) -> list[str]:
         """The command that a run of an experiment is."""
         return [self.program, *self.words("seed", "seeds", self.where), "--seeds", "1", f"--{self.where}", self.experiments[experiment][1]]
+
+    def figures(self, output: Any) -> dict[str, Any]:
+        """Those in the output of a run."""
+        return output if isinstance(output, dict) else {"score": output}
 
     def work(self, runs: list[tuple[int, int]]) -> tuple[Any, ...]:
         """A function and its arguments, for a worker."""
@@ -160,7 +164,7 @@ class Rooms(Study):
         words = ["--json", "-", "--seed", str(self.seed + run_), *(f"--set={each}" for each in self.sets)]
         return ["slalom", "navigate", *super().command(experiment, run_)[1:], *words]
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
+    def figures(self, output: Any) -> dict[str, Any]:
         return {name: int(each) if isinstance(each, bool) else each for name, each in json.loads(output)["results"][0]["by_seed"][0].items()}
 
 
@@ -173,12 +177,12 @@ class Suite(Study):
         words = ["--first-seed", str(self.seed + run_), "--methods", ":".join([self.method, *self.sets])]
         return [*super().command(experiment, run_), *words, *([] if "rollouts" in self.options else ["--rollouts", "64"])]
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
+    def figures(self, output: Any) -> dict[str, Any]:
         row = next(csv.DictReader(output.splitlines()))
         return {"score": 1 - int(row["solved"]), "cost": row["median_cost"]}
 
 
-def _calls(function: Callable, seeds: list[int], values: dict[str, Any]) -> list[Any]:
+def _calls(function: Callable[..., Any], seeds: list[int], values: dict[str, Any]) -> list[Any]:
     return [function(seed, **values) for seed in seeds]
 
 
@@ -191,11 +195,8 @@ class Function(Study):
         values = {key: value_of(text) for key, text in (each.split("=", 1) for each in self.sets)}
         return _calls, self.options["function"], [self.seed + run_ for _, run_ in runs], values
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
-        return output if isinstance(output, dict) else {"score": output}
 
-
-def _timed(call: Callable, *arguments: Any) -> tuple[Any, float]:
+def _timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     """On a worker: what the call returns, and the seconds that it takes."""
     begin = time.monotonic()
     return call(*arguments), time.monotonic() - begin
@@ -208,7 +209,7 @@ def _end_with_parent() -> None:
 
 def _drive(study: Study, client: Any, jobs: int, seconds: float, quiet: bool) -> None:
     journal, spent, threads, begin = study.out / JOURNAL, 0.0, jobs or os.cpu_count() or 1, time.monotonic()
-    pending: dict[concurrent.futures.Future, list[tuple[int, int]]] = {}
+    pending: dict[concurrent.futures.Future[Any], list[tuple[int, int]]] = {}
     journal.touch()
     os.truncate(journal, journal.read_bytes().rfind(b"\n") + 1)
     done = {study.place(line) for line in journal.read_text().splitlines()[1:]}
@@ -286,7 +287,7 @@ def end_with(action: Callable[[], Any]) -> None:
 
 def connect(address: str) -> Any:
     """A Dask client of a scheduler, which waits ten minutes for one that was lost."""
-    from distributed import Client
+    Client: Any = importlib.import_module("distributed").Client
     Client(address, timeout=60, set_as_default=False).close()
     return Client(address, timeout=600, set_as_default=False)
 
