@@ -1,9 +1,6 @@
 // The logic of the nodes and of the controller for nav2: refused options, paths and maps change nothing.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
-
 #include "logic/localiser_core.hpp"
 #include "logic/path_follower.hpp"
 #include "logic/planner_core.hpp"

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
-
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <numbers>
-
 #include "logic/known_pose.hpp"
 #include "support/temporary_folder.hpp"
 

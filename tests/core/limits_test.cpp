@@ -2,11 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <cmath>
 #include <csignal>
-#include <cstdint>
-#include <filesystem>
-#include <string>
 
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/core/numbers/count.hpp"

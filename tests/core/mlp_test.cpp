@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <functional>
-#include <random>
-#include <stdexcept>
 
 #include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/core/error.hpp"

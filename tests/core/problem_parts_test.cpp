@@ -1,10 +1,6 @@
 // The optional members of a problem, in the rollouts of every instruction set.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "support/rollouts.hpp"
 
 namespace slalom {

@@ -1,10 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <random>
-#include <vector>
 
 #include "slalom/core/grid_view.hpp"
 #include "support/rollouts.hpp"

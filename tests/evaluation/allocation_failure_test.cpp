@@ -2,8 +2,6 @@
 // a room: std::bad_alloc, and nothing is lost.
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include "evaluation/courses.hpp"
 #include "slalom/evaluation/grid_race.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"

@@ -2,11 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <random>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/core/derivatives/linearize.hpp"
 #include "support/allocations.hpp"

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include <stdexcept>
-
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
 

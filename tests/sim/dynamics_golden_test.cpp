@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "sim/golden_table.hpp"
 #include "slalom/sim/plant.hpp"
 

@@ -2,10 +2,6 @@
 // ship are what their commands make, and can be lapped.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <filesystem>
-#include <sstream>
-
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/world.hpp"

@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "support/temporary_folder.hpp"

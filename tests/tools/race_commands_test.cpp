@@ -2,7 +2,6 @@
 // pictures, and bad input named in words.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
 
 #include "slalom/maps/ros_map.hpp"

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "support/thrown_words.hpp"
 
 namespace slalom::tools {

@@ -2,11 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
 #include <functional>
-#include <stdexcept>
-#include <vector>
 
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"

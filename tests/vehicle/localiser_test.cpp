@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"

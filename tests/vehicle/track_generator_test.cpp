@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <tuple>
 
 #include "slalom/maps/distance_field.hpp"

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
-#include <vector>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/clearance_map.hpp"

@@ -2,10 +2,6 @@
 // what was recorded. That other programs read them is checked in view/page/test/mcap.mjs.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <sstream>
-
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
 #include "view/car/car_subject.hpp"

@@ -1,10 +1,7 @@
 #include "tools/evaluation/comparison.hpp"
 
-#include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <map>
-#include <vector>
 
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
 
 #include "slalom/evaluation/results.hpp"
 

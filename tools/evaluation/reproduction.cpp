@@ -1,7 +1,5 @@
 #include "tools/evaluation/reproduction.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "json/json.hpp"

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <sqlite3.h>
-#include <cmath>
-#include <fstream>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/model/identification.hpp"

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
-#include <stdexcept>
 
 #include "slalom/vehicle/course/raceline.hpp"
 #include "support/thrown_words.hpp"

@@ -3,11 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <tuple>
-
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "support/temporary_folder.hpp"

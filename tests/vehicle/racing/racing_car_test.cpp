@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
 #include "support/thrown_words.hpp"
 
 namespace slalom::vehicle::racing_car_test {
