@@ -1,5 +1,4 @@
 // The logic of the nodes and of the controller for nav2: refused options, paths and maps change nothing.
-#include <gtest/gtest.h>
 
 #include "logic/localiser_core.hpp"
 #include "logic/path_follower.hpp"

@@ -1,5 +1,4 @@
 // Numbers that are too large, and files that do not fit onto the disk.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <csignal>

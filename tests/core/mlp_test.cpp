@@ -1,7 +1,5 @@
 #include "slalom/core/network/mlp.hpp"
 
-#include <gtest/gtest.h>
-
 #include <functional>
 
 #include "slalom/core/derivatives/linearize.hpp"

@@ -1,7 +1,5 @@
 #include "slalom/maps/field.hpp"
 
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "slalom/core/derivatives/linearize.hpp"

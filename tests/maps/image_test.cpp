@@ -1,6 +1,5 @@
 #include "slalom/maps/image.hpp"
 
-#include <gtest/gtest.h>
 #include <png.h>
 
 #include "slalom/core/error.hpp"

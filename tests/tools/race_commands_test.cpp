@@ -1,6 +1,5 @@
 // `slalom race`, alone and with several cars, and `slalom racing-benchmark`: tables, results,
 // pictures, and bad input named in words.
-#include <gtest/gtest.h>
 
 #include <set>
 

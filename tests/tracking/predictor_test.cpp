@@ -1,7 +1,5 @@
 #include "slalom/tracking/predictor.hpp"
 
-#include <gtest/gtest.h>
-
 #include <functional>
 
 #include "support/allocations.hpp"

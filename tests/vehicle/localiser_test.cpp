@@ -1,7 +1,5 @@
 #include "slalom/vehicle/localisation/localiser.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 
 #include "support/allocations.hpp"

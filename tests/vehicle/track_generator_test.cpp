@@ -1,8 +1,6 @@
 // Properties that every generated track has, over seeds, characters, lengths and widths.
 #include "slalom/vehicle/course/track_generator.hpp"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <tuple>
 

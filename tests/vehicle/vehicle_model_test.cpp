@@ -1,8 +1,6 @@
 // Properties of every registered vehicle model.
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
-#include <gtest/gtest.h>
-
 #include <set>
 
 #include "slalom/core/option_access.hpp"

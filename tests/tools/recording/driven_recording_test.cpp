@@ -1,6 +1,5 @@
 // Recorded drives, and bags of rosbag2: which messages and topics are used, what a sample is, and what is
 // refused.
-#include <gtest/gtest.h>
 
 #include <sqlite3.h>
 

@@ -1,8 +1,6 @@
 // The minimum-time line: known answers, limits, optimality, errors.
 #include "slalom/vehicle/racing/minimum_time.hpp"
 
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "slalom/vehicle/course/raceline.hpp"

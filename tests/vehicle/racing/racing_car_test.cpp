@@ -1,8 +1,6 @@
 // Cars: profiles, configurations.
 #include "slalom/vehicle/racing/racing_car.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/thrown_words.hpp"
 
 namespace slalom::vehicle::racing_car_test {
