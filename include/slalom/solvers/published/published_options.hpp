@@ -5,7 +5,7 @@
 /// Reproduction of the published program of Honda et al. (ICRA 2024). This folder holds the options that
 /// exist only for it: each of the methods' aggregates has one of the aggregates below as its member
 /// `published`. Their defaults are the methods as the papers have them; configs/published.yaml has the values
-/// of the program. docs/paper-options.md lists every departure of the program from the
+/// of the program. docs/paper.md lists every departure of the program from the
 /// paper.
 namespace slalom {
 
