@@ -191,6 +191,9 @@ void add_narrow_tasks(std::vector<Task>& tasks);
 /// Adds loads, vehicles and schedules with models of a few lines.
 void add_further_tasks(std::vector<Task>& tasks);
 
+/// Tasks that are solved by exactness, which are not among all_tasks().
+std::vector<Task> holding_tasks();
+
 inline std::vector<Task> all_tasks() {
   std::vector<Task> tasks;
   add_example_tasks(tasks);

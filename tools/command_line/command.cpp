@@ -8,6 +8,7 @@
 #include <iostream>
 #include <new>
 
+#include "slalom/core/error.hpp"
 #include "slalom/core/instruction_set.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/version.hpp"
@@ -188,6 +189,11 @@ std::string message_of(const CLI::ParseError& error, const CLI::App& app) {
   return text;
 }
 
+int report(const std::string& what, int exit_status) {
+  std::cerr << "slalom: " << shortened(what) << "\n";
+  return exit_status;
+}
+
 int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEntry>& entries) {
   int exit_status = 0;
   std::vector<std::string> names;
@@ -216,14 +222,8 @@ int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEn
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    std::cerr << "slalom: " << message_of(error, app) << "\n";
-    return 2;
+    return report(message_of(error, app), 2);
   }
-  return exit_status;
-}
-
-int report(const char* what, int exit_status) {
-  std::cerr << "slalom: " << what << "\n";
   return exit_status;
 }
 
