@@ -98,7 +98,7 @@ struct PaperRows {
     PaperRow row{.table = table,
                  .name = name,
                  .method = "svg_mppi",
-                 // The authors vary one parameter, steer_cov, which is both (docs/paper.md).
+                 // The authors vary one parameter, steer_cov, which is both (docs/paper-options.md).
                  .set = {{"svg_mppi.adapt_covariance", "false"},
                          {"svg_mppi.variance", variance},
                          {"svg_mppi.guide_variance", variance}},
