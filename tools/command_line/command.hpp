@@ -39,7 +39,7 @@ auto for_option(const std::string& option, Action&& action) {
   }
 }
 
-/// What an option accepts, besides what its type does.
+/// The rule of an option's values, beyond that of its type.
 struct Rules {
   double least = -std::numeric_limits<double>::infinity();  ///< numbers in [least, most]
   double most = std::numeric_limits<double>::infinity();
