@@ -2,11 +2,7 @@
 // line of CSV for each task, method and number. script/problem-suite runs it and makes the table and the
 // plot.
 
-#include <cmath>
 #include <cstdio>
-#include <stdexcept>
-#include <string>
-#include <string_view>
 
 #include "slalom/core/option_access.hpp"
 #include "task.hpp"

@@ -1,14 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 #include "slalom/problems/arm.hpp"
 #include "slalom/slalom.hpp"

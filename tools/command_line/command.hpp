@@ -5,8 +5,6 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "slalom/core/error.hpp"

@@ -1,6 +1,3 @@
-#include <cstdio>
-#include <memory>
-#include <stdexcept>
 #include <thread>
 
 #include "bench/workload/measurements.hpp"

@@ -1,11 +1,4 @@
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <functional>
 #include <map>
-#include <memory>
-#include <optional>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

@@ -1,10 +1,4 @@
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <iostream>
-#include <memory>
-#include <optional>
-#include <string>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

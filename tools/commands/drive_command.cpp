@@ -1,8 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <memory>
-#include <optional>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

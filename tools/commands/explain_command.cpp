@@ -1,4 +1,3 @@
-#include <memory>
 
 #include "tools/commands/commands.hpp"
 #include "tools/explanation/explain_picture.hpp"

@@ -1,4 +1,3 @@
-#include <memory>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

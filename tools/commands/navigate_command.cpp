@@ -1,7 +1,4 @@
-#include <algorithm>
-#include <filesystem>
 #include <iostream>
-#include <memory>
 
 #include "json/json.hpp"
 #include "slalom/core/files/write_file.hpp"

@@ -1,7 +1,4 @@
-#include <cmath>
-#include <cstdio>
 #include <iostream>
-#include <memory>
 
 #include "json/json.hpp"
 #include "tools/commands/commands.hpp"

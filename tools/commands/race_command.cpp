@@ -1,5 +1,3 @@
-#include <cstdio>
-#include <memory>
 
 #include "json/json.hpp"
 #include "slalom/evaluation/race.hpp"

@@ -1,5 +1,3 @@
-#include <cstdio>
-#include <memory>
 
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"

@@ -1,7 +1,3 @@
-#include <chrono>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
 
 #include "slalom/core/error.hpp"
 #include "tools/commands/commands.hpp"

@@ -1,9 +1,6 @@
 #include "tools/scenario/scenario.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <system_error>
 
 #include "json/json.hpp"
