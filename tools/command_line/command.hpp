@@ -65,8 +65,8 @@ class Subcommand {
   /// Declares an option whose value goes to `value`, which must live as long as the action. A name without
   /// dashes declares a positional argument. The help shows the present value as the default, unless it is
   /// empty or outside the range. Every value that is not a number, not in the range, or empty is rejected in
-  /// the same words. The value: std::string, std::vector<std::string>, int, std::uint16_t, std::uint64_t, double, or
-  /// std::optional<double>.
+  /// the same words. The value: std::string, std::vector<std::string>, int, std::uint16_t, std::uint64_t,
+  /// double, or std::optional<double>.
   template <class Value>
   void option(const std::string& name, Value& value, const std::string& help, const Rules& rules = {});
   /// Declares --json, the file to which the command writes `what`.
