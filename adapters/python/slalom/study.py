@@ -99,23 +99,19 @@ class Study:
     place, of those that the option `where` names with commas between, has the seed `seed` + k. Others go to its program."""
 
     program, count, where = "slalom", "seeds", "scenario"
-    figures: Callable[[Any], dict[str, Any]]  # those in the output of a run
-    scored = "the score of a run"
+    scored, stride = "the score of a run", 1  # for a tuner: what it makes small, and the difference of the seeds of two runs
+
+    def __init__(self, out: Any, **options: Any):
+        self.out, self.options = Path(out), dict[str, Any]({"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32}, **options)
+        self.method, self.sets, self.seed = self.options["methods"], self.options["set"], int(self.options["seed"])
+        self.build, self.counted = build_of(path_of(self.program)), int(self.options[self.count])
+        places = str(self.options.get(self.where, "")).split(",")
+        self.experiments = [tuple[str, ...]([self.method, each, " ".join(self.sets).replace(",", ";")]) for each in places]
+        self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
 
     def score(self, row: dict[str, Any]) -> float:
         """What a tuner makes small."""
         return float(row["score"])
-
-    def __init__(self, out: Any, **options: Any):
-        self.out = Path(out)
-        self.options: dict[str, Any] = {"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32, **options}
-        self.method, self.sets, self.seed = self.options["methods"], self.options["set"], int(self.options["seed"])
-        self.build, self.counted = build_of(path_of(self.program)), int(self.options[self.count])
-        places = str(self.options.get(self.where, "")).split(",")
-        values = " ".join(self.sets).replace(",", ";")
-        self.experiments: list[tuple[str, ...]] = [(self.method, place, values) for place in places]
-        self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
-        self.stride = 1  # of the seeds
 
     def words(self, *without: str) -> list[str]:
         """The options as words of a command."""
@@ -124,7 +120,13 @@ class Study:
 
     def command(self, experiment: int, run_: int) -> list[str]:
         """The command that a run of an experiment is."""
+        if "," in self.method:
+            raise ValueError(f"methods: '{self.method}' must be one method")
         return [self.program, *self.words("seed", "seeds", self.where), "--seeds", "1", f"--{self.where}", self.experiments[experiment][1]]
+
+    def figures(self, output: Any) -> dict[str, Any]:
+        """Those in the output of a run."""
+        return output if isinstance(output, dict) else {"score": output}
 
     def work(self, runs: list[tuple[int, int]]) -> tuple[Any, ...]:
         """A function and its arguments, for a worker."""
@@ -208,8 +210,10 @@ class Rooms(Study):
         words = ["--json", "-", "--seed", str(self.seed + run_), *(f"--set={each}" for each in self.sets)]
         return ["slalom", "navigate", *super().command(experiment, run_)[1:], *words]
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
-        return {name: int(each) if isinstance(each, bool) else each for name, each in json.loads(output)["results"][0]["by_seed"][0].items()}
+    def figures(self, output: Any) -> dict[str, Any]:
+        if len(every := json.loads(output)["results"]) > 1:  # `rooms`, `manoeuvres`
+            raise ValueError(f"scenario: '{self.options['scenario']}' must name rooms, with commas between; `slalom navigate --help` lists them")
+        return {name: int(each) if isinstance(each, bool) else each for name, each in every[0]["by_seed"][0].items()}
 
 
 class Suite(Study):
@@ -221,7 +225,7 @@ class Suite(Study):
         words = ["--first-seed", str(self.seed + run_), "--methods", ":".join([self.method, *self.sets])]
         return [*super().command(experiment, run_), *words, *([] if "rollouts" in self.options else ["--rollouts", "64"])]
 
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
+    def figures(self, output: Any) -> dict[str, Any]:
         row = next(csv.DictReader(output.splitlines()))
         return {"score": 1 - int(row["solved"]), "cost": row["median_cost"]}
 
@@ -238,9 +242,6 @@ class Function(Study):
     def work(self, runs: list[tuple[int, int]]) -> tuple[Any, ...]:
         values = {key: value_of(text) for key, text in (each.split("=", 1) for each in self.sets)}
         return _calls, self.options["function"], [self.seed + run_ for _, run_ in runs], values
-
-    def figures(self, output: Any) -> dict[str, Any]:  # type: ignore[override]
-        return output if isinstance(output, dict) else {"score": output}
 
 
 def _timed(call: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
