@@ -51,7 +51,7 @@ def outputs_of(build: str, commands: list[list[str]], text: str = "") -> list[st
         raise OtherBuild(f"{path} of {socket.gethostname()} is build {build_of(path)}, the study has {build}")
     for _, *words in commands:
         ended = subprocess.run([path, *words], input=text, capture_output=True, text=True, check=False)
-        if ended.returncode and not ended.stdout:  # `slalom navigate` tells a collision by its status
+        if ended.returncode > (1 if ended.stdout else 0) or ended.returncode < 0:  # 1 is a collision of `slalom navigate`
             raise RuntimeError(ended.stderr.strip() or f"{path} ended with status {ended.returncode}")
         outputs.append(ended.stdout)
     return outputs

@@ -97,11 +97,7 @@ class Tuner:
         """Drives a trial until it is pruned or whole. Its value is the mean difference of its scores from those before."""
         scores: list[float] = []
         for each in self.rounds:
-            try:
-                scores += self.scores(sets_of(trial.params), *each)
-            except Exception:  # such as a value that an option refuses
-                self.study.tell(trial, state=FAIL)
-                raise
+            scores += self.scores(sets_of(trial.params), *each)
             value = float(np.mean(np.subtract(scores, self.before[:len(scores)])))
             with self.lock:
                 trial.set_user_attr("scores", scores)
@@ -119,24 +115,36 @@ class Tuner:
                 if sum(each.state in (COMPLETE, PRUNED, RUNNING) for each in self.study.trials) > trials:  # the first is no trial
                     return
                 trial = self.study.ask(self.space)
-            self.drive(trial)
+            try:
+                self.drive(trial)
+            except RuntimeError as error:  # such as options that do not go together
+                self.study.tell(trial, state=PRUNED)  # without a value: the sampler avoids it
+                if isinstance(error, studies.OtherBuild) or len(self.finished()) < 2:
+                    raise
+                print(f"trial {trial.number}: {' '.join(sets_of(trial.params))}: {error}", file=sys.stderr)
+                continue
             if not quiet:
                 done = self.study.trials[trial.number]
                 print(f"trial {done.number}: {done.value:+.4g} after {len(done.user_attrs['scores'])} runs, best {self.study.best_value:+.4g}: "
                       f"{' '.join(sets_of(done.params))}", file=sys.stderr, flush=True)
 
+    def finished(self) -> list[Any]:
+        """The runs before any trial, and the trials that are whole or pruned."""
+        return [each for each in self.study.trials if each.value is not None]
+
     def importances(self) -> dict[str, float]:
         """The shares of the options in the differences of all trials, pruned ones, too: Optuna's fANOVA."""
         whole = optuna.create_study()
         whole.add_trials([optuna.trial.create_trial(params=each.params, distributions=each.distributions, value=each.value)
-                          for each in self.study.trials if each.params and each.state in (COMPLETE, PRUNED)])
+                          for each in self.finished()[1:]])
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return dict(optuna.importance.get_param_importances(whole)) if len(whole.trials) > 1 else {}
+            fanova = optuna.importance.FanovaImportanceEvaluator(seed=0)
+            return dict(optuna.importance.get_param_importances(whole, evaluator=fanova)) if len(whole.trials) > 1 else {}
 
     def result(self, confirm: int) -> dict[str, Any]:
         """Drives the best options on fresh seeds beside those before, and writes them with this evidence to a configuration file."""
-        best, trials = self.study.best_trial, [each for each in self.study.trials[1:] if each.state in (COMPLETE, PRUNED)]
+        best, trials = self.study.best_trial, self.finished()[1:]
         given, sets = self.given[0], sets_of(best.params)
         before, after = (np.asarray(self.scores(each, given.counted, confirm if sets else 1)) for each in ([], sets))
         (low, high), shares, file = interval(after - before), self.importances(), self.out / "best.yaml"
