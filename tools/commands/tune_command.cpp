@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <system_error>
 
@@ -37,13 +38,29 @@ void become_python(const std::string& module) {
 
 namespace {
 
-/// Options as slalom.tuner reads them from the words of the process.
+/// Options that slalom.tuner reads from the words of the process.
+constexpr const char* words[][2] = {
+    {"--methods", "Method; svg_mppi if not given"},
+    {"--course", "car: courses, separated by commas"},
+    {"--config", "car: the configuration from which it starts"},
+    {"--scenario", "car: oa, pt or both; navigator: rooms, separated by commas"},
+    {"--tasks", "suite: tasks, separated by commas"},
+    {"--cluster", "Address of a Dask scheduler whose workers drive"}};
+constexpr const char* numbers[][2] = {
+    {"--minutes", "Time for trials; 10 if not given"},
+    {"--trials", "Most trials"},
+    {"--seeds", "Runs of a trial that is not pruned, in each place; 32 if not given"},
+    {"--confirm", "Runs on fresh seeds at the end; as many as --seeds if not given"},
+    {"--seed", "First seed"},
+    {"--obstacles", "car: number of parked cars; 5 if not given"},
+    {"--rollouts", "suite: rollouts in a solve; 64 if not given"},
+    {"--jobs", "Runs in parallel; 0: one per processor core"}};
+
 struct TuneArguments {
-  std::string kind, course, config, scenario, tasks, methods = "svg_mppi", cluster, out;
+  std::string kind, out;
   std::vector<std::string> vary, set;
-  int obstacles = 5, rollouts = 64, seeds = 32, confirm = 0, jobs = 0, trials = 1000000;
-  double minutes = 10;
-  std::uint64_t seed = 0;
+  std::string texts[std::size(words)];
+  std::optional<double> values[std::size(numbers)];
 };
 
 int tune(const TuneArguments& a) {
@@ -62,30 +79,15 @@ void declare_tune(Subcommand& command) {
   const auto a = std::make_shared<TuneArguments>();
   command.option("KIND", a->kind, "car: laps; navigator: drives through rooms; suite: the problem suite")
       .required();
-  command
-      .option("--vary", a->vary,
-              "key=LOW..HIGH or key=v1,v2,...: values of an option; by the logarithm where HIGH is ten times "
-              "LOW or more")
-      .repeatable()
-      .required();
+  const char* const vary =
+      "key=LOW..HIGH or key=v1,v2,...: values of an option; by the logarithm if HIGH is ten times LOW or "
+      "more";
+  command.option("--vary", a->vary, vary).repeatable().required();
   command.option("--set", a->set, "key=value: an option that stays").repeatable();
-  command.option("--minutes", a->minutes, "Time for trials", {0, 1e6});
-  command.option("--trials", a->trials, "Most trials", {0, 1000000});
-  command.option("--seeds", a->seeds, "Runs of a trial that is not pruned, in each place", {1, 100000});
-  command.option("--confirm", a->confirm, "Runs on fresh seeds at the end; 0: as many as --seeds",
-                 {0, 100000});
-  command.option("--seed", a->seed, "First seed");
-  command.option("--methods", a->methods, "Method");
-  command.option("--course", a->course, "car: courses, separated by commas");
-  command.option("--config", a->config, "car: the configuration from which it starts");
-  command.option("--obstacles", a->obstacles, "car: number of parked cars", {1, 1000});
-  command.option("--scenario", a->scenario, "car: oa, pt or both; navigator: rooms, separated by commas");
-  command.option("--tasks", a->tasks, "suite: tasks, separated by commas");
-  command.option("--rollouts", a->rollouts, "suite: rollouts in a solve", {1, 1000000});
-  command.option("--jobs", a->jobs, "Runs in parallel; 0: one per processor core", {0, 1024});
-  command.option("--cluster", a->cluster, "Address of a Dask scheduler whose workers drive");
-  command.option("--out", a->out, "Folder of the trials and of best.yaml; the same call goes on there")
-      .required();
+  for (std::size_t i = 0; i < std::size(words); ++i) command.option(words[i][0], a->texts[i], words[i][1]);
+  for (std::size_t i = 0; i < std::size(numbers); ++i)
+    command.option(numbers[i][0], a->values[i], numbers[i][1], {0, 1e9});
+  command.option("--out", a->out, "Folder of trials and best.yaml; the same call goes on there").required();
   command.examples({"tune car --course eel --vary vehicle.usable_grip=0.7..0.95 --minutes 20 --out OUT",
                     "tune suite --tasks crane --vary batches=1..5 --vary noise_exponent=1.0..4.0 --out OUT"});
   command.action([a] { return tune(*a); });

@@ -30,6 +30,10 @@ class OtherBuild(RuntimeError):
     """This machine has another build of the program than the study."""
 
 
+class RunError(RuntimeError):
+    """A program ended with an error."""
+
+
 def path_of(program: str) -> str:
     """The path of a program: beside $SLALOM_PROGRAM or this package, or of the PATH."""
     folders = [Path(os.environ.get("SLALOM_PROGRAM", "/nowhere")).parent, *(each / "bin" for each in Path(__file__).parents)]
@@ -52,7 +56,7 @@ def outputs_of(build: str, commands: list[list[str]], text: str = "") -> list[st
     for _, *words in commands:
         ended = subprocess.run([path, *words], input=text, capture_output=True, text=True, check=False)
         if ended.returncode > (1 if ended.stdout else 0) or ended.returncode < 0:  # 1 is a collision of `slalom navigate`
-            raise RuntimeError(ended.stderr.strip() or f"{path} ended with status {ended.returncode}")
+            raise RunError(ended.stderr.strip() or f"{path} ended with status {ended.returncode}")
         outputs.append(ended.stdout)
     return outputs
 

@@ -7,8 +7,6 @@ import threading
 import time
 import warnings
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,7 +34,7 @@ def interval(differences: npt.ArrayLike) -> list[float]:
     return [float(x) for x in np.quantile(means, [0.025, 0.975])]
 
 
-class Paired(optuna.pruners.BasePruner):  # type: ignore[misc]
+class Paired(optuna.pruners.BasePruner):  # type: ignore[name-defined,misc]
     """Prunes a trial that is worse than the best one on the runs that it has driven."""
 
     def prune(self, study: Any, trial: Any) -> bool:
@@ -60,7 +58,8 @@ def sets_of(values: Mapping[str, Any]) -> list[str]:
 
 def closed_loop(seed: int, *, problem: Any, start: Any, steps: int, options: dict[str, Any], **values: Any) -> float:
     """The cost of a closed loop with `svg_mppi`."""
-    return float(run(problem, _slalom.SvgMppi(problem, **{**options, **values, "seed": seed}), start, steps=steps).costs.sum())
+    every: dict[str, Any] = {**options, **values, "seed": seed}
+    return float(run(problem, _slalom.SvgMppi(problem, **every), start, steps=steps).costs.sum())
 
 
 class Tuner:
@@ -117,9 +116,10 @@ class Tuner:
                 trial = self.study.ask(self.space)
             try:
                 self.drive(trial)
-            except RuntimeError as error:  # such as options that do not go together
-                self.study.tell(trial, state=PRUNED)  # without a value: the sampler avoids it
-                if isinstance(error, studies.OtherBuild) or len(self.finished()) < 2:
+            except (studies.RunError, ValueError) as error:  # such as options that do not go together
+                with self.lock:
+                    self.study.tell(trial, state=PRUNED)  # without a value: the sampler avoids it
+                if len(self.finished()) < 2:
                     raise
                 print(f"trial {trial.number}: {' '.join(sets_of(trial.params))}: {error}", file=sys.stderr)
                 continue
@@ -146,7 +146,7 @@ class Tuner:
         """Drives the best options on fresh seeds beside those before, and writes them with this evidence to a configuration file."""
         best, trials = self.study.best_trial, self.finished()[1:]
         given, sets = self.given[0], sets_of(best.params)
-        before, after = (np.asarray(self.scores(each, given.counted, confirm if sets else 1)) for each in ([], sets))
+        before, after = (np.array(self.scores(each, given.counted, confirm if sets else 1), float) for each in (sets[:0], sets))
         (low, high), shares, file = interval(after - before), self.importances(), self.out / "best.yaml"
         text = [f"# By slalom tune, {time.strftime('%Y-%m-%d')}, build {given.build}: {len(trials)} trials of up to {len(self.before)} runs, "
                 f"{sum(each.state == PRUNED for each in trials)} of them pruned.",
@@ -183,15 +183,20 @@ def tune(given: Any, space: Mapping[str, Any], budget: float = 10, *, trials: in
     with studies.locked(every[0].out):
         tuner = Tuner(every, space, sampler, pruner, client=client, jobs=jobs)
         workers = max(1, sum(client.nthreads().values()) // 8) if client else 1
-        with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(tuner.work, *zip(*[(time.monotonic() + 60 * budget, trials, quiet)] * workers)))
+        work = functools.partial(tuner.work, time.monotonic() + 60 * budget, trials, quiet)
+        others = [threading.Thread(target=work, daemon=True) for _ in range(workers - 1)]
+        for each in others:
+            each.start()
+        work()
+        for each in others:
+            each.join()
         return tuner.result(max(confirm or every[0].counted, 5))
 
 
 def main() -> None:
     """Does `slalom tune`, whose words are those of this process."""
-    kinds = {"car": studies.Laps, "navigator": studies.Rooms, "suite": studies.Suite}
-    words, kind, given = studies.words_of_process(), studies.Laps, dict[str, list[str]]()
+    kinds: dict[str, type[studies.Study]] = {"car": studies.Laps, "navigator": studies.Rooms, "suite": studies.Suite}
+    words, kind, given = studies.words_of_process(), kinds["car"], dict[str, list[str]]()
     while words:
         word = words.pop(0)
         if word.startswith("--"):
