@@ -134,36 +134,31 @@ class Tuner:
 
     def importances(self) -> dict[str, float]:
         """The shares of the options in the differences of all trials, pruned ones, too: Optuna's fANOVA."""
-        whole = optuna.create_study()
+        whole, fanova = optuna.create_study(), optuna.importance.FanovaImportanceEvaluator(seed=0)
         whole.add_trials([optuna.trial.create_trial(params=each.params, distributions=each.distributions, value=each.value)
                           for each in self.finished()[1:]])
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            fanova = optuna.importance.FanovaImportanceEvaluator(seed=0)
             return dict(optuna.importance.get_param_importances(whole, evaluator=fanova)) if len(whole.trials) > 1 else {}
 
     def result(self, confirm: int) -> dict[str, Any]:
         """Drives the best options on fresh seeds beside those before, and writes them with this evidence to a configuration file."""
-        best, trials = self.study.best_trial, self.finished()[1:]
-        given, sets = self.given[0], sets_of(best.params)
+        best, trials, given = self.study.best_trial, self.finished()[1:], self.given[0]
+        sets, shares, file = sets_of(best.params), self.importances(), self.out / "best.yaml"
         before, after = (np.array(self.scores(each, given.counted, confirm if sets else 1), float) for each in (sets[:0], sets))
-        (low, high), shares, file = interval(after - before), self.importances(), self.out / "best.yaml"
-        text = [f"# By slalom tune, {time.strftime('%Y-%m-%d')}, build {given.build}: {len(trials)} trials of up to {len(self.before)} runs, "
-                f"{sum(each.state == PRUNED for each in trials)} of them pruned.",
-                *(f"# {type(each).__name__}: {' '.join(each.words('out'))}" for each in self.given),
-                f"# Score, the less the better: {given.scored}.",
-                f"# {len(after)} runs on fresh seeds: {after.mean():.5g} in place of {before.mean():.5g}, difference "
-                f"{(after - before).mean():+.4g} [{low:+.4g}, {high:+.4g}] (95 %), "
-                f"{'better' if high < 0 else 'worse' if low > 0 else 'no difference beyond chance'}." if sets else "# No trial was better.",
-                "# Shares of the options in the differences between trials: "
-                + (", ".join(f"{name} {100 * share:.0f} %" for name, share in shares.items()) or "too few trials") + "."]
-        laps, sections = isinstance(given, studies.Laps), dict[str, list[str]]()
+        low, high = interval(after - before)
+        verdict = "better" if high < 0 else "worse" if low > 0 else "no difference beyond chance" if sets else "no trial was better"
+        text = (f"# By slalom tune, {time.strftime('%Y-%m-%d')}, build {given.build}: {len(trials)} trials of up to {len(self.before)} runs, "
+                f"{sum(each.state == PRUNED for each in trials)} of them pruned. Shares of the options in their differences:\n# "
+                f"{', '.join(f'{name} {100 * share:.0f} %' for name, share in shares.items()) or 'too few trials'}.\n"
+                + "".join(f"# {type(each).__name__}: {' '.join(each.words('out'))}\n" for each in self.given)
+                + f"# Score, the less the better: {given.scored}. {len(after)} runs on fresh seeds: {after.mean():.5g} in place of\n"
+                f"# {before.mean():.5g}, difference {np.mean(after - before):+.4g} [{low:+.4g}, {high:+.4g}] (95 %): {verdict}.\n")
+        laps, sections = isinstance(given, studies.Laps), dict[str, str]()
         for name, value in (each.split("=", 1) for each in [*given.sets, *sets]):
             section, _, key = (f"{given.method}.{name}" if laps and "." not in name else name).rpartition(".")
-            sections.setdefault(section, []).append(f"{'  ' if section else ''}{key}: {value}")
-        text += [f"base: {given.options.get('config', 'default')}"] if laps else []
-        text += [line for section, lines in sections.items() for line in ([f"{section}:"] if section else []) + lines]
-        file.write_text("\n".join([*text, ""]))
+            sections[section] = sections.get(section, f"{section}:\n" if section else "") + f"{'  ' if section else ''}{key}: {value}\n"
+        file.write_text(text + (f"base: {given.options.get('config', 'default')}\n" if laps else "") + "".join(sections.values()))
         return {"values": best.params, "before": float(before.mean()), "after": float(after.mean()), "interval": [low, high],
                 "importances": shares, "trials": len(trials), "file": file}
 
@@ -196,23 +191,21 @@ def tune(given: Any, space: Mapping[str, Any], budget: float = 10, *, trials: in
 def main() -> None:
     """Does `slalom tune`, whose words are those of this process."""
     kinds: dict[str, type[studies.Study]] = {"car": studies.Laps, "navigator": studies.Rooms, "suite": studies.Suite}
-    words, kind, given = studies.words_of_process(), kinds["car"], dict[str, list[str]]()
+    words, kind, every = studies.words_of_process(), kinds["car"], dict[str, list[str]](set=[])
     while words:
         word = words.pop(0)
         if word.startswith("--"):
-            given.setdefault(word[2:].replace("-", "_"), []).append(words.pop(0))
+            every.setdefault(word[2:], []).append(words.pop(0))
         else:
             kind = kinds[word]
     space = {}
-    for name, _, values in (each.partition("=") for each in given.pop("vary")):
+    for name, _, values in (each.partition("=") for each in every.pop("vary")):
         low, dots, high = values.partition("..")
         space[name] = tuple(map(studies.value_of, (low, high))) if dots else [studies.value_of(each) for each in values.split(",")]
-    own = {name: studies.value_of(given.pop(name)[0]) for name in ("trials", "confirm", "jobs") if name in given}
-    budget, client = float(given.pop("minutes", ["10"])[0]), studies.connect(given.pop("cluster")[0]) if "cluster" in given else None
-    out, sets = given.pop("out")[0], given.pop("set", [])
-    options: dict[str, Any] = {name: values[0] for name, values in given.items()}
-    if "seeds" in options:
-        options[kind.count] = options.pop("seeds")
-    places = options.pop("course", "").split(",")
-    every = [kind(out, **options, **({"course": place} if place else {}), set=sets) for place in places]
-    print(tune(every, space, budget, client=client, **own)["file"].read_text(), end="")
+    sets, given = every.pop("set"), dict[str, Any]({name: values[0] for name, values in every.items()})
+    own: dict[str, Any] = {name: int(given.pop(name)) for name in ("trials", "confirm", "jobs") if name in given}
+    budget, client = float(given.pop("minutes", 10)), studies.connect(given.pop("cluster")) if "cluster" in given else None
+    given.update({kind.count: given.pop("seeds")} if "seeds" in given else {})
+    places = [{"course": each} for each in given.pop("course").split(",")] if "course" in given else [{}]
+    found = tune([kind(set=sets, **given, **each) for each in places], space, budget, client=client, **own)
+    print(found["file"].read_text(), end="")
