@@ -59,7 +59,9 @@ def sets_of(values: Mapping[str, Any]) -> list[str]:
 def closed_loop(seed: int, *, problem: Any, start: Any, steps: int, options: dict[str, Any], **values: Any) -> float:
     """The cost of a closed loop with `svg_mppi`."""
     every: dict[str, Any] = {**options, **values, "seed": seed}
-    return float(run(problem, _slalom.SvgMppi(problem, **every), start, steps=steps).costs.sum())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # symptoms: some values are poor
+        return float(run(problem, _slalom.SvgMppi(problem, **every), start, steps=steps).costs.sum())
 
 
 class Tuner:
@@ -151,7 +153,7 @@ class Tuner:
         text = (f"# By slalom tune, {time.strftime('%Y-%m-%d')}, build {given.build}: {len(trials)} trials of up to {len(self.before)} runs, "
                 f"{sum(each.state == PRUNED for each in trials)} of them pruned. Shares of the options in their differences:\n# "
                 f"{', '.join(f'{name} {100 * share:.0f} %' for name, share in shares.items()) or 'too few trials'}.\n"
-                + "".join(f"# {type(each).__name__}: {' '.join(each.words('out'))}\n" for each in self.given)
+                + "".join(f"# {type(each).__name__}: {' '.join(each.words('out', 'function'))}\n" for each in self.given)
                 + f"# Score, the less the better: {given.scored}. {len(after)} runs on fresh seeds: {after.mean():.5g} in place of\n"
                 f"# {before.mean():.5g}, difference {np.mean(after - before):+.4g} [{low:+.4g}, {high:+.4g}] (95 %): {verdict}.\n")
         laps, sections = isinstance(given, studies.Laps), dict[str, str]()

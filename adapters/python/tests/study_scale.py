@@ -64,7 +64,7 @@ def drive(made, workers, seconds):
 
 
 def main(folder, *options):
-    for name, seconds, count in ("first tasks", 0, 20), ("tasks without work", 0, 400), ("tasks of 1 s", 1, 40):
+    for name, seconds, count in ("first tasks", 0, 20), ("tasks without work", 0, 200), ("tasks of 1 s", 1, 40):
         made = study.Function(f"{folder}/{name}", function=waits, seeds=count, set=[f"seconds={seconds}"])
         wall, costs = drive(made, 2, seconds)
         print(f"{count} {name}: {wall:.2f} s; processor time of a task: {np.round(1e3 * np.array(costs) / count, 1)} ms: study, scheduler, workers")
