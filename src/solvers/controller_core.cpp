@@ -55,6 +55,26 @@ SolverOptions with_scaled_variances(const ControlledProblem& problem, SolverOpti
   return options;
 }
 
+/// The states near the present one in which a problem may start.
+class MovedStates final : public NearbyStates {
+ public:
+  MovedStates(ControlledProblem& problem, std::span<const double> state, const PredictionErrors& errors,
+              std::span<double> moved)
+      : problem_(problem), state_(state), errors_(errors), moved_(moved) {}
+
+  int count() const noexcept override { return errors_.count(); }
+  void start_at(int index) noexcept override {
+    if (index >= 0) errors_.move(state_, index, moved_);
+    problem_.set_state(index >= 0 ? moved_ : state_);
+  }
+
+ private:
+  ControlledProblem& problem_;
+  std::span<const double> state_;
+  const PredictionErrors& errors_;
+  std::span<double> moved_;
+};
+
 std::unique_ptr<Solver> checked(std::unique_ptr<Solver> solver, int inputs) {
   if (!solver) throw std::invalid_argument("solver: must not be null");
   if (solver->inputs() != inputs)
@@ -95,6 +115,9 @@ void ControllerCore::connect(const ControlledProblem& problem) {
   inputs_.resize(static_cast<std::size_t>(solver_->horizon()) * inputs);
   previous_.resize(inputs);
   given_ = before_ = reach_ = previous_;
+  state_.resize(static_cast<std::size_t>(problem.states()));
+  moved_ = state_;
+  errors_ = PredictionErrors(problem.states());
   rest(problem);
 }
 
@@ -115,6 +138,9 @@ bool ControllerCore::begin(ControlledProblem& problem, std::span<const double> s
             : !valid_times(request, problem.evaluator().time_step()) ? Status::invalid_time
                                                                      : Status::ok;
   if (status_ != Status::ok) return false;
+  if (predict(problem, request.elapsed)) errors_.add(state, state_);
+  std::copy(state.begin(), state.end(), state_.begin());
+  has_state_ = true;
   recall_input(problem, request.elapsed);
   problem.set_state(state);
   problem.set_previous_input(previous_);
@@ -141,6 +167,30 @@ void ControllerCore::recall_input(const ControlledProblem& problem, double elaps
     previous_[i] = told && std::isfinite(given_[i]) ? value : inputs_[now + i];
     corrections_ += told && value != given_[i];
   }
+}
+
+/// Moves the start of the last solve forward by the time since then. Returns false if that is not possible.
+bool ControllerCore::predict(const ControlledProblem& problem, double elapsed) noexcept {
+  const double step = problem.evaluator().time_step(), steps = step > 0 ? elapsed / step : 0;
+  const double whole = std::round(steps), left = std::abs(steps - whole) < 1e-6 ? whole : steps;
+  if (!has_state_ || !(left > 0 && left <= solver_->horizon())) return false;
+  const std::size_t inputs = previous_.size();
+  for (int k = 0; k < left; ++k) {
+    std::copy(state_.begin(), state_.end(), moved_.begin());
+    const auto at = static_cast<std::size_t>(k) * inputs;
+    if (!problem.advance(moved_, std::span(inputs_).subspan(at, inputs), k)) return false;
+    for (std::size_t i = 0; i < state_.size(); ++i)
+      state_[i] = std::lerp(state_[i], moved_[i], std::min(left - k, 1.0));
+  }
+  return true;
+}
+
+void ControllerCore::solve(ControlledProblem& problem, const BatchEvaluator& evaluator,
+                           const SolveRequest& request) noexcept {
+  MovedStates nearby(problem, state_, errors_, moved_);
+  SolveRequest all = request;
+  all.nearby = &nearby;
+  solver_->solve(evaluator, all);
 }
 
 void ControllerCore::finish(const ControlledProblem& problem) noexcept {
@@ -177,6 +227,8 @@ void ControllerCore::set_previous_input(std::span<const double> u) noexcept {
 
 void ControllerCore::reset(const ControlledProblem& problem, std::uint64_t seed) noexcept {
   solver_->reset(seed);
+  errors_.clear();
+  has_state_ = false;
   rest(problem);
 }
 

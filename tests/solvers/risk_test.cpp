@@ -167,9 +167,13 @@ struct Flights {
 Flights fly(const RiskOptions& risk, int flights) {
   Flights result;
   for (int flight = 0; flight < flights; ++flight) {
-    SvgMppi controller{
-        RiskEvaluator{Glider{}, risk},
-        {.horizon = Glider::steps, .samples = 256, .temperature = 0.5, .variance = 1, .seed = 3}};
+    SvgMppi controller{RiskEvaluator{Glider{}, risk},
+                       {.horizon = Glider::steps,
+                        .samples = 256,
+                        .nearby_states = 0,
+                        .temperature = 0.5,
+                        .variance = 1,
+                        .seed = 3}};
     RandomStream weather({100, static_cast<std::uint64_t>(flight)});
     Glider world;
     Glider::State<double> x{0, 0.3, 0};

@@ -168,6 +168,23 @@ TEST_P(SolverRuntimeContract, DeadlineReturnsTheBestSoFar) {
   EXPECT_EQ(solver->solve(quick, {.deadline = 60}).status, Status::ok);
 }
 
+/// An evaluator that wants all samples in one call, which takes 20 ms.
+class SlowBatches final : public BatchEvaluator {
+ public:
+  int inputs() const noexcept override { return 1; }
+  bool whole_batches() const noexcept override { return true; }
+  void evaluate(const SequenceBatch&, int first, int count, float* costs,
+                std::uint8_t* collided) const noexcept override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (int k = first; k < first + count; ++k) costs[k] = static_cast<float>(k), collided[k] = 0;
+  }
+};
+
+TEST_P(SolverRuntimeContract, ASolveThatIsLateSaysSo) {
+  const auto solver = make(1, [](SolverOptions& o) { set(o, "horizon", 3); });
+  EXPECT_EQ(solver->solve(SlowBatches{}, {.deadline = 0.005}).status, Status::deadline);
+}
+
 TEST_P(SolverRuntimeContract, WarmStartFollowsTheClock) {
   const auto solver = make(1, [](SolverOptions& o) {
     small(o);

@@ -60,7 +60,8 @@ py::dict read_mlp(const std::string& file) {
 
 void bind_any_problem(py::module_& module) {
   py::class_<AnyProblem>(module, "AnyProblem", "Base class of all problems.", guarded())
-      .def_property_readonly("states", &AnyProblem::states, "scalars of a state")
+      .def_property_readonly(
+          "states", [](const AnyProblem& self) { return self.states(); }, "scalars of a state")
       .def_property_readonly(
           "inputs", [](const AnyProblem& self) { return self.inputs(); }, "inputs a step")
       .def(

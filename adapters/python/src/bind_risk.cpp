@@ -30,6 +30,9 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
     return std::any_of(variants_.begin(), variants_.end(),
                        [](const auto& variant) { return variant->evaluator().whole_batches(); });
   }
+  bool advance(std::span<double> state, std::span<const double> input, int k) const noexcept override {
+    return problem().advance(state, input, k);
+  }
   InputBounds stated_bounds() const override { return problem().stated_bounds(); }
   double unit_variance(int input) const noexcept override { return problem().unit_variance(input); }
   double input_step(int input) const noexcept override { return problem().input_step(input); }

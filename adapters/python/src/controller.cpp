@@ -190,7 +190,7 @@ void Controller::solve(const std::vector<py::handle>& owners, std::vector<std::v
     pool.run(static_cast<int>(started.size()), [&](int i) {
       const auto at = static_cast<std::size_t>(i);
       Controller& each = *started[at];  // a GPU takes the problem itself, and a second at most
-      each.core_.solver().solve(each.on_gpu_ ? each.problem_->evaluator() : rollouts[at], request);
+      each.core_.solve(*each.problem_, each.on_gpu_ ? each.problem_->evaluator() : rollouts[at], request);
     });
   }
   std::exception_ptr first;

@@ -46,7 +46,6 @@ struct Prediction {
 class AnyProblem : public ControlledProblem {
  public:
   virtual std::unique_ptr<AnyProblem> clone() const = 0;
-  virtual int states() const noexcept = 0;
   /// Step `k` of the dynamics from a state.
   virtual std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) = 0;
   /// `inputs` [step][input].
@@ -131,21 +130,16 @@ class BuiltIn : public slalom::detail::ControlledEvaluator<P, Base> {
 
  public:
   using State = slalom::detail::StateOf<P, double>;
-  static constexpr int state_count = slalom::detail::state_size<P>;
   using Controlled::Controlled, Controlled::evaluator;
 
   std::unique_ptr<AnyProblem> clone() const override { return std::make_unique<BuiltIn>(*this); }
-  int states() const noexcept override { return state_count; }
   P& problem() noexcept { return evaluator().problem(); }
   const P& problem() const noexcept { return evaluator().problem(); }
 
   std::vector<double> step(std::span<const double> state, std::span<const double> input, int k) override {
-    const State x = to_state(state);
-    const auto seen = slalom::detail::look_up<P, double>(problem(), x);
-    const State next = slalom::detail::step<P, double>(problem(), x, seen, to_inputs(input)[0], k);
-    std::vector<double> values(state_count);
-    std::memcpy(values.data(), &next, sizeof next);
-    return values;
+    std::vector<double> next(state.begin(), state.end());
+    this->advance(next, input, k);
+    return next;
   }
 
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override {
@@ -154,7 +148,8 @@ class BuiltIn : public slalom::detail::ControlledEvaluator<P, Base> {
     CostTermsOf<P> terms;
     const Cost<double> cost = slalom::predict(problem(), to_state(state), to_inputs(inputs).data(),
                                               static_cast<int>(steps), states.data(), &terms);
-    Prediction result{std::vector<double>(states.size() * state_count), cost.value, cost.collided, {}};
+    Prediction result{
+        std::vector<double>(sizeof(State) / sizeof(double) * states.size()), cost.value, cost.collided, {}};
     for (const CostTerm& term : terms) result.terms.emplace_back(term.name, term.value);
     std::memcpy(result.states.data(), states.data(), result.states.size() * sizeof(double));
     return result;

@@ -107,6 +107,25 @@ class ControlledEvaluator : public Base {
     std::memcpy(&x, state.data(), sizeof x);
     evaluator_.set_state(x);
   }
+  int states() const noexcept override { return static_cast<int>(sizeof(State) / sizeof(double)); }
+  bool advance([[maybe_unused]] std::span<double> state, [[maybe_unused]] std::span<const double> input,
+               [[maybe_unused]] int k) const noexcept override {
+    constexpr bool steps = Problem<P>;
+    if constexpr (steps || Controlled<P>::predicts) {
+      State x[2];
+      U u;
+      std::memcpy(&x[0], state.data(), sizeof x[0]);
+      std::copy(input.begin(), input.end(), u.value);
+      if constexpr (steps) {
+        x[1] = step<P, double>(stated(), x[0], look_up<P, double>(stated(), x[0]), u, k);
+      } else {
+        State from = x[0];
+        evaluator_.predict(from, &u, 1, x);
+      }
+      std::memcpy(state.data(), &x[1], sizeof x[1]);
+    }
+    return steps || Controlled<P>::predicts;
+  }
   InputBounds stated_bounds() const override { return detail::stated_bounds(stated()); }
   double unit_variance(int input) const noexcept override { return detail::unit_variance(stated(), input); }
   double input_step(int input) const noexcept override { return detail::input_step(stated(), input); }

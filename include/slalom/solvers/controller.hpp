@@ -87,7 +87,7 @@ class Controller {
     double values[state_size];
     std::memcpy(values, &x, sizeof values);
     if (core_.begin(problem_, values, request)) {
-      core_.solver().solve(evaluator(), request);
+      core_.solve(problem_, evaluator(), request);
       core_.finish(problem_);
       predict_plan(x);
       core_.check_cost(cost_.value);

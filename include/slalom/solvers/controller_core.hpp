@@ -8,6 +8,7 @@
 
 #include "slalom/core/final_check.hpp"
 #include "slalom/core/polymorphic.hpp"
+#include "slalom/solvers/prediction_errors.hpp"
 #include "slalom/solvers/solver_options.hpp"
 
 namespace slalom {
@@ -23,6 +24,12 @@ class ControlledProblem {
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
   /// Sets the state in which the next rollouts start, as its scalars.
   virtual void set_state(std::span<const double> state) noexcept = 0;
+  virtual int states() const noexcept = 0;  ///< scalars of a state
+  /// Moves a state forward by step `k`. Returns false if the problem has no function for it.
+  virtual bool advance(std::span<double> /*state*/, std::span<const double> /*input*/,
+                       int /*k*/) const noexcept {
+    return false;
+  }
   /// The bounds of the inputs. Throws std::invalid_argument if the problem states invalid ones.
   virtual InputBounds stated_bounds() const { return InputBounds(inputs()); }
   /// The unit of an input's variances, input^2, where that of the method does not fit; otherwise 0.
@@ -66,6 +73,9 @@ class ControllerCore {
   /// Sets the problem to a state and to the input that is being applied. Returns false, and the last plan
   /// remains, if the state is not finite or a time of the request is not valid.
   bool begin(ControlledProblem& problem, std::span<const double> state, const SolveRequest& request) noexcept;
+  /// Solves from that state with `evaluator`, which is that of the problem or wraps it.
+  void solve(ControlledProblem& problem, const BatchEvaluator& evaluator,
+             const SolveRequest& request) noexcept;
   /// Takes the plan from the solver, within rates, levels and bounds.
   void finish(const ControlledProblem& problem) noexcept;
   /// Checks the predicted states [step][scalar]: one that is not finite becomes the one before it, and the
@@ -91,6 +101,7 @@ class ControllerCore {
  private:
   void connect(const ControlledProblem& problem);
   void rest(const ControlledProblem& problem) noexcept;
+  bool predict(const ControlledProblem& problem, double elapsed) noexcept;
   void recall_input(const ControlledProblem& problem, double elapsed) noexcept;
   void correct(int changed) noexcept;
 
@@ -101,7 +112,11 @@ class ControllerCore {
   std::vector<double> given_;     ///< argument of the last set_previous_input
   std::vector<double> before_;    ///< inputs of a step, for the check of the next one
   std::vector<double> reach_;     ///< largest change of each input in a step
-  bool told_ = true;              ///< whether the next solve uses `given_`
+  std::vector<double> state_;     ///< start of the last solve
+  std::vector<double> moved_;     ///< the same a step later, or a state near it
+  PredictionErrors errors_;
+  bool has_state_ = false;  ///< whether there was a solve since the last reset
+  bool told_ = true;        ///< whether the next solve uses `given_`
   Status status_ = Status::ok;
   int corrections_ = 0;
 };

@@ -19,18 +19,31 @@ struct SequenceList {
   int sequences = 0;              ///< number of sequences
 };
 
+/// States near the present one, in which a plan may really start or be after a step: each differs from it as
+/// an earlier prediction differed from what came.
+class NearbyStates {
+ public:
+  virtual ~NearbyStates() = default;
+  virtual int count() const noexcept = 0;  ///< 0 while all predictions were exact
+  /// Makes the evaluator start at one of them, or at the present state (-1).
+  virtual void start_at(int index) noexcept = 0;
+};
+
 /// The inputs of a solve that change from one to the next.
 struct SolveRequest {
   /// Time since the last solve, s, at least 0. Solvers that shift their warm start shift it by this time.
   double elapsed = 0;
   /// Wall-clock time that the solve may take, s; 1e6 or more: no limit. When it has passed, the solver begins
   /// no new part of the samples and returns the best solution so far. It ends later by the part that is being
-  /// evaluated (with `whole_batches` the whole batch) and by the last update and check.
+  /// evaluated (with `whole_batches` the whole batch). A solver learns from late solves, whose status is
+  /// `deadline`, how much time to keep for the last update and check, at most 0.8 of what it has.
   double deadline = std::numeric_limits<double>::infinity();
   /// Control sequences of other controllers that compete with the samples of this solve (proposals.hpp), over
   /// the solver's horizon. Values outside the bounds are moved into them. Solvers without `takes_proposals`
   /// ignore them.
   SequenceList proposals{};
+  /// States near the present one, from which `svg_mppi` evaluates its plans, too. Controllers set it.
+  NearbyStates* nearby = nullptr;
 };
 
 /// Whether a controller can solve a request for a problem whose steps take `time_step` (s; 0: unknown):

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "slalom/solvers/option_groups.hpp"
+#include "slalom/solvers/prediction_errors.hpp"
 #include "slalom/solvers/published/published_options.hpp"
 #include "slalom/solvers/solver.hpp"
 
@@ -59,6 +60,7 @@ struct SvgMppiOptions {
   int horizon = 30;
   int samples = 1024;
   int batches = 0;
+  int nearby_states = 16;
   double temperature = 0;
   PerInput variance = 0;  ///< variance of the samples if it is not adapted
   PerInput input_min = -std::numeric_limits<double>::infinity();
@@ -141,6 +143,11 @@ void visit_options(Options& o, Visit&& visit) {
          "parts of the samples, each drawn around the means of the last; 1: the paper's closed form; 0: "
          "0.75 cbrt(K), at most 8. Always 1 with samples around the solution",
          0, 1000});
+  visit(o.nearby_states,
+        {"nearby_states", "",
+         "in several batches, most states near the present one from which the last sequences are evaluated: "
+         "as far from it as the last predictions were wrong, in each direction and its opposite",
+         0, 2 * PredictionErrors::kept});
   detail::visit_guide_options(o.guides, visit);
   detail::visit_variance_options(o, visit);
   detail::visit_noise_options(o.noise, visit);

@@ -49,7 +49,7 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
                            options.samples)),
         max_kept_(saturate_cast<int>(std::round(memory.kept_elite_share * elites_))),
         order_(options.samples),
-        kept_(static_cast<std::size_t>(max_kept_) * size()),
+        kept_(static_cast<std::size_t>(max_kept_ + 1) * size()),
         mean_(size()),
         variance_(size()),
         first_variance_(spread(options.variance)),
@@ -142,17 +142,9 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
     const detail::SamplingDistribution to{mean_.data(), deviation_.data(), low().data(), high().data(),
                                           zero_mean_from(batch.samples(), options_.zero_mean_share)};
     const bool with_mean = memory_.add_mean && iteration + 1 == options_.iterations;
-    if (kept_count_ == 0 && !with_mean)
-      return batch.draw_and_evaluate(evaluator, key(iteration), to, nullptr, pool(), deadline);
-    const auto begin = detail::Clock::now();
-    batch.draw(key(iteration), to, pool(), evaluator.sampler());
-    int at = batch.samples() - batch.proposed();
-    for (int i = 0; i < kept_count_ && at > 0; ++i) batch.values().set_sample(--at, kept(i));
-    if (with_mean && at > 0) batch.values().set_sample(--at, mean_);
-    const double drawn = detail::seconds(begin, detail::Clock::now());
-    detail::BatchStatistics statistics = batch.evaluate(evaluator, nullptr, pool(), deadline);
-    statistics.draw_time = drawn;
-    return statistics;
+    if (with_mean) std::copy(mean_.begin(), mean_.end(), kept(kept_count_).begin());
+    return batch.draw_and_evaluate(evaluator, key(iteration), to, nullptr, pool(), deadline,
+                                   {kept_, kept_count_ + with_mean});
   }
 
   /// Fits the distribution to the elites, which have equal weights.
@@ -206,7 +198,7 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
   int max_kept_;
   int kept_count_ = 0;
   std::vector<int> order_;
-  std::vector<float> kept_;  ///< [elite][row], the best first
+  std::vector<float> kept_;  ///< [elite][row], the best first, and room for the mean
   std::vector<float> mean_, variance_, first_variance_, min_variance_, deviation_, zero_, elite_mean_,
       best_;                  ///< [row]
   std::vector<double> sums_;  ///< [row]

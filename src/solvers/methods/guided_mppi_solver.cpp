@@ -10,6 +10,7 @@
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "solvers/methods/fine_noise.hpp"
 #include "solvers/methods/guide_search.hpp"
+#include "solvers/methods/last_choice.hpp"
 #include "solvers/methods/method_solver.hpp"
 #include "solvers/sampling/sample_kinds.hpp"
 #include "solvers/sampling/weigh_part.hpp"
@@ -31,6 +32,8 @@ constexpr double least_of_guide = 0.125;  ///< share of either guide among their
 ///     fine    v = p + a s e^x D0 z   (FineNoise)
 ///     plan    p <- the cheapest of p, all v, all m, the mean of the fine v, and the proposals
 ///
+/// LastChoice ends a solve.
+///
 /// w are weights as in `mppi`, each kind's own. A guide's m is moved on from solve to solve and never
 /// replaced by p, so it keeps looking elsewhere; its D starts anew in every solve. The second guide starts at
 /// zero in every solve, with coloured noise alone; how many samples it gets follows from which guide has the
@@ -48,8 +51,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         guides_(static_cast<std::size_t>(
             std::clamp(std::min(options.guides.count, options.samples / rollouts_of_guide), 1, 2))),
         batches_(batches),
-        ends_(batches < options.samples / 8 ? guide_count() + 1 : 0),
-        total_(options.samples - ends_),
+        total_(options.samples),
         set_(options.horizon, inputs, (total_ + batches - 1) / batches,
              detail::NoiseShape(options.noise, options.horizon, inputs)),
         first_variance_(spread(options.variance)),
@@ -62,9 +64,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         path_(batches * guide_count(), rows()),
         sums_(size()),
         kinds_(set_.stride(), options.noise.knots == 0 && !options.noise.pinned),
-        last_(options.horizon, inputs, guide_count() + 1),
-        last_costs_(last_.stride()),
-        last_collided_(static_cast<std::size_t>(last_.stride())) {
+        last_(options.horizon, inputs, guide_count() + 1, options.nearby_states) {
     for (detail::GuideSearch& guide : guides_) guide.variance = guide.deviation = first_variance_;
     set_.set_white(true);
     reset(options.seed);
@@ -96,6 +96,9 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   void compute(const BatchEvaluator& evaluator, const SolveRequest& request,
                const Deadline& deadline) noexcept {
     begin(shift_ ? warm_start_shift(evaluator, request) : 0, request.proposals);
+    NearbyStates* const nearby = evaluator.whole_batches() ? nullptr : request.nearby;
+    const bool ends = batches_ < total_ / 8;  // otherwise the rollouts of the end would be too many
+    const int total = total_ - (ends ? last_.begin(plan_, nearby, total_) : 0);
     detail::BatchStatistics all;
     result_.status = Status::ok;
     int batch = 0;
@@ -104,10 +107,12 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
         result_.status = Status::deadline;
         break;
       }
-      set_.set_samples(total_ / batches_ + (batch < total_ % batches_));
+      set_.set_samples(total / batches_ + (batch < total % batches_));
       arrange();
-      add(all, set_.draw_and_evaluate(evaluator, key(batch), mixture(), {known_.values(), known_count_},
-                                      pool(), deadline));
+      const detail::BatchStatistics drawn = set_.draw_and_evaluate(
+          evaluator, key(batch), mixture(), {known_.values(), known_count_}, pool(), deadline);
+      all += drawn;
+      if (drawn.evaluated < set_.samples()) result_.status = Status::deadline;
       const auto start = detail::Clock::now();
       choose_plan(batch > 0);
       refine();
@@ -116,7 +121,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
       result_.times.update += detail::seconds(start, detail::Clock::now());
     }
     result_.iterations = batch;
-    if (ends_ > 0 && result_.status == Status::ok) try_means(evaluator);
+    if (ends && result_.status == Status::ok) choose_last(evaluator);
     report(all);
     next_solve();
   }
@@ -202,16 +207,6 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
     return kinds_.of(std::span(sources_).first(count), low().data(), high().data());
   }
 
-  /// Adds the statistics of a batch to those of a solve.
-  void add(detail::BatchStatistics& all, const detail::BatchStatistics& drawn) noexcept {
-    all.finite += drawn.finite;
-    all.collided += drawn.collided;
-    all.evaluated += drawn.evaluated;
-    result_.times.draw += drawn.draw_time;
-    result_.times.evaluate += drawn.evaluate_time;
-    if (drawn.evaluated < set_.samples()) result_.status = Status::deadline;
-  }
-
   /// The cheapest of the samples `first` to `end`, which are at least one.
   int best_of(int first, int end) const noexcept {
     const float* const costs = set_.costs().data();
@@ -286,18 +281,20 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
     std::copy_n(means_[index], size(), path_[batch * guide_count() + index]);
   }
 
-  /// Evaluates the last means. The cheapest one becomes the plan if it costs less.
-  void try_means(const BatchEvaluator& evaluator) noexcept {
-    last_.set_sample(0, fine_mean_);
-    for (int g = 0; g < guide_count(); ++g) last_.set_sample(g + 1, {means_[g], size()});
-    const int best = evaluate(evaluator, last_, {}, last_costs_.data(), last_collided_.data()).best;
-    if (!(last_costs_[best] < known_cost_)) return;
-    known_cost_ = last_costs_[best];
-    last_.get_sample(best, plan_);
+  /// Makes the best of the last sequences the plan.
+  void choose_last(const BatchEvaluator& evaluator) noexcept {
+    last_.clear(plan_);
+    last_.add(fine_mean_);
+    for (int g = 0; g < guide_count(); ++g) last_.add({means_[g], size()});
+    last_.compare(
+        [&] { (void)evaluate(evaluator, last_.sequences, {}, last_.costs.data(), last_.collided.data()); });
+    known_cost_ = last_.choose(known_cost_, plan_);
   }
 
   void report(const detail::BatchStatistics& all) noexcept {
     detail::report_samples(set_, all, weight_sums_, result_);
+    result_.times.draw = all.draw_time;
+    result_.times.evaluate = all.evaluate_time;
     result_.minimum_cost = known_cost_;
     result_.effective_sample_size = effective_size_;
     effective_size_ = 0;
@@ -312,7 +309,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   double zero_share_, given_temperature_, effective_fraction_;
   std::vector<detail::GuideSearch> guides_;
   int batches_;
-  int ends_, total_;  ///< rollouts of the last means, and of all batches
+  int total_;  ///< rollouts of a solve
   detail::SampleSet set_;
   std::vector<float> first_variance_;  ///< [row]
   detail::FineNoise fine_;
@@ -322,9 +319,7 @@ class GuidedMppiSolver final : public detail::MethodSolver<GuidedMppiSolver> {
   detail::Matrix<float> path_;                  ///< [batch x guide][row]
   std::vector<double> sums_;                    ///< [row]
   detail::SampleKinds kinds_;
-  SequenceBatch last_;        ///< the last means
-  AlignedBuffer last_costs_;  ///< theirs
-  std::vector<std::uint8_t> last_collided_;
+  detail::LastChoice last_;
   std::array<detail::Mixture::Source, 4> sources_;
   detail::WeightSums<double> weight_sums_;  ///< sums of the present weights, before they were normalised
   double fine_temperature_ = 0;

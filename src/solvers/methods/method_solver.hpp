@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "slalom/solvers/solver_base.hpp"
@@ -25,11 +26,25 @@ class MethodSolver : public SolverBase {
     const auto start = Clock::now();
     result_.times = {};
     static_cast<Self&>(*this).bind_result();
-    static_cast<Self&>(*this).compute(evaluator, request, Deadline(start, request.deadline));
+    const double reserve = std::min(reserve_, 0.8 * request.deadline);
+    static_cast<Self&>(*this).compute(evaluator, request, Deadline(start, request.deadline - reserve));
     if (this->takes_proposals() && !Self::plan_is_cheapest) this->choose(evaluator, request.proposals);
     result_.times.total = seconds(start, Clock::now());
+    learn_reserve(result_.times.total - request.deadline);
     return result_;
   }
+
+ private:
+  /// Fits the time that is kept for the end of a solve, after the last samples, to how late this one was (s).
+  /// A solve that is late has the status of one.
+  void learn_reserve(double late) noexcept {
+    constexpr double earlier = 0.3;  ///< part of the time that was left over by which the reserve shrinks
+    if (late > 0 && result_.status == Status::ok) result_.status = Status::deadline;
+    if (result_.status == Status::deadline)
+      reserve_ = std::max(reserve_ + late * (late > 0 ? 1 : earlier), 0.0);
+  }
+
+  double reserve_ = 0;  ///< s
 
  protected:
   using SolverBase::SolverBase;

@@ -36,13 +36,8 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
       statistics_(2 * tiles()),
       weight_sums_(tiles()),
       least_(tiles()),
-      tile_sums_(tiles(), steps * inputs * moments) {}
-
-/// Returns part `index` of the set, divided into parts of `size` samples.
-Range SampleSet::part(int index, int size) const noexcept {
-  const int first = index * size;
-  return {first, std::min(size, values_.stride() - first)};
-}
+      tile_sums_(tiles(), steps * inputs * moments),
+      reached_(tiles()) {}
 
 /// Fills a range of samples with noise: values of the problem's sampler, or normal values if it has none.
 /// Then gives the noise its shape.
@@ -134,16 +129,13 @@ BatchStatistics SampleSet::run_parts(ThreadPool& pool, const Deadline& deadline,
   });
   BatchStatistics all;
   all.minimum_cost = all.minimum_total = infinite;
+  int end = 0;
   for (int i = 0; i < parts; ++i) {
-    const BatchStatistics& c = statistics_[i];
-    all.minimum_total = std::min(all.minimum_total, c.minimum_total);
-    all.minimum_cost = std::min(all.minimum_cost, c.minimum_cost);
-    all.finite += c.finite;
-    all.collided += c.collided;
-    all.evaluated += c.evaluated;
-    all.draw_time += c.draw_time;
-    all.evaluate_time += c.evaluate_time;
+    all += statistics_[i];
+    if (statistics_[i].evaluated > 0) end = std::min((i + 1) * size, values_.stride());
   }
+  reached_ = (end + tile_ - 1) / tile_;
+  std::fill(weights_.data() + end, weights_.data() + values_.stride(), 0.0f);
   return all;
 }
 
@@ -178,9 +170,11 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
 
 BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
                                              const SamplingDistribution& to, const float* linear,
-                                             ThreadPool& pool, const Deadline& deadline) noexcept {
-  return draw_and_evaluate(evaluator, key, linear, pool, deadline,
-                           [&](Range r) { sample_range(evaluator.sampler(), key, to, prepared(r), r); });
+                                             ThreadPool& pool, const Deadline& deadline,
+                                             const SequenceList& known) noexcept {
+  return draw_and_evaluate(evaluator, key, linear, pool, deadline, [&](Range r) {
+    sample_range(evaluator.sampler(), key, to, known, prepared(r), r);
+  });
 }
 
 BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
@@ -223,16 +217,18 @@ void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const Mixtur
 /// Draws a range of the samples, from the prepared noise if `ready`. Proposals take the places of the last
 /// samples. A value that is not finite becomes that of the mean.
 void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to,
-                             bool ready, Range r) noexcept {
+                             const SequenceList& known, bool ready, Range r) noexcept {
   if (!ready) fill_noise(sampler, values_, r, key);
   SequenceBatch& from = ready ? noise_ : values_;
   kernels::sample(rows_of(from), row_view(), to, r);
   place_proposals(samples() - proposed_, to.mean, to.low, to.high, r);
+  for (int i = 0, k = samples() - proposed_ - 1; i < known.sequences && k >= r.first; ++i, --k)
+    if (k < r.first + r.count)
+      values_.set_sample(k, known.values.subspan(static_cast<std::size_t>(i * rows())));
 }
 
-void SampleSet::draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool,
-                     const Sampler* sampler) noexcept {
-  pool.run(tiles(), [&](int tile) { sample_range(sampler, key, to, false, range(tile)); });
+void SampleSet::draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool) noexcept {
+  pool.run(tiles(), [&](int tile) { sample_range(nullptr, key, to, {}, false, range(tile)); });
 }
 
 BatchStatistics SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear,
@@ -258,7 +254,7 @@ BatchStatistics SampleSet::evaluate(const BatchEvaluator& evaluator, const float
 }
 
 void SampleSet::keep_terms(const float* linear, ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) {
+  pool.run(reached_, [&](int tile) {
     const Range r = range(tile);
     std::fill_n(terms_.data() + r.first, r.count, 0.0f);
     kernels::add_linear(row_view(), linear, r, terms_.data());
@@ -266,22 +262,22 @@ void SampleSet::keep_terms(const float* linear, ThreadPool& pool) noexcept {
 }
 
 float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) {
+  pool.run(reached_, [&](int tile) {
     const Range r = range(tile);
     kernels::add_scaled(costs_.data(), factor, terms_.data(), r, totals_.data());
     kernels::make_finite(r, totals_.data());
     least_[tile] = kernels::minimum(totals_.data(), r);
   });
-  return *std::min_element(least_.begin(), least_.end());
+  return *std::min_element(least_.begin(), least_.begin() + std::max(reached_, 1));
 }
 
 WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) {
+  pool.run(reached_, [&](int tile) {
     weight_sums_[tile] = kernels::exponential_weights(totals_.data(), costs_.data(), least, temperature,
                                                       range(tile), weights_.data());
   });
   WeightSums<double> all;
-  for (const WeightSums<float>& sums : weight_sums_) {
+  for (const WeightSums<float>& sums : std::span(weight_sums_).first(static_cast<std::size_t>(reached_))) {
     all.weight += sums.weight;
     all.squared += sums.squared;
     all.cost += sums.cost;
@@ -303,9 +299,9 @@ WeightSums<double> SampleSet::sum_weights(int count) const noexcept {
 /// Calls each(range, sums) for every tile, and adds the `count` sums of the tiles in their order.
 template <class Each>
 void SampleSet::add_tiles(int count, double* sums, ThreadPool& pool, Each&& each) noexcept {
-  pool.run(tiles(), [&](int tile) { each(range(tile), tile_sums_[tile]); });
+  pool.run(reached_, [&](int tile) { each(range(tile), tile_sums_[tile]); });
   std::fill_n(sums, count, 0.0);
-  for (int tile = 0; tile < tiles(); ++tile)
+  for (int tile = 0; tile < reached_; ++tile)
     for (int i = 0; i < count; ++i) sums[i] += tile_sums_[tile][i];
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <span>
@@ -31,6 +32,17 @@ struct BatchStatistics {
   int evaluated = 0;         ///< samples that were drawn and evaluated before the deadline
   double draw_time = 0;      ///< s, summed over threads
   double evaluate_time = 0;  ///< s, summed over threads
+
+  BatchStatistics& operator+=(const BatchStatistics& other) noexcept {
+    minimum_total = std::min(minimum_total, other.minimum_total);
+    minimum_cost = std::min(minimum_cost, other.minimum_cost);
+    finite += other.finite;
+    collided += other.collided;
+    evaluated += other.evaluated;
+    draw_time += other.draw_time;
+    evaluate_time += other.evaluate_time;
+    return *this;
+  }
 };
 
 /// A set of control sequences with their costs and weights. Work is divided into tiles of samples that fit
@@ -78,10 +90,11 @@ class SampleSet {
   int proposed() const noexcept { return proposed_; }
 
   /// Draws and evaluates the samples. Their totals are cost + sum of linear[row] v[row]; `linear` may be
-  /// null. Omits tiles that have not started at the deadline.
+  /// null. The `known` sequences take the places before the proposals, the first one the last. Omits tiles
+  /// that have not started at the deadline.
   BatchStatistics draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
                                     const SamplingDistribution& to, const float* linear, ThreadPool& pool,
-                                    const Deadline& deadline) noexcept;
+                                    const Deadline& deadline, const SequenceList& known = {}) noexcept;
 
   /// Draws and evaluates samples of a mixture, before which stand the `known` sequences and the proposals.
   /// The set draws white noise (`set_white`), which a part of the samples shapes. Omits tiles as above.
@@ -89,9 +102,8 @@ class SampleSet {
                                     const SequenceList& known, ThreadPool& pool,
                                     const Deadline& deadline) noexcept;
 
-  /// Draws the samples without evaluating them, with normal noise or that of a problem's `sampler`.
-  void draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool,
-            const Sampler* sampler = nullptr) noexcept;
+  /// Draws the samples without evaluating them, with normal noise.
+  void draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool) noexcept;
 
   /// Evaluates the present values.
   BatchStatistics evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
@@ -124,12 +136,15 @@ class SampleSet {
     return prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
   }
   Range range(int tile) const noexcept { return part(tile, tile_); }
-  Range part(int index, int size) const noexcept;
+  /// Part `index` of the set, divided into parts of `size` samples.
+  Range part(int index, int size) const noexcept {
+    return {index * size, std::min(size, values_.stride() - index * size)};
+  }
   int part_size(int threads) const noexcept;
   bool prepared(Range range) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
-  void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to, bool ready,
-                    Range range) noexcept;
+  void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to,
+                    const SequenceList& known, bool ready, Range range) noexcept;
   void sample_range(const Sampler* sampler, RandomKey key, const Mixture& from, const SequenceList& known,
                     bool ready, Range range) noexcept;
   void place_proposals(int first, const float* mean, const float* low, const float* high,
@@ -162,6 +177,7 @@ class SampleSet {
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
   std::vector<float> least_;                    ///< [tile]
   Matrix<float> tile_sums_;                     ///< [tile][sum]
+  int reached_;                                 ///< tiles of the last evaluation before the deadline
 };
 
 /// 1 / variance + offset; 0 for an input that is not sampled (variance 0).
