@@ -114,7 +114,7 @@ class Study:
         self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
 
     def score(self, row: dict[str, Any]) -> float:
-        """What a tuner makes small."""
+        """The figure that a tuner makes small."""
         return float(row["score"])
 
     def words(self, *without: str) -> list[str]:
