@@ -3,10 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <vector>
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/core/random.hpp"

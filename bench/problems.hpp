@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <vector>
-
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/math.hpp"
 #include "slalom/core/network/mlp.hpp"

@@ -13,15 +13,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <thread>
-#include <vector>
 
 #include "bench/workload/measurements.hpp"
 #include "slalom/navigation/navigator.hpp"

@@ -2,11 +2,7 @@
 // line of CSV for each task, method and number. script/problem-suite runs it and makes the table and the
 // plot.
 
-#include <cmath>
 #include <cstdio>
-#include <stdexcept>
-#include <string>
-#include <string_view>
 
 #include "slalom/core/option_access.hpp"
 #include "task.hpp"
@@ -14,7 +10,9 @@
 namespace slalom::suite {
 
 constexpr const char* usage =
-    "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...] [--disturbed false]\n"
+    "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...|holding] [--disturbed "
+    "false]\n"
+    "                            [--horizon 1]  factor of the horizon of each task\n"
     "                            [--methods METHOD[:OPTION=VALUE]...,...] [--rollouts NUMBER,...]\n";
 
 namespace {
@@ -71,6 +69,7 @@ struct Arguments {
   std::vector<std::string> methods{"mppi", "svg_mppi", "icem"};
   std::vector<std::string> rollouts{"64", "256", "1024"};
   bool disturbed = false;  ///< whether the plant differs from the model
+  double horizon = 1;      ///< factor of the horizon of each task
 };
 
 Arguments parse(int argc, char** argv) {
@@ -91,6 +90,8 @@ Arguments parse(int argc, char** argv) {
       a.rollouts = split(value, ',');
     } else if (name == "--disturbed" && (value == "true" || value == "false")) {
       a.disturbed = value == "true";
+    } else if (name == "--horizon") {
+      a.horizon = std::stod(value);
     } else {
       throw std::invalid_argument("unknown argument '" + name + "'");
     }
@@ -98,10 +99,11 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-/// The tasks of these names; all if there are none.
+/// The tasks of these names; all if there are none, or those of exact holding.
 std::vector<Task> tasks_named(const std::vector<std::string>& names) {
+  if (names.empty()) return all_tasks();
+  if (names == std::vector<std::string>{"holding"}) return holding_tasks();
   const std::vector<Task> all = all_tasks();
-  if (names.empty()) return all;
   std::vector<Task> chosen;
   for (const std::string& name : names) {
     const auto task = std::find_if(all.begin(), all.end(), [&](const Task& t) { return t.name == name; });
@@ -113,7 +115,8 @@ std::vector<Task> tasks_named(const std::vector<std::string>& names) {
 
 void run(const Arguments& a) {
   std::printf("task,several_ways,method,rollouts,seeds,solved,median_cost\n");
-  for (const Task& task : tasks_named(a.tasks)) {
+  for (Task task : tasks_named(a.tasks)) {
+    task.horizon = std::max(1, saturate_cast<int>(std::round(a.horizon * task.horizon)));
     for (const std::string& method : a.methods) {
       for (const std::string& rollouts : a.rollouts) {
         const std::vector<std::string> parts = split(method, ':');

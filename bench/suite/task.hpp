@@ -1,14 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 #include "slalom/problems/arm.hpp"
 #include "slalom/slalom.hpp"
@@ -198,6 +190,9 @@ void add_plane_tasks(std::vector<Task>& tasks);
 void add_narrow_tasks(std::vector<Task>& tasks);
 /// Adds loads, vehicles and schedules with models of a few lines.
 void add_further_tasks(std::vector<Task>& tasks);
+
+/// Tasks that are solved by exactness, which are not among all_tasks().
+std::vector<Task> holding_tasks();
 
 inline std::vector<Task> all_tasks() {
   std::vector<Task> tasks;

@@ -1,11 +1,6 @@
 #include "bench/workload/measurements.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <memory>
-#include <stdexcept>
-#include <utility>
 
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/math.hpp"

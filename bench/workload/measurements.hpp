@@ -1,9 +1,5 @@
 #pragma once
 
-#include <span>
-#include <string>
-#include <vector>
-
 #include "bench/workload/reference_workload.hpp"
 #include "bench/workload/statistics.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"

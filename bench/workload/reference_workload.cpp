@@ -1,9 +1,5 @@
 #include "bench/workload/reference_workload.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "slalom/core/random.hpp"
 #include "slalom/vehicle/published/options.hpp"
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "bench/workload/yardstick.hpp"
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/sequence_batch.hpp"

@@ -1,7 +1,5 @@
 #include "bench/workload/yardstick.hpp"
 
-#include <cmath>
-
 namespace slalom::workload {
 
 Yardstick::Yardstick(const vehicle::PathTrackingOptions& options, const maps::ReferenceField& field,

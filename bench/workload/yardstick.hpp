@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"

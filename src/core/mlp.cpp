@@ -1,9 +1,6 @@
 #include "slalom/core/network/mlp.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/network/npz.hpp"

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "slalom/core/error.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom {
@@ -18,7 +19,7 @@ namespace {
 [[noreturn]] void refuse(std::string_view text, const std::string& rule) {
   std::string message = "'";
   message.append(text).append("' ").append(rule);
-  throw std::invalid_argument(message);
+  throw std::invalid_argument(shortened(message));
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <fstream>
 #include <memory>
-#include <string_view>
 #include <system_error>
 
 #include "slalom/core/files/write_file.hpp"

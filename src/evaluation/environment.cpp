@@ -1,10 +1,5 @@
 #include "slalom/evaluation/environment.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
 #include "evaluation/lap_rules.hpp"
 
 namespace slalom::evaluation {

@@ -1,11 +1,9 @@
 #include "slalom/evaluation/evaluation.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <mutex>
 #include <set>
-#include <utility>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

@@ -1,9 +1,5 @@
 #include "evaluation/hardware_model.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-
 namespace slalom::evaluation {
 namespace {
 

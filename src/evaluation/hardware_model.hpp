@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "slalom/evaluation/hardware.hpp"
 #include "slalom/sim/world.hpp"
 #include "slalom/vehicle/localisation/localiser.hpp"

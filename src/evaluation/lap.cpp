@@ -1,13 +1,6 @@
 // A lap while it is driven: the loop of its cars, and the meters of the first one.
 #include "slalom/evaluation/lap.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <stdexcept>
-#include <utility>
-
 #include "evaluation/driver/car_driver.hpp"
 #include "evaluation/lap_setup.hpp"
 #include "evaluation/overtaking/overtaking_meter.hpp"

@@ -1,13 +1,9 @@
 #include "slalom/evaluation/lap_log.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <sstream>
-#include <utility>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap_settings.hpp"
 #include "slalom/maps/laser_scan.hpp"

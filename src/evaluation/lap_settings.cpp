@@ -1,8 +1,5 @@
 #include "slalom/evaluation/lap_settings.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-
 #include "slalom/core/option_access.hpp"
 
 namespace slalom::evaluation {

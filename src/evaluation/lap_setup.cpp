@@ -1,10 +1,5 @@
 #include "evaluation/lap_setup.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <utility>
-
 #include "evaluation/driver/car_driver.hpp"
 #include "evaluation/hardware_model.hpp"
 #include "evaluation/lap_rules.hpp"

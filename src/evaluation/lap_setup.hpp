@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/sim/world.hpp"
 

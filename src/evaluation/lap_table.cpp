@@ -1,12 +1,9 @@
 #include "slalom/evaluation/lap_table.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <set>
-#include <type_traits>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"

@@ -1,8 +1,6 @@
 // The evaluation of the program that Honda et al. (ICRA 2024) released: f1tenth_gym with its placement of
 // obstacles, its message types and its count of laps and collisions. Everything that exists only to reproduce
 // it is here.
-#include <stdexcept>
-#include <string>
 
 #include "evaluation/lap_rules.hpp"
 #include "slalom/core/option_access.hpp"

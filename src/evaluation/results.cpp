@@ -1,7 +1,5 @@
 #include "slalom/evaluation/results.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace slalom::evaluation {

@@ -1,10 +1,5 @@
 #include "slalom/evaluation/sequence_cost.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"

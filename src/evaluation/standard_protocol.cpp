@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
 
 #include "evaluation/lap_rules.hpp"
 

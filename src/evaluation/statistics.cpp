@@ -1,8 +1,6 @@
 #include "slalom/evaluation/statistics.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 

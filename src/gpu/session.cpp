@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 
 #include <chrono>
-#include <cstring>
 
 #include "slalom/gpu/kernels/block.hpp"
 

@@ -1,8 +1,5 @@
 #include "slalom/maps/clearance_map.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "maps/validation.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/math.hpp"

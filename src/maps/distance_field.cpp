@@ -1,10 +1,6 @@
 #include "slalom/maps/distance_field.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose_limits.hpp"

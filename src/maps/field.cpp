@@ -1,10 +1,5 @@
 #include "slalom/maps/field.hpp"
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-
 #include "maps/validation.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/maps/distance_field.hpp"

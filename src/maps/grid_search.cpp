@@ -1,9 +1,5 @@
 #include "slalom/maps/grid_search.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::maps {

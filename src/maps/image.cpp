@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <stdexcept>
-#include <string>
 #include <string_view>
 
 #include "slalom/core/error.hpp"

@@ -1,7 +1,6 @@
 #include "slalom/maps/leg_follower.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace slalom::maps {
 namespace {

@@ -1,8 +1,5 @@
 #include "slalom/maps/local_cost_map.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "maps/validation.hpp"
 
 namespace slalom::maps {

@@ -1,7 +1,6 @@
 #include "slalom/maps/manoeuvre_search.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 

@@ -1,12 +1,5 @@
 #include "slalom/maps/moving_obstacles.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <stdexcept>
-#include <string>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/pose_limits.hpp"
 

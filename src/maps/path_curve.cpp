@@ -1,9 +1,6 @@
 #include "slalom/maps/path_curve.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace slalom::maps {
 

@@ -1,7 +1,6 @@
 #include "slalom/maps/recovery.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/maps/body_room.hpp"
 

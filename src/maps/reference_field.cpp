@@ -1,9 +1,5 @@
 #include "slalom/maps/reference_field.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-
 #include "maps/validation.hpp"
 #include "slalom/maps/pose_limits.hpp"
 

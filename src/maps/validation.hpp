@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cmath>
 #include <sstream>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"

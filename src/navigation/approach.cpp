@@ -1,9 +1,5 @@
 #include "navigation/approach.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation::detail {

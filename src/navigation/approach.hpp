@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "navigation/path_guide.hpp"
 #include "slalom/maps/manoeuvre_search.hpp"
 #include "slalom/navigation/navigator.hpp"

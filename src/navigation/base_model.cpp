@@ -1,11 +1,6 @@
 #include "navigation/base_model.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cstring>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/controller.hpp"

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
-
 #include "slalom/navigation/navigation_problem.hpp"
 #include "slalom/navigation/navigator.hpp"
 

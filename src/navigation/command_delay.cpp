@@ -1,8 +1,5 @@
 #include "navigation/command_delay.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace slalom::navigation::detail {
 
 CommandDelay::CommandDelay(const BaseOptions& base) noexcept

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-
 #include "slalom/maps/pose.hpp"
 #include "slalom/navigation/base.hpp"
 

@@ -1,11 +1,5 @@
 #include "slalom/navigation/costmap.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/maps/pose_limits.hpp"

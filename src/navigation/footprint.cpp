@@ -1,10 +1,7 @@
 #include "slalom/navigation/footprint.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 #include "slalom/core/numbers/count.hpp"

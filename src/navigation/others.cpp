@@ -1,9 +1,5 @@
 #include "navigation/others.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation::detail {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/navigation/footprint.hpp"

@@ -1,9 +1,5 @@
 #include "navigation/path_guide.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace slalom::navigation::detail {
 namespace {
 

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <limits>
-#include <span>
-#include <vector>
-
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/path_curve.hpp"
 #include "slalom/navigation/navigation_problem.hpp"

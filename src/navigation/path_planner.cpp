@@ -1,9 +1,5 @@
 #include "slalom/navigation/path_planner.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation {

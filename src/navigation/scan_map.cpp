@@ -1,7 +1,6 @@
 #include "slalom/navigation/scan_map.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 

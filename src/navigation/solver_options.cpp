@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "slalom/navigation/navigator.hpp"
 #include "slalom/solvers/registry.hpp"

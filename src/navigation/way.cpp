@@ -1,11 +1,5 @@
 #include "navigation/way.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-#include <utility>
-
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/maps/pose_limits.hpp"
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <limits>
-#include <span>
-
 #include "navigation/approach.hpp"
 #include "navigation/others.hpp"
 #include "navigation/path_guide.hpp"

@@ -1,8 +1,5 @@
 #include "tracking/association.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace slalom::tracking {
 
 double max_diameter(const TrackerOptions& options) noexcept {

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "slalom/tracking/tracker_options.hpp"
 #include "tracking/readings.hpp"
 #include "tracking/tracked.hpp"

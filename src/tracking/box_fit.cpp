@@ -1,7 +1,6 @@
 #include "tracking/box_fit.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace slalom::tracking {
 namespace {

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <numbers>
-#include <span>
-
 #include "tracking/readings.hpp"
 
 namespace slalom::tracking {

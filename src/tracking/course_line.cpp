@@ -1,10 +1,5 @@
 #include "tracking/course_line.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-
 #include "slalom/core/numbers/count.hpp"
 
 namespace slalom::tracking {

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 #include <vector>
 
 #include "slalom/core/numbers/saturate_cast.hpp"

@@ -1,7 +1,6 @@
 #include "tracking/free_space.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 

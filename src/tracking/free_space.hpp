@@ -1,8 +1,5 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "slalom/core/reserved_vector.hpp"
 #include "tracking/readings.hpp"
 

@@ -1,8 +1,5 @@
 #include "tracking/manoeuvres.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::tracking {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor_options.hpp"

@@ -1,7 +1,6 @@
 #include "tracking/map_background.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/distance_field.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"
 #include "tracking/readings.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/reserved_vector.hpp"

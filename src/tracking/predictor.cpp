@@ -1,9 +1,6 @@
 #include "slalom/tracking/predictor.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <vector>
 
 #include "slalom/core/math.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

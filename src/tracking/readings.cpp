@@ -1,9 +1,6 @@
 #include "tracking/readings.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 

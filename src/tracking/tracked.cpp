@@ -1,9 +1,5 @@
 #include "tracking/tracked.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "slalom/core/math.hpp"
 
 namespace slalom::tracking {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
 
 #include "slalom/tracking/object_tracker.hpp"
 #include "tracking/box_fit.hpp"

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <span>
-#include <stdexcept>
-#include <string>
-
 #include "slalom/core/option_access.hpp"
 #include "slalom/vehicle/course/speed_profile.hpp"
 

@@ -1,8 +1,4 @@
 // The logic of the nodes and of the controller for nav2: refused options, paths and maps change nothing.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
 
 #include "logic/localiser_core.hpp"
 #include "logic/path_follower.hpp"

@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
-#include <vector>
-
 #include "logic/pose_trust.hpp"
 #include "logic/reports.hpp"
 

@@ -1,10 +1,6 @@
 // The importer of parameter files for nav2's MPPI controller: the fate of each key, and what it refuses.
 #include "logic/mppi_import.hpp"
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 

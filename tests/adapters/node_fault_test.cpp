@@ -1,8 +1,6 @@
 // Planner and localiser of the ROS nodes: every fault stops the car with a reason, then it drives on.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "simulated_drive.hpp"
 
 namespace slalom::nodes::testing {

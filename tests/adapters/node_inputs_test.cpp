@@ -1,8 +1,6 @@
 // The planner of the ROS nodes takes every input: goal speed, other cars, points, covariance, what is obeyed.
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "simulated_drive.hpp"
 
 namespace slalom::nodes::testing {

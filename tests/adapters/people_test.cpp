@@ -1,8 +1,6 @@
 // A robot of nav2 among people who cross its way and do not look: it has its costmap and its scans alone.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "logic/path_follower.hpp"
 #include "slalom/sim/room/room.hpp"
 

@@ -1,15 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <deque>
-#include <functional>
-#include <map>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "logic/installed.hpp"
 #include "logic/localiser_core.hpp"

@@ -1,11 +1,6 @@
 // The poses of sensors, stamps, and the file with the last pose.
 #include "logic/transforms.hpp"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <numbers>
-
 #include "logic/known_pose.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,12 +1,7 @@
 // Numbers that are too large, and files that do not fit onto the disk.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <cmath>
 #include <csignal>
-#include <cstdint>
-#include <filesystem>
-#include <string>
 
 #include "slalom/core/files/write_file.hpp"
 #include "slalom/core/numbers/count.hpp"

@@ -1,11 +1,6 @@
 #include "slalom/core/network/mlp.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <functional>
-#include <random>
-#include <stdexcept>
 
 #include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/core/error.hpp"

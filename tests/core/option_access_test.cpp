@@ -130,6 +130,14 @@ TEST(OptionAccess, ListsValuesThatReadBack) {
   EXPECT_EQ(to_text(entries[4].value), "[0.1, 0.2]");
 }
 
+TEST(OptionAccess, MessagesAreCutBetweenCharacters) {
+  EXPECT_EQ(shortened("short"), "short");
+  std::string text(3000, 'x');
+  for (std::size_t i = 0; i + 2 < text.size(); i += 3) text.replace(i, 3, "\u20ac");
+  const std::string cut = shortened("a" + text + "b");
+  EXPECT_EQ(cut, "a" + text.substr(0, 489) + " ... " + text.substr(0, 489) + "b");
+}
+
 TEST(OptionAccess, SuggestsSimilarNames) {
   const std::vector<std::string> names = {"samples", "temperature", "variance"};
   EXPECT_EQ(nearest_name("sampels", names), "samples");

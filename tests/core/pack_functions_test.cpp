@@ -1,10 +1,5 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
-#include <vector>
 
 #include "support/rollouts.hpp"
 

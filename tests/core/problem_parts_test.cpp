@@ -1,9 +1,4 @@
 // The optional members of a problem, in the rollouts of every instruction set.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
 
 #include "support/rollouts.hpp"
 

@@ -1,10 +1,5 @@
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <random>
-#include <vector>
 
 #include "slalom/core/grid_view.hpp"
 #include "support/rollouts.hpp"

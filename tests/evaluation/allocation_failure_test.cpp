@@ -1,8 +1,5 @@
 // Memory that runs out at any allocation of a planner, a course, or the start of a lap, a race or a drive in
 // a room: std::bad_alloc, and nothing is lost.
-#include <gtest/gtest.h>
-
-#include <atomic>
 
 #include "evaluation/courses.hpp"
 #include "slalom/evaluation/grid_race.hpp"

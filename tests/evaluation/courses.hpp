@@ -1,11 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <filesystem>
-#include <memory>
-#include <numbers>
-#include <string>
-
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
-#include <thread>
 
 #include "evaluation/courses.hpp"
 #include "evaluation/racing/race_watch.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <thread>
 
 #include "evaluation/courses.hpp"
 #include "support/thrown_words.hpp"

@@ -2,7 +2,6 @@
 // of the tracker (world.tracking=localised).
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <numeric>
 
 #include "evaluation/courses.hpp"

@@ -1,12 +1,6 @@
 // Opponents in laps: who is met, overtaken and hit, and whose fault it was.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <atomic>
-#include <bit>
-#include <cmath>
-#include <numbers>
-
 #include "evaluation/courses.hpp"
 #include "evaluation/overtaking/overtaking_meter.hpp"
 #include "sim/rooms.hpp"

@@ -1,8 +1,6 @@
 // Results of few laps against values computed by hand.
 #include "slalom/evaluation/results.hpp"
 
-#include <gtest/gtest.h>
-
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/lap_log.hpp"
 #include "support/temporary_folder.hpp"

@@ -1,10 +1,4 @@
 // Rooms: scenarios, drives through them, what moves in their scans, and the worlds of BARN.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/rooms/mover_watch.hpp"

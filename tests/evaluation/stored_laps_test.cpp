@@ -240,16 +240,6 @@ TEST_F(StoredLaps, SettingsThatWereChangedShow) {
     }
 }
 
-TEST_F(StoredLaps, SettingsOfAnyDepthAreRefused) {
-  store(false);
-  for (const int depth : {100, 1000000}) {
-    const std::size_t brackets = static_cast<std::size_t>(depth);
-    write("settings.json", "{\"a\": " + std::string(brackets, '[') + std::string(brackets, ']') + "}");
-    expect_error_with<IoError>({"settings.json: must not nest deeper than 64 levels"},
-                               [&] { LapStore(folder_, evaluation_, true); });
-  }
-}
-
 TEST_F(StoredLaps, ResumesOnlyFromAWholeTableOfItsOwn) {
   store(true);
   const std::string table = text("laps.csv");

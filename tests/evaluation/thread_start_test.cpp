@@ -1,7 +1,6 @@
 // Evaluations go on when the system cannot start a thread.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <stdexcept>
 #include <string>
 

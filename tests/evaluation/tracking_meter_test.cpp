@@ -4,11 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <memory>
-#include <numbers>
-
 #include "slalom/vehicle/localisation/localiser.hpp"
 
 namespace slalom::evaluation {

@@ -1,11 +1,11 @@
 // Controllers, planners, navigators and trackers as state machines: bytes choose options, then the calls.
 #include <cmath>
-#include <random>
 #include <stdexcept>
 #include <vector>
 
 #include "fuzz/target.hpp"
 #include "navigation/navigator_calls.hpp"
+#include "slalom/vehicle/localisation/localiser.hpp"
 #include "solvers/controller_calls.hpp"
 #include "solvers/solver_contract.hpp"
 #include "tracking/tracker_calls.hpp"
@@ -13,15 +13,6 @@
 
 namespace slalom::fuzz {
 namespace {
-
-/// `count` texts of `size` random bytes, the same at every call.
-Seeds random_bytes(int count, std::size_t size) {
-  std::mt19937_64 random(1);
-  Seeds all(count, std::string(size, '\0'));
-  for (std::string& each : all)
-    for (char& byte : each) byte = static_cast<char>(random() & 255u);
-  return all;
-}
 
 const Target controller_target(
     "controller", 1024, []() -> Seeds { return random_bytes(40, 300); },
@@ -65,6 +56,44 @@ const Target tracker_target(
     [](std::string_view bytes) {
       testing::Adversary adversary(bytes);
       return tracking::call_tracker(adversary) > 0;
+    },
+    100);
+
+/// Throws Finding unless an estimate is finite and its shares are shares.
+void check(const vehicle::LocaliserOutput& out) {
+  double sum = out.pose.x + out.pose.y + out.pose.yaw;
+  for (const auto& row : out.covariance)
+    for (const double value : row) sum += value;
+  require(std::isfinite(sum), "the estimate is finite");
+  for (const double share : {out.fit, out.share, out.health})
+    require(share >= 0 && share <= 1 + 1e-9, "shares are from 0 to 1");
+  require(out.particles >= 0 && out.beams >= 0, "numbers are not negative");
+}
+
+const Target localiser_target(
+    "localiser", 4096, []() -> Seeds { return random_bytes(20, 1500); },
+    [](std::string_view bytes) {
+      static const maps::OccupancyGrid map = tracking::room();
+      testing::Adversary adversary(bytes);
+      vehicle::Localiser localiser(map, {.seed = static_cast<std::uint64_t>(adversary.below(1000))});
+      std::vector<float> ranges;
+      for (int i = 0; i < 25; ++i) {
+        const bool hostile = adversary.once_in(5);
+        const auto value = [&](double low, double high) {
+          return hostile ? adversary.any(low, high) : adversary.within(low, high);
+        };
+        if (adversary.once_in(20)) localiser.start_at({value(-1, 1), value(-1, 1), value(-4, 4)});
+        if (adversary.once_in(30)) localiser.start_everywhere();
+        ranges.resize(adversary.once_in(10) ? adversary.below(3000) : 181);
+        if (hostile || i < 2)
+          for (float& range : ranges) range = static_cast<float>(value(0.5, 3));
+        vehicle::LocaliserInput input;
+        input.scan = {ranges, value(-1.6, -1.5), value(0.017, 0.018), 0.05, 30};
+        input.odometry = {0.02 * i + value(0, 0.01), value(0, 0.01), value(0, 0.01)};
+        input.stamp = hostile ? adversary.any(0, 10) : 0.025 * i;
+        check(localiser.update(input));
+      }
+      return true;
     },
     100);
 

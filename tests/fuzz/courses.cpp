@@ -52,8 +52,35 @@ const Target image_target(
       return true;
     });
 
+/// The first second of a lap on a course, and what its commands promise. Returns whether a car can drive
+/// there.
+bool drive(const std::filesystem::path& folder) {
+  static const vehicle::Configuration configuration = [] {
+    auto made = vehicle::load_configuration(SLALOM_CONFIGS "/default.yaml");
+    vehicle::set_option(made, "svg_mppi.samples", "32");
+    return made;
+  }();
+  std::optional<evaluation::LapDrive> lap;
+  try {
+    const auto environment =
+        evaluation::load_environment(folder, evaluation::Protocol::true_physics, {folder});
+    lap.emplace(evaluation::LapSetup{environment, {configuration}}, 0);
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  for (int i = 0; i < 40; ++i) {
+    const testing::CallLimits limits;
+    lap->step([](const evaluation::ControlStep& step) {
+      testing::check_output(step.output, configuration.planner);
+      require(std::isfinite(step.cost.state + step.cost.collision), "costs are finite");
+    });
+    limits.check();
+  }
+  return true;
+}
+
 const Target course_target(
-    "course", 4096,
+    "course", 8192,
     []() -> Seeds {
       const testing::CourseFolder ring;
       const std::string map = testing::content(ring.path() / "map.yaml");
@@ -62,81 +89,32 @@ const Target course_target(
           "1.5}\n"
           "timeout: 30\nclosed: true\n";
       const std::string known = "ring:\n  start: {x: 2, y: 0, yaw: 1.57}\n  timeout: 60\n";
-      return {map + separator + course + separator + known,
+      const std::string points = "1.5,0.25\n-0.5,2\n-2,-1e-1\n";
+      return {map + separator + course + separator + known + separator + testing::CourseFolder::raceline +
+                  separator + points,
+              map + separator + course + separator + known + separator +
+                  "opt_x,opt_y,width,ref_v\n2,0,1,1.5\n0,2,1,2\n-2,0,1,0\n0,-2,1,3\n" + separator + points,
               "image: map.png\nresolution: 0.1\norigin: [-5.0, -5.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
               "free_thresh: 0.196\nmode: scale\n" +
                   std::string(1, separator) + "start: {x: 2, y: 0}\nclosed: false\n"};
     },
     [](std::string_view bytes) {
       static const testing::CourseFolder ring;
-      const auto [map, course, known] = split<3>(bytes);
+      const auto [map, course, known, waypoints, obstacles] = split<5>(bytes);
       ring.write("map.yaml", std::string(map));
       ring.write("course.yaml", std::string(course));
       ring.write("known.yaml", std::string(known));
+      ring.write("raceline.csv",
+                 waypoints.empty() ? testing::CourseFolder::raceline : std::string(waypoints));
+      ring.remove("opp_ref_path.csv");
+      if (!obstacles.empty()) ring.write("opp_ref_path.csv", std::string(obstacles));
       const bool is_known = is_valid([&] {
         const auto found = vehicle::known_course("ring", {ring.path()});
         require(!found || (std::isfinite(found->start.x) && found->timeout >= 0),
                 "a known course has a start and a timeout");
       });
       check_course_of(ring.path());
-      return is_known;
-    });
-
-const Target waypoints_target(
-    "waypoints", 4096,
-    []() -> Seeds {
-      const std::string points = "1.5,0.25\n-0.5,2\n-2,-1e-1\n";
-      return {testing::CourseFolder::raceline + std::string(1, separator) + points,
-              "opt_x,opt_y,width,ref_v\n2,0,1,1.5\n0,2,1,2\n-2,0,1,0\n0,-2,1,3\n" +
-                  std::string(1, separator) + points};
-    },
-    [](std::string_view bytes) {
-      static const testing::CourseFolder ring;
-      const auto [waypoints, obstacles] = split<2>(bytes);
-      ring.write("raceline.csv", std::string(waypoints));
-      ring.write("opp_ref_path.csv", std::string(obstacles));
-      check_course_of(ring.path());
-      return true;
-    });
-
-/// The first second of a lap on the course of three files, and what its commands promise.
-const Target lap_target(
-    "lap", 4096,
-    []() -> Seeds {
-      const testing::CourseFolder ring;
-      const std::string map = testing::content(ring.path() / "map.yaml");
-      return {
-          map + separator + testing::CourseFolder::raceline + separator + "start: {x: 2, y: 0, yaw: 1.57}\n",
-          map + separator + "-3,-3\n3,-3\n3,3\n-3,3\n" + separator + "closed: true\n"};
-    },
-    [](std::string_view bytes) {
-      static const testing::CourseFolder ring;
-      static const vehicle::Configuration configuration = [] {
-        auto made = vehicle::load_configuration(SLALOM_CONFIGS "/default.yaml");
-        vehicle::set_option(made, "svg_mppi.samples", "32");
-        return made;
-      }();
-      const auto [map, waypoints, course] = split<3>(bytes);
-      ring.write("map.yaml", std::string(map));
-      ring.write("raceline.csv", std::string(waypoints));
-      ring.write("course.yaml", std::string(course));
-      std::optional<evaluation::LapDrive> lap;
-      try {
-        const auto environment =
-            evaluation::load_environment(ring.path(), evaluation::Protocol::true_physics, {ring.path()});
-        lap.emplace(evaluation::LapSetup{environment, {configuration}}, 0);
-      } catch (const std::invalid_argument&) {  // files of a course that no car can drive
-        return false;
-      }
-      for (int i = 0; i < 40; ++i) {
-        const testing::CallLimits limits;
-        lap->step([](const evaluation::ControlStep& step) {
-          testing::check_output(step.output, configuration.planner);
-          require(std::isfinite(step.cost.state + step.cost.collision), "costs are finite");
-        });
-        limits.check();
-      }
-      return true;
+      return drive(ring.path()) && is_known;
     },
     200);
 

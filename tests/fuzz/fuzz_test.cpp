@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <random>
 
 #include "fuzz/target.hpp"
-#include "support/adversarial_tries.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace slalom::fuzz {
@@ -62,7 +62,8 @@ TEST_P(Fuzz, TakesItsSeeds) {
 }
 
 TEST_P(Fuzz, TakesChangedSeeds) {
-  const long runs = testing::repetitions(60);
+  const char* calls = std::getenv("SLALOM_CALLS");
+  const long runs = calls ? std::strtol(calls, nullptr, 10) : 60;
   const auto seeds = GetParam()->seeds();
   for (long i = 0; i < runs; ++i) {
     std::mt19937_64 random(static_cast<std::uint64_t>(i));

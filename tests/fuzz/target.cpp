@@ -1,5 +1,7 @@
 #include "fuzz/target.hpp"
 
+#include <random>
+
 #include "support/promise.hpp"
 
 namespace slalom::fuzz {
@@ -21,6 +23,15 @@ bool Target::run(std::string_view bytes) const {
   const bool valid = is_valid([&] { accepted = take(bytes); }) && accepted;
   limits.check(calls);
   return valid;
+}
+
+Seeds random_bytes(int count, std::size_t size, std::string_view first) {
+  std::mt19937_64 random(1);
+  Seeds all(count, std::string(size, '\0'));
+  for (std::string& each : all)
+    for (char& byte : each) byte = static_cast<char>(random() & 255u);
+  if (!first.empty()) all.front() = first;
+  return all;
 }
 
 const testing::ScopedFolder& scratch_folder() {

@@ -1,12 +1,6 @@
 #include "slalom/maps/field.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 #include <random>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/core/derivatives/linearize.hpp"
 #include "support/allocations.hpp"

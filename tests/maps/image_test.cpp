@@ -1,9 +1,6 @@
 #include "slalom/maps/image.hpp"
 
-#include <gtest/gtest.h>
 #include <png.h>
-
-#include <stdexcept>
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"

@@ -4,9 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
 
 namespace slalom::maps::leg_follower_test {
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <stdexcept>
 
 namespace slalom::maps::local_cost_map_test {
 namespace {

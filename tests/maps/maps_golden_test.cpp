@@ -1,10 +1,5 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <iostream>
-#include <string>
 
 #include "golden.hpp"
 #include "maps/grid_map_csv.hpp"

@@ -7,7 +7,6 @@
 #include <memory>
 #include <numbers>
 #include <random>
-#include <stdexcept>
 
 #include "support/allocations.hpp"
 #include "support/predicted.hpp"

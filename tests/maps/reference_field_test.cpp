@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <random>
-#include <stdexcept>
 
 #include "slalom/maps/local_cost_map.hpp"
 #include "support/allocations.hpp"

@@ -25,7 +25,7 @@ struct Point {
 #elif MISTAKE == 20
   double input_levels = 3;
 #elif MISTAKE == 19
-  double ts = 0.1;
+  double NEAR_NAME = 0.1;
 #endif
 #if MISTAKE == 4
   State<double> step(const State<double>& x, const slalom::Input<double, 1>& u) const {
@@ -78,7 +78,7 @@ struct Point {
   T terminal_cost(const State<T>& x) {
     return x.position;
   }
-#elif MISTAKE != 1
+#elif MISTAKE != 1 && MISTAKE != 19
   template <class T>
   T terminal_cost(const State<T>& x) const {
 #if MISTAKE == 13
@@ -90,6 +90,14 @@ struct Point {
 #elif MISTAKE == 16
     const double position = x.position;
     return T(position);
+#elif MISTAKE == 21
+    const bool far = x.position > T(2);
+    return T(far);
+#elif MISTAKE == 22
+    const double table[2] = {1, 2};
+    return T(table[int(x.position)]);
+#elif MISTAKE == 23
+    const auto both = slalom::sin_cos(x.position);
 #endif
     return x.position * x.position;
   }

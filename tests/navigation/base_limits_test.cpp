@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "navigation/drive.hpp"
 
 /// Limits of acceleration and braking, dead bands, and cost terms of the user's.

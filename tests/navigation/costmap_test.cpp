@@ -1,12 +1,5 @@
 #include "slalom/navigation/costmap.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
 #include "navigation/grids.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/navigation/footprint.hpp"

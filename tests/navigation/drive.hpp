@@ -1,12 +1,7 @@
 #pragma once
 
-#include <cmath>
-#include <cstdint>
 #include <deque>
-#include <functional>
-#include <numbers>
 #include <optional>
-#include <vector>
 
 #include "navigation/grids.hpp"
 #include "slalom/navigation/navigator.hpp"

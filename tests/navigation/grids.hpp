@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "slalom/maps/occupancy_grid.hpp"
 
 namespace slalom::navigation {

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cmath>
 #include <optional>
-#include <stdexcept>
-#include <vector>
 
 #include "navigation/grids.hpp"
 #include "slalom/navigation/navigator.hpp"

@@ -2,10 +2,6 @@
 // waiting for them is no dead end.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <span>
-
 #include "navigation/drive.hpp"
 #include "support/allocations.hpp"
 #include "support/predicted.hpp"

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "navigation/grids.hpp"
 
 namespace slalom::navigation::path_planner_test {

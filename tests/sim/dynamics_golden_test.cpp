@@ -1,6 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <string>
 
 #include "sim/golden_table.hpp"
 #include "slalom/sim/plant.hpp"

@@ -1,18 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "golden.hpp"
 #include "slalom/sim/car.hpp"

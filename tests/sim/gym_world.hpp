@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/world.hpp"
 

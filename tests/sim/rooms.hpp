@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cmath>
 #include <memory>
-#include <vector>
 
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/track.hpp"

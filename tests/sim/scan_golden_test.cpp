@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include "sim/golden_table.hpp"
 #include "sim/gym_world.hpp"

@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-
 #include "sim/rooms.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/world.hpp"

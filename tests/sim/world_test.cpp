@@ -3,9 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 
 #include "sim/rooms.hpp"
 #include "slalom/sim/pure_pursuit.hpp"

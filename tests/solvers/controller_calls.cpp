@@ -125,7 +125,12 @@ void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& 
 /// One controller and a few dozen calls of its methods. Returns the number of plans.
 template <class P>
 int call_controller(P problem, SolverOptions options, Adversary& adversary) {
-  const auto [low, high] = any_bounds(adversary);
+  std::vector<double> low, high;  // the same for all inputs, or others for each
+  for (int i = 0, count = adversary.below(2) ? Controller<P>::Inputs::size() : 1; i < count; ++i) {
+    const auto [least, most] = any_bounds(adversary);
+    low.push_back(least);
+    high.push_back(most);
+  }
   set(options, "horizon", 1 + adversary.below(6));
   set(options, "samples", 1 + adversary.below(40));
   set_if_any(options, "gradient_samples", 1 + adversary.below(20));

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <type_traits>
 
 #include "slalom/core/options.hpp"
 #include "support/adversary.hpp"

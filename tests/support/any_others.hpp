@@ -1,9 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <span>
-#include <vector>
-
 #include "slalom/maps/moving_obstacles.hpp"
 #include "support/adversary.hpp"
 

@@ -1,5 +1,5 @@
-// Headers that most tests include, precompiled. Each test still includes what it uses: the presets dev, clang
-// and tidy compile without this file.
+// Headers that most tests include, precompiled. Tests do not rely on it: the presets dev, clang and tidy
+// compile without this file.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/maps/reference_field.hpp"
 
 namespace slalom::testing {

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <vector>
-
 #include "slalom/maps/moving_obstacles.hpp"
 
 namespace slalom::testing {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "slalom/core/problem_evaluator.hpp"
 
 /// Rollouts of batches, on every instruction set.

@@ -62,6 +62,15 @@ TEST_F(CommandLine, AnUnknownInstructionSetDoesNotAbort) {
   EXPECT_EQ(timed("drive --help", "SLALOM_TARGET=foo").status, 0);
 }
 
+TEST_F(CommandLine, MessagesDoNotRepeatLongValues) {
+  const std::string text(5000, 'x');
+  for (const char* before : {"", "drive --", "drive --set samples=", "drive --course ", "drive --seed "}) {
+    const testing::Run run = timed(before + text);
+    EXPECT_LT(run.output.size(), 1100u) << before;
+    expect_says(run.output, {"slalom: ", " ... "});
+  }
+}
+
 TEST_F(CommandLine, AMistypedCommandOrOptionIsAnsweredWithTheNearest) {
   refuses("drvie --course wren", {"slalom: drvie: is not a command; did you mean drive?"}, 2);
   refuses("something", {"slalom: something: is not a command\n"}, 2);

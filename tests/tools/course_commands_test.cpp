@@ -1,10 +1,5 @@
 // `slalom course` and `slalom track`: courses that the other commands can drive, and errors; the courses that
 // ship are what their commands make, and can be lapped.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <sstream>
 
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/pure_pursuit.hpp"

@@ -1,14 +1,6 @@
 #pragma once
 
-#include <fcntl.h>
 #include <signal.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "slalom/evaluation/evaluation.hpp"
 #include "tools/program_test.hpp"

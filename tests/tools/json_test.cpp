@@ -1,8 +1,6 @@
 // JSON that is read from files: limits, and errors that name the key.
 #include "json/json.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/thrown_words.hpp"
 
 namespace slalom {

@@ -1,8 +1,6 @@
 // `slalom race`, alone and with several cars, and `slalom racing-benchmark`: tables, results,
 // pictures, and bad input named in words.
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
 
 #include "slalom/maps/ros_map.hpp"

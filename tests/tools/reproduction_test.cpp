@@ -1,7 +1,5 @@
 #include "tools/evaluation/reproduction.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>

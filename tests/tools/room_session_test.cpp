@@ -1,5 +1,4 @@
 // A navigator in its room on the page: ghost and undo.
-#include <gtest/gtest.h>
 
 #include "tools/live_view/subjects.hpp"
 #include "view/paused_session.hpp"

@@ -1,11 +1,6 @@
 // A navigator in its room, as the live view drives it: what is dragged, options, and copies.
 #include "tools/live_view/subjects.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "support/thrown_words.hpp"
 
 namespace slalom::tools {

@@ -1,8 +1,6 @@
 // Charts of rows: names stay left of the panels.
 #include "tools/drawing/row_chart.hpp"
 
-#include <gtest/gtest.h>
-
 #include "slalom/maps/image.hpp"
 #include "support/temporary_folder.hpp"
 

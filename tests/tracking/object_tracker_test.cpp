@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
 #include <set>
-#include <utility>
 
 #include "slalom/tracking/predictor.hpp"
 #include "support/allocations.hpp"

@@ -1,12 +1,6 @@
 #include "slalom/tracking/predictor.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
 #include <functional>
-#include <stdexcept>
-#include <vector>
 
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"

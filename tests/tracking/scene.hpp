@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <memory>
 #include <utility>
-#include <vector>
 
 #include "sim/rooms.hpp"
 #include "slalom/sim/lidar.hpp"

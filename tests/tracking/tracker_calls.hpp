@@ -96,6 +96,13 @@ inline int call_tracker(testing::Adversary& adversary) {
     const auto predicted = predictor.update(out.objects, input.stamp);
     limits.check();
     check(predicted);
+    TrackedObject odd;  // such as no tracker reports
+    odd.pose = {adversary.any(-5, 5), adversary.any(-2, 2), adversary.any(-4, 4)};
+    odd.speed = adversary.any(0, 8);
+    odd.yaw_rate = adversary.any(-3, 3);
+    odd.length = odd.width = adversary.any(0, 2);
+    for (int k = 0; k < 5; ++k) odd.covariance[k][k] = adversary.any(0, 0.1);
+    if (adversary.once_in(4)) check(predictor.update({&odd, 1}, adversary.any(0, 10)));
     if (adversary.once_in(40)) tracker->reset();
     if (adversary.once_in(40)) predictor.reset();
   }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace slalom::vehicle::detail::command_history_test {
 namespace {
 

@@ -1,8 +1,6 @@
 // Configuration files and keys: every mistake has a message with file, line, key, value and rule.
 #include "slalom/vehicle/configuration/configuration.hpp"
 
-#include <gtest/gtest.h>
-
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/published/options.hpp"
 #include "support/temporary_folder.hpp"

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <fstream>
-#include <string>
-
 #include "slalom/maps/ros_map.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,5 +1,4 @@
 // Spoiled course folders: each is refused with file, line, key or column, and rule.
-#include <gtest/gtest.h>
 
 #include <functional>
 

@@ -1,9 +1,6 @@
 // The content of a sound course after loading, and how courses are found.
 #include "slalom/vehicle/course/course.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstdlib>
 
 #include "slalom/core/error.hpp"

@@ -1,12 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 #include "slalom/sim/world.hpp"

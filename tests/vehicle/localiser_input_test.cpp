@@ -1,10 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "vehicle/localiser_drive.hpp"
 
 namespace slalom::vehicle::localiser_input_test {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string>
 
 #include "vehicle/localiser_drive.hpp"
 

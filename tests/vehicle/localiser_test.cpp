@@ -1,10 +1,6 @@
 #include "slalom/vehicle/localisation/localiser.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <cmath>
-#include <string>
 
 #include "support/allocations.hpp"
 #include "support/thrown_words.hpp"

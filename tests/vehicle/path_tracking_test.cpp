@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
-
 #include "slalom/vehicle/model/kinematic.hpp"
 #include "slalom/vehicle/published/path_tracking.hpp"
 

@@ -1,13 +1,5 @@
 #include "slalom/vehicle/planner/planner.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <tuple>
-#include <vector>
-
 #include "support/lane.hpp"
 #include "support/thrown_words.hpp"
 #include "vehicle/planner/lane_scan.hpp"

@@ -1,10 +1,6 @@
 // The planner with the options of the published program.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "slalom/vehicle/planner/planner.hpp"
 #include "support/lane.hpp"
 

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "golden.hpp"
 #include "slalom/vehicle/published/options.hpp"

@@ -1,12 +1,5 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <fstream>
 #include <iostream>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "golden.hpp"
 #include "maps/grid_map_csv.hpp"

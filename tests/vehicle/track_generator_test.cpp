@@ -1,11 +1,7 @@
 // Properties that every generated track has, over seeds, characters, lengths and widths.
 #include "slalom/vehicle/course/track_generator.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <tuple>
 
 #include "slalom/maps/distance_field.hpp"

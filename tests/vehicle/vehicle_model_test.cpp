@@ -1,11 +1,7 @@
 // Properties of every registered vehicle model.
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <set>
-#include <vector>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/clearance_map.hpp"

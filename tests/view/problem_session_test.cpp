@@ -1,5 +1,4 @@
 // Commands to the drive of an own problem: going back, changes that fail, other durations of steps.
-#include <cmath>
 
 #include "slalom/problems/differential_drive.hpp"
 #include "slalom/solvers/registry.hpp"

@@ -1,10 +1,5 @@
 // Recordings: the same drive gives the same bytes, what is damaged is refused by name, a replay page holds
 // what was recorded. That other programs read them is checked in view/page/test/mcap.mjs.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"

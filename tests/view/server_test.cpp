@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "view/web_client.hpp"
 
 namespace slalom::view {

@@ -1,5 +1,4 @@
 // A session of a car: the drive of the command line, going back exactly, edits, and the introduction.
-#include <cmath>
 
 #include "view/car/car_subject.hpp"
 #include "view/paused_session.hpp"

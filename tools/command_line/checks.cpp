@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <stdexcept>
 #include <system_error>
 
 #include "slalom/core/error.hpp"

@@ -81,18 +81,16 @@ int eval(const EvalArguments& arguments) {
 void declare_eval(Subcommand& command) {
   command.summary("Evaluate methods over many laps, with confidence intervals and paired tests");
   const auto arguments = std::make_shared<EvalArguments>();
-  command.option("--methods", arguments->methods, "Methods, separated by commas").comma_separated();
-  command
-      .option("--scenario", arguments->scenarios, "pt: path tracking, oa: obstacle avoidance; or both: pt,oa")
-      .comma_separated();
+  command.option("--methods", arguments->methods, "Methods, separated by commas", {.comma_separated = true});
+  command.option("--scenario", arguments->scenarios,
+                 "pt: path tracking, oa: obstacle avoidance; or both: pt,oa", {.comma_separated = true});
   command.option("--laps", arguments->laps, "Number of laps of each method in each scenario", {1, 1000000});
   command.option("--obstacles", arguments->obstacles, "Number of parked cars in scenario oa", {1, 1000});
-  command
-      .option("--set", arguments->sweeps,
-              "key=v1,v2,...: one experiment for each value, and for each combination of values if --set is "
-              "repeated. Options of the simulated world, such as world.friction, can be varied, too; slalom "
-              "options lists them")
-      .repeatable();
+  command.option(
+      "--set", arguments->sweeps,
+      "key=v1,v2,...: one experiment for each value, and for each combination of values if --set is "
+      "repeated. Options of the simulated world, such as world.friction, can be varied, too; slalom "
+      "options lists them");
   command.option(
       "--conditions", arguments->conditions,
       "car: tyres that saturate, sensor noise, a localised pose, 20 ms of latency, and one experiment "

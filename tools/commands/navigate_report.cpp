@@ -1,11 +1,5 @@
 #include "tools/commands/navigate_report.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <numbers>
-#include <span>
-
 #include "json/json.hpp"
 #include "slalom/evaluation/statistics.hpp"
 #include "tools/command_line/words.hpp"

@@ -1,11 +1,5 @@
 #include "tools/commands/replay_against.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <optional>
-
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/statistics.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "tools/scenario/scenario.hpp"
 
 namespace slalom::tools {

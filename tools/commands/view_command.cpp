@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <memory>
-#include <utility>
 
 #include "slalom/core/version.hpp"
 #include "tools/commands/commands.hpp"

@@ -1,8 +1,5 @@
 #include "tools/drawing/course_pictures.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "slalom/sim/shapes.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/drawing/map_picture.hpp"

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/course/track_generator.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"

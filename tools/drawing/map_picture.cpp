@@ -2,7 +2,6 @@
 #include "tools/command_line/words.hpp"
 
 #include <array>
-#include <cmath>
 
 namespace slalom::tools {
 namespace {

@@ -1,11 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"

@@ -1,10 +1,5 @@
 #include "tools/drawing/race_picture.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "tools/command_line/words.hpp"
 #include "tools/drawing/axis.hpp"
 #include "tools/drawing/drawing.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "slalom/evaluation/race.hpp"
 
 namespace slalom::tools {

@@ -1,8 +1,5 @@
 #include "tools/evaluation/claims.hpp"
 
-#include <algorithm>
-#include <cstdio>
-
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/terminal/text_table.hpp"

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <vector>
-
 #include "tools/evaluation/reproduction.hpp"
 
 /// The statements of Honda et al. (ICRA 2024, section V-B) that compare two methods, tested on laps.

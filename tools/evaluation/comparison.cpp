@@ -1,10 +1,7 @@
 #include "tools/evaluation/comparison.hpp"
 
-#include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <map>
-#include <vector>
 
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"
@@ -37,14 +34,14 @@ std::map<std::string, std::string> weights_of(const Json& settings, const Experi
   return weights;
 }
 
-std::string p_words(double p) {
-  return p < 0.001 ? "p < 0.001" : formatted("p = %.3f", p);
-}
-
 }  // namespace
 
 bool same_weights(const Json& settings_a, const Experiment& a, const Json& settings_b, const Experiment& b) {
   return weights_of(settings_a, a) == weights_of(settings_b, b);
+}
+
+std::string p_words(double p) {
+  return p < 0.001 ? "p < 0.001" : formatted("p = %.3f", p);
 }
 
 std::string p_text(const std::optional<double>& p) {

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
 
 #include "slalom/evaluation/results.hpp"
 
@@ -16,6 +13,8 @@ namespace slalom::tools {
 bool same_weights(const nlohmann::ordered_json& settings_a, const evaluation::Experiment& a,
                   const nlohmann::ordered_json& settings_b, const evaluation::Experiment& b);
 
+/// A p value in a sentence.
+std::string p_words(double p);
 /// A p value, with a star below 0.05; "-" for none.
 std::string p_text(const std::optional<double>& p);
 

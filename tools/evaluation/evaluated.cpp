@@ -1,6 +1,4 @@
 // The results of an evaluation: summary.json, and tables in the terminal.
-#include <algorithm>
-#include <cstdio>
 #include <thread>
 
 #include "json/json.hpp"

@@ -1,6 +1,5 @@
 #include "tools/evaluation/evaluation_job.hpp"
 
-#include <cstdio>
 #include <thread>
 
 #include "json/json.hpp"

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
-
 #include "slalom/evaluation/evaluation.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/command_line/command.hpp"

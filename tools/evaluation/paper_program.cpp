@@ -1,8 +1,5 @@
 #include "tools/evaluation/paper_program.hpp"
 
-#include <algorithm>
-#include <vector>
-
 namespace slalom::tools {
 
 namespace {

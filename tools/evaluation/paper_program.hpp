@@ -1,8 +1,5 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "slalom/evaluation/lap_log.hpp"
 
 namespace slalom::tools {

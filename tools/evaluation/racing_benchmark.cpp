@@ -1,10 +1,5 @@
 #include "tools/evaluation/racing_benchmark.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <utility>
-
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/drive.hpp"

@@ -1,11 +1,6 @@
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "slalom/core/gravity.hpp"
 #include "slalom/maps/reference_path.hpp"

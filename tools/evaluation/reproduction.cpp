@@ -1,12 +1,11 @@
 #include "tools/evaluation/reproduction.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "tools/command_line/words.hpp"
+#include "tools/evaluation/comparison.hpp"
 #include "tools/evaluation/paper_program.hpp"
 
 namespace slalom::tools {
@@ -19,11 +18,6 @@ using namespace evaluation;
 constexpr const char* authors = "https://github.com/kohonda/proj-svg_mppi";
 constexpr const char* logs_course = "berlin";
 
-/// A p value in its usual notation.
-std::string p_text(double p) {
-  return p < 0.001 ? "p < 0.001" : formatted("p = %.3f", p);
-}
-
 std::string ratio_text(double ratio) {
   if (ratio > 2 || ratio < 0.5) return formatted("MS %.2f times that of the log", ratio);
   return formatted(ratio > 1 ? "MS %.1f %% higher" : "MS %.1f %% lower", 100 * std::abs(ratio - 1));
@@ -35,14 +29,14 @@ std::string difference_text(const LogComparison& c, double our_rate) {
   std::string text;
   if (c.ms_agreement() == c.agreement())
     text = ratio_text(c.ms_ratio) +
-           (outside ? " (" + p_text(c.ms_p) + ")"
+           (outside ? " (" + p_words(c.ms_p) + ")"
                     : formatted(" (95 %%: %.2f to %.2f times)", c.ms_ratio_ci.low, c.ms_ratio_ci.high));
   if (c.collision_p && c.collision_agreement() == c.agreement()) {
     const double points = 100 * (our_rate - *c.collision_rate);
     text += text.empty() ? "" : ", ";
     text += formatted(points >= 0 ? "collision rate %.1f points higher" : "collision rate %.1f points lower",
                       std::abs(points));
-    text += outside ? " (" + p_text(*c.collision_p) + ")"
+    text += outside ? " (" + p_words(*c.collision_p) + ")"
                     : formatted(" (95 %%: %.1f to %.1f points)", 100 * c.rate_difference_ci->low,
                                 100 * c.rate_difference_ci->high);
   }
@@ -52,16 +46,13 @@ std::string difference_text(const LogComparison& c, double our_rate) {
 /// Figures of laps of the paper's program.
 std::string released_text(const LogComparison& c) {
   std::string text = "MS " + formatted("%.3g", c.ms_mean) + " in " + std::to_string(c.laps) +
-                     (c.laps == 1 ? " lap, " : " laps, ") + p_text(c.ms_p);
+                     (c.laps == 1 ? " lap, " : " laps, ") + p_words(c.ms_p);
   if (c.collision_rate)
-    text += formatted(", collision rate %.1f %%, ", 100 * *c.collision_rate) + p_text(*c.collision_p);
+    text += formatted(", collision rate %.1f %%, ", 100 * *c.collision_rate) + p_words(*c.collision_p);
   return text;
 }
 
 Json comparison_json(const LogComparison& c, const LapLog& log) {
-  const auto interval = [](const std::optional<Interval>& i) {
-    return i ? Json{i->low, i->high} : Json(nullptr);
-  };
   const auto number = [](const std::optional<double>& v) {
     return v && std::isfinite(*v) ? Json(*v) : Json(nullptr);
   };
@@ -71,14 +62,14 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
           {"timeouts", log.timeouts},
           {"collisions", log.collisions},
           {"ms_mean", c.ms_mean},
-          {"ms_ci", interval(c.ms_ci)},
+          {"ms_ci", interval_json(c.ms_ci)},
           {"ms_ratio", c.ms_ratio},
-          {"ms_ratio_ci", interval(c.ms_ratio_ci)},
+          {"ms_ratio_ci", interval_json(c.ms_ratio_ci)},
           {"ms_p", number(c.ms_p)},
           {"collision_rate", number(c.collision_rate)},
-          {"collision_rate_ci", interval(c.collision_rate_ci)},
+          {"collision_rate_ci", interval_json(c.collision_rate_ci)},
           {"collisions_p", number(c.collision_p)},
-          {"collision_rate_difference_ci", interval(c.rate_difference_ci)},
+          {"collision_rate_difference_ci", interval_json(c.rate_difference_ci)},
           {"success_rate", static_cast<double>(log.successes) / log.laps},
           {"solve_ms", {{"mean", number(log.solve_ms_mean)}, {"max", number(log.solve_ms_max)}}}};
 }
@@ -107,7 +98,7 @@ struct PaperRows {
     PaperRow row{.table = table,
                  .name = name,
                  .method = "svg_mppi",
-                 // The authors vary one parameter, steer_cov, which is both (docs/paper.md).
+                 // The authors vary one parameter, steer_cov, which is both (docs/paper-options.md).
                  .set = {{"svg_mppi.adapt_covariance", "false"},
                          {"svg_mppi.variance", variance},
                          {"svg_mppi.guide_variance", variance}},

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "slalom/evaluation/lap_log.hpp"
 

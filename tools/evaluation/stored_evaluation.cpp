@@ -1,6 +1,5 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 
-#include <cstdio>
 #include <sstream>
 
 #include "json/json.hpp"

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "slalom/evaluation/evaluation.hpp"
 #include "tools/scenario/scenario.hpp"
 

@@ -1,8 +1,6 @@
 #include "tools/explanation/explain_picture.hpp"
 #include "tools/command_line/words.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace slalom::tools {

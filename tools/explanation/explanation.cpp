@@ -1,8 +1,5 @@
 #include "tools/explanation/explanation.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/core/random.hpp"
 

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "slalom/problems/passing_point.hpp"
 #include "slalom/solvers/registry.hpp"
 

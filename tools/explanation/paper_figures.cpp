@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/mppi_options.hpp"

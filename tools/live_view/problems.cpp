@@ -1,6 +1,3 @@
-#include <array>
-#include <cmath>
-#include <numbers>
 
 #include "slalom/problems/arm.hpp"
 #include "slalom/problems/cart_pole.hpp"

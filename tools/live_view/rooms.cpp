@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "slalom/evaluation/rooms/room_world.hpp"
 #include "slalom/navigation/navigation_problem.hpp"

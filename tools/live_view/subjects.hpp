@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <string>
-
 #include "slalom/view/subject.hpp"
 
 /// The problems that `slalom view` shows beside a car.

@@ -1,9 +1,6 @@
 #include "tools/live_view/view_setup.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstdio>
 #include <random>
 
 #include "json/json.hpp"

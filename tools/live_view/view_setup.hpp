@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "tools/scenario/scenario.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"

@@ -1,9 +1,6 @@
 #include "tools/racing/grid_race_job.hpp"
 
-#include <algorithm>
-#include <filesystem>
 #include <mutex>
-#include <optional>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

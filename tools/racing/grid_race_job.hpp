@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "tools/scenario/scenario.hpp"
 
 namespace slalom::tools {

@@ -1,9 +1,5 @@
 #include "tools/racing/grid_race_result.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/terminal/text_table.hpp"

@@ -2,8 +2,6 @@
 
 #include <cstdio>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
 
 #include "slalom/evaluation/grid_race.hpp"
 

@@ -1,7 +1,5 @@
 #include "tools/racing/race_result.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "json/json.hpp"

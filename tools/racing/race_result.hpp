@@ -1,11 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstdio>
-#include <limits>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
 
 #include "slalom/evaluation/race.hpp"
 

@@ -1,11 +1,6 @@
 #include "tools/recording/driven_recording.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <limits>
-#include <string_view>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

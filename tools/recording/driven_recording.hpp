@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "slalom/vehicle/racing/race_course.hpp"
 #include "tools/recording/ros_bag.hpp"
 

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <fstream>
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
-#include <string>
 
 #include "slalom/evaluation/lap.hpp"
 #include "tools/scenario/scenario.hpp"

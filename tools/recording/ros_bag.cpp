@@ -8,7 +8,6 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 
 #include "slalom/core/error.hpp"
 

@@ -1,7 +1,5 @@
 #include "tools/report/report.hpp"
 
-#include <algorithm>
-
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/files/write_file.hpp"

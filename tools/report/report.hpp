@@ -1,9 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/reproduction.hpp"
 #include "tools/terminal/text_table.hpp"

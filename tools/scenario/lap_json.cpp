@@ -1,8 +1,5 @@
 #include "tools/scenario/lap_json.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "json/json.hpp"
 #include "slalom/evaluation/statistics.hpp"
 

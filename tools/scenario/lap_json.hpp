@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "json/json.hpp"
 #include "slalom/evaluation/lap.hpp"
 

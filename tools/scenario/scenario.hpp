@@ -1,11 +1,7 @@
 #pragma once
 
 #include <cstdio>
-#include <filesystem>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
 
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap.hpp"

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <string>
 
 #include "slalom/evaluation/evaluation.hpp"
 #include "slalom/evaluation/grid_race.hpp"

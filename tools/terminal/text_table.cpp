@@ -1,8 +1,5 @@
 #include "tools/terminal/text_table.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "slalom/evaluation/results.hpp"
 #include "tools/command_line/words.hpp"
 

@@ -4,7 +4,6 @@
 #include <optional>
 #include <ranges>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "slalom/evaluation/lap_figures.hpp"

@@ -1,7 +1,5 @@
 #include "tools/video/drive_video.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 

@@ -1,8 +1,6 @@
 #include "tools/video/recorded_drive.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <stdexcept>
 
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"

@@ -2,7 +2,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/sim/shapes.hpp"

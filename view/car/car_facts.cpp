@@ -1,4 +1,3 @@
-#include <utility>
 
 #include "view/car/car_subject.hpp"
 #include "view/protocol/frame_writer.hpp"

@@ -1,11 +1,5 @@
 #include "view/car/car_subject.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-
 #include "slalom/core/gravity.hpp"
 #include "slalom/sim/shapes.hpp"
 #include "view/protocol/frame_writer.hpp"

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "slalom/evaluation/lap.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"

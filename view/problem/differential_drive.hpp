@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/problems/differential_drive.hpp"
 #include "slalom/view/serve.hpp"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/view/subject.hpp"
 #include "view/protocol/frame_writer.hpp"
 

@@ -1,9 +1,5 @@
 #include "view/protocol/frame.hpp"
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-
 #include "view/protocol/blocks.hpp"
 #include "view/protocol/frame_writer.hpp"
 

@@ -1,11 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "slalom/view/subject.hpp"
 
 /// The message of a control step contains everything that the page draws.

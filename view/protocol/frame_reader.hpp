@@ -1,11 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <span>
 #include <stdexcept>
-#include <string_view>
-#include <vector>
 
 #include "view/protocol/frame_writer.hpp"
 

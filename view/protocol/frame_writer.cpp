@@ -1,6 +1,5 @@
 #include "view/protocol/frame_writer.hpp"
 
-#include <cmath>
 #include <iterator>
 #include <sstream>
 

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include <cstring>
 #include <initializer_list>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "slalom/maps/occupancy_grid.hpp"
 

@@ -1,8 +1,5 @@
 #include "view/protocol/messages.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "json/json.hpp"
 #include "slalom/solvers/symptom.hpp"
 

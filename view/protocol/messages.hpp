@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <string>
-#include <vector>
 
 #include "slalom/view/subject.hpp"
 #include "view/protocol/frame.hpp"

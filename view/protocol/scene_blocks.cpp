@@ -1,8 +1,5 @@
 #include "view/protocol/blocks.hpp"
 
-#include <algorithm>
-#include <cstdint>
-
 #include "view/protocol/frame.hpp"
 
 namespace slalom::view {

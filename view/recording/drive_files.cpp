@@ -2,8 +2,6 @@
 
 #include <future>
 #include <sstream>
-#include <stdexcept>
-#include <utility>
 
 #include "json/json.hpp"
 #include "view/embedded.hpp"

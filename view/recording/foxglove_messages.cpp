@@ -1,7 +1,5 @@
 #include "view/recording/foxglove_messages.hpp"
 
-#include <cmath>
-
 #include "view/recording/encodings.hpp"
 
 namespace slalom::view::foxglove {

@@ -2,8 +2,6 @@
 
 #include <zstd.h>
 
-#include <map>
-
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "view/protocol/frame_reader.hpp"

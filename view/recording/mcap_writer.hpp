@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <map>
 #include <ostream>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -1,10 +1,7 @@
 #include "view/recording/recorder.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "json/json.hpp"
 #include "view/car/car_subject.hpp"

@@ -1,13 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <map>
-#include <ostream>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "view/protocol/frame_reader.hpp"
 #include "view/recording/foxglove_messages.hpp"
 #include "view/recording/mcap_writer.hpp"

@@ -1,5 +1,4 @@
 // The conversion of a control step to Foxglove messages.
-#include <cmath>
 
 #include "view/recording/recorder.hpp"
 

@@ -1,7 +1,5 @@
 #include "view/recording/replay.hpp"
 
-#include <cstdint>
-
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "view/recording/encodings.hpp"

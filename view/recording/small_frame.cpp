@@ -1,9 +1,7 @@
 #include "view/recording/small_frame.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
-#include <vector>
 
 #include "view/protocol/frame_reader.hpp"
 

@@ -1,7 +1,6 @@
 #include "view/server/audience.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "json/json.hpp"
 

@@ -1,12 +1,7 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "slalom/solvers/solver_options.hpp"
 #include "view/server/server.hpp"

@@ -1,7 +1,6 @@
 #include "view/server/connections.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <regex>
 
 namespace slalom::view {

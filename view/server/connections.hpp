@@ -4,9 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
-#include <memory>
 #include <mutex>
-#include <string>
 #include <utility>  // before asio, which needs it in C++20 and does not include it
 
 #include <boost/asio/ip/tcp.hpp>

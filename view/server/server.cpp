@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 #include "view/server/connections.hpp"
 

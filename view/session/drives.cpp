@@ -1,10 +1,5 @@
 #include "view/session/drives.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <stdexcept>
-#include <utility>
-
 #include "slalom/solvers/registry.hpp"
 #include "view/server/audience.hpp"
 

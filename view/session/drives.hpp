@@ -1,13 +1,5 @@
 #pragma once
 
-#include <array>
-#include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "slalom/core/polymorphic.hpp"
 #include "slalom/view/subject.hpp"
 #include "view/protocol/messages.hpp"

@@ -1,9 +1,5 @@
 #include "view/session/session.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "slalom/solvers/registry.hpp"
 
 namespace slalom::view {

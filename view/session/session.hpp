@@ -1,16 +1,5 @@
 #pragma once
 
-#include <array>
-#include <chrono>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
-#include <variant>
-#include <vector>
-
 #include "view/protocol/messages.hpp"
 #include "view/server/audience.hpp"
 #include "view/session/drives.hpp"

@@ -1,8 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string_view>
-#include <utility>
 
 #include "json/json.hpp"
 #include "view/session/session.hpp"

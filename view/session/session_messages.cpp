@@ -1,5 +1,3 @@
-#include <stdexcept>
-#include <utility>
 
 #include "json/json.hpp"
 #include "view/session/session.hpp"

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <utility>
 
 #include "json/json.hpp"
 #include "view/session/session.hpp"

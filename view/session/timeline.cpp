@@ -1,8 +1,5 @@
 #include "view/session/timeline.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif

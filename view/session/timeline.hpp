@@ -1,14 +1,6 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <deque>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "view/session/drives.hpp"
 

@@ -2,8 +2,6 @@
 // page gets its messages with postMessage instead of a WebSocket.
 #include <emscripten.h>
 
-#include <utility>
-
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "view/problem/differential_drive.hpp"
 #include "view/server/server.hpp"

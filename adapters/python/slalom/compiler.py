@@ -53,7 +53,7 @@ def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | 
 
         source, problem, values = source_of(source)
         parameters = {**values, **parameters}
-    text = source if isinstance(source, str) and _is_text(source) else Path(source).read_text()
+    text = source if isinstance(source, str) and "{" in source else Path(source).read_text()
     name, members = _problem_in(_without_comments(text), problem)
     return compile_members(source, name, parameters, [*flags, *["-DSLALOM_DERIVATIVES"] * derivatives], gpu, members)
 
@@ -69,12 +69,8 @@ def compile_members(source: str | os.PathLike[str], problem: str, values: dict[s
     return made
 
 
-def _is_text(source: str) -> bool:
-    return "{" in source
-
-
 def _text_of(source: str | os.PathLike[str]) -> str:
-    if isinstance(source, str) and _is_text(source):
+    if isinstance(source, str) and "{" in source:
         return f'#include <slalom/slalom.hpp>\n#line 1 "<source>"\n{source}'
     return f'#include <slalom/slalom.hpp>\n#include "{Path(source).resolve(strict=True)}"'
 

@@ -1,7 +1,5 @@
 #include <dlfcn.h>
 
-#include <functional>
-
 #include "controller.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/network/mlp.hpp"

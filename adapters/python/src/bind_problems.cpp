@@ -161,22 +161,19 @@ void bind_callable_problem(py::module_& module) {
       .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
                     "s, duration of a step; 0: unknown");
   const auto read = reader(problem);
-  const auto callable = [&](const char* name, py::object CallableParts::*part, const char* help) {
-    read(name, help, [part](const CallableProblem& p) { return p.parts().*part; });
-  };
-  callable("dynamics", &CallableParts::dynamics, "the callable, or None");
-  callable("cost", &CallableParts::cost, "the callable, or None");
-  callable("terminal_cost", &CallableParts::terminal_cost, "the callable, or None");
-  callable("sampler", &CallableParts::sampler, "the callable, or None");
-  callable("rollout", &CallableParts::rollout, "the callable, or None");
-  const auto limits = [&](const char* name, std::vector<double> CallableParts::*field, const char* help) {
-    read(name, help, [field](const CallableProblem& p) { return from_numbers(p.parts().*field); });
-  };
-  limits("input_min", &CallableParts::input_min, "as given: a number, one for each input, or None");
-  limits("input_max", &CallableParts::input_max, "as given: a number, one for each input, or None");
-  limits("input_rate_max", &CallableParts::input_rate_max,
-         "per s, as given: a number, one for each input, or None");
-  limits("input_levels", &CallableParts::input_levels, "as given: a number, one for each input, or None");
+  using Parts = CallableParts;
+  for (const auto& [name, part] : {std::pair{"dynamics", &Parts::dynamics},
+                                   {"cost", &Parts::cost},
+                                   {"terminal_cost", &Parts::terminal_cost},
+                                   {"sampler", &Parts::sampler},
+                                   {"rollout", &Parts::rollout}})
+    read(name, "the callable, or None", [part = part](const CallableProblem& p) { return p.parts().*part; });
+  for (const auto& [name, part] : {std::pair{"input_min", &Parts::input_min},
+                                   {"input_max", &Parts::input_max},
+                                   {"input_rate_max", &Parts::input_rate_max},
+                                   {"input_levels", &Parts::input_levels}})
+    read(name, "as given: a number, one for each input, or None",
+         [part = part](const CallableProblem& p) { return from_numbers(p.parts().*part); });
 }
 
 void bind_built_in_problems(py::module_& module) {

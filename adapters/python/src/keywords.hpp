@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "objects.hpp"
+#include "slalom/core/error.hpp"
 #include "slalom/core/final_check.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose.hpp"
@@ -168,8 +169,8 @@ void set_from_keywords(Options& options, const py::kwargs& keywords, const std::
     std::vector<std::string> names;
     for (const OptionEntry& entry : list_options(options)) names.emplace_back(entry.declaration.name);
     const std::string nearest = nearest_name(name, names);
-    throw py::type_error(where + ": unknown option '" + name + "'" +
-                         (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    throw py::type_error(shortened(where + ": unknown option '" + name + "'" +
+                                   (nearest.empty() ? "" : "; did you mean '" + nearest + "'?")));
   }
 }
 

@@ -1,9 +1,6 @@
 #include "logic/follower_settings.hpp"
 
-#include <algorithm>
 #include <set>
-#include <span>
-#include <stdexcept>
 
 namespace slalom::nodes {
 namespace {

@@ -1,9 +1,6 @@
 #pragma once
 
 #include <map>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "logic/named_option.hpp"
 #include "logic/others_watch.hpp"

@@ -1,9 +1,7 @@
 #include "logic/installed.hpp"
 
 #include <cstdlib>
-#include <filesystem>
 #include <sstream>
-#include <vector>
 
 namespace slalom::nodes {
 namespace {

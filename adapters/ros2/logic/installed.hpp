@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/course/course.hpp"
 

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <limits>
 #include <optional>
-#include <string>
 
 #include "logic/transforms.hpp"
 

@@ -1,9 +1,5 @@
 #include "logic/localiser_core.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-#include <utility>
-
 #include "slalom/sim/wheel_odometry.hpp"
 
 namespace slalom::nodes {

@@ -1,11 +1,5 @@
 #pragma once
 
-#include <array>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "logic/input_watch.hpp"
 #include "logic/installed.hpp"
 #include "logic/known_pose.hpp"

@@ -1,15 +1,7 @@
 #include "logic/mppi_import.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <optional>
 #include <set>
-#include <span>
 #include <sstream>
-#include <stdexcept>
-#include <vector>
 
 #include <yaml-cpp/yaml.h>
 

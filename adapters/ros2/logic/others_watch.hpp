@@ -1,11 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/tracking/object_tracker.hpp"

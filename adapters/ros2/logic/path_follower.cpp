@@ -1,12 +1,5 @@
 #include "logic/path_follower.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose_limits.hpp"
 #include "slalom/tracking/people.hpp"

@@ -1,10 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "logic/follower_settings.hpp"
 #include "slalom/navigation/costmap.hpp"

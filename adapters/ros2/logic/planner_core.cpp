@@ -1,10 +1,5 @@
 #include "logic/planner_core.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <utility>
-
 #include "slalom/evaluation/result_folder.hpp"
 #include "slalom/evaluation/statistics.hpp"
 

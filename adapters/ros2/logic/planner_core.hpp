@@ -1,12 +1,6 @@
 #pragma once
 
-#include <array>
-#include <functional>
 #include <map>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "logic/input_watch.hpp"
 #include "logic/installed.hpp"

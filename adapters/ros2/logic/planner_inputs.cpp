@@ -1,9 +1,5 @@
 #include "logic/planner_core.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 namespace slalom::nodes {
 /// Rotates a sample to the axes of the base frame. The distance of the unit from the centre of gravity is
 /// neglected: it changes the accelerations by the distance times the squared yaw rate.

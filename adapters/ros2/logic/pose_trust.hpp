@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "slalom/vehicle/localisation/localiser.hpp"
 
 namespace slalom::nodes {

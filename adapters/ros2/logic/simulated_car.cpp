@@ -1,9 +1,5 @@
 #include "logic/simulated_car.hpp"
 
-#include <array>
-#include <cmath>
-#include <span>
-
 #include "slalom/sim/placement.hpp"
 
 namespace slalom::nodes {

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/maps/command.hpp"
 #include "slalom/sim/wheel_odometry.hpp"

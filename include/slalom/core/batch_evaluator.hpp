@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "slalom/core/random.hpp"
 #include "slalom/core/sequence_batch.hpp"
 

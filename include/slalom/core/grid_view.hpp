@@ -1,9 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-
 #include "slalom/core/math.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 

@@ -144,6 +144,12 @@ void sin_cos(T x, T& s, T& c) {
   s = std::sin(x);
   c = std::cos(x);
 }
+/// Refuses a call that expects both as a result, with words.
+template <class T>
+auto sin_cos(const T& x) {
+  static_assert(sizeof(T) == 0, "slalom: sin_cos writes to its arguments: T s, c; slalom::sin_cos(x, s, c);");
+  return x;
+}
 
 /// Sine and cosine of an angle in [-pi/2, pi/2], rad.
 template <Scalar T>

@@ -1,11 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <type_traits>
 #include <variant>
-#include <vector>
 
 #include "slalom/core/options.hpp"
 

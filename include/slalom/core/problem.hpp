@@ -1,8 +1,6 @@
 #pragma once
 
 #include <array>
-#include <concepts>
-#include <type_traits>
 
 #include "slalom/core/math.hpp"
 

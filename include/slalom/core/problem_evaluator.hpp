@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstring>
-#include <span>
-
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/rollout.hpp"

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 
 #include "slalom/core/sequence_batch.hpp"

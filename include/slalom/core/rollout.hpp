@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <utility>
-
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/problem_parts.hpp"
 #include "slalom/core/sequence_batch.hpp"

@@ -132,9 +132,9 @@ struct Mask {
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
   SLALOM_INLINE friend Mask operator&&(const Mask& a, const Mask& b) { return a & b; }
   SLALOM_INLINE friend Mask operator||(const Mask& a, const Mask& b) { return a | b; }
-  /// Refuses `if (x > 0)`, `x > 0 ? a : b` and `while (x > 0)` of packs, with words.
+  /// Refuses `if (x > 0)`, `x > 0 ? a : b` and `bool far = x > 0` of packs, with words.
   template <std::same_as<bool> Bool>
-  explicit operator Bool() const {
+  operator Bool() const {
     static_assert(
         sizeof(Bool) == 0,
         "slalom: this condition differs from lane to lane: write slalom::select(condition, a, b), or "
@@ -229,6 +229,14 @@ struct Pack {
                   "slalom: T holds a number for each lane and is not a double: write slalom::sin(x), "
                   "slalom::exp(x) and so on "
                   "in place of std::sin(x), and T for the type of variables");
+    return 0;
+  }
+  /// Refuses a pack as an index, such as `table[int(x)]`.
+  template <std::integral Integer>
+  explicit operator Integer() const {
+    static_assert(sizeof(Integer) == 0,
+                  "slalom: T holds a number for each lane and is no index: look values up with a "
+                  "slalom::maps::Field or a slalom::GridView, or choose them with slalom::select");
     return 0;
   }
 

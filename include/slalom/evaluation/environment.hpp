@@ -1,11 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string_view>
-#include <vector>
-
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/sim/track.hpp"
 #include "slalom/sim/world.hpp"

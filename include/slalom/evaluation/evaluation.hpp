@@ -1,13 +1,6 @@
 #pragma once
 
-#include <atomic>
-#include <filesystem>
 #include <fstream>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "slalom/evaluation/lap_table.hpp"
 #include "slalom/evaluation/result_folder.hpp"

@@ -1,14 +1,5 @@
 #pragma once
 
-#include <array>
-#include <atomic>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <span>
-#include <string_view>
-#include <vector>
-
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/evaluation/lap_figures.hpp"
 #include "slalom/evaluation/statistics.hpp"

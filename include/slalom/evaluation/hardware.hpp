@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/core/options.hpp"
 #include "slalom/sim/imu.hpp"
 #include "slalom/sim/wheel_odometry.hpp"

@@ -1,13 +1,6 @@
 #pragma once
 
-#include <array>
 #include <atomic>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <span>
-#include <string_view>
-#include <vector>
 
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap_figures.hpp"

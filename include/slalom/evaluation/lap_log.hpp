@@ -1,11 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "slalom/evaluation/lap_table.hpp"
 #include "slalom/evaluation/statistics.hpp"
 

@@ -1,12 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "slalom/core/options.hpp"
 #include "slalom/evaluation/hardware.hpp"
 #include "slalom/evaluation/tracking_record.hpp"

@@ -1,11 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "slalom/evaluation/lap.hpp"
 
 namespace slalom::evaluation {

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <optional>
-#include <vector>
-
 #include "slalom/evaluation/lap_table.hpp"
 #include "slalom/evaluation/statistics.hpp"
 

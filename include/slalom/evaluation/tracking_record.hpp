@@ -1,7 +1,5 @@
 #pragma once
 
-#include <concepts>
-#include <type_traits>
 #include <vector>
 
 #include "slalom/evaluation/lap_figures.hpp"

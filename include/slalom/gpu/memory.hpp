@@ -3,13 +3,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cstdint>
-#include <cstring>
 #include <ranges>
-#include <span>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/network/mlp.hpp"

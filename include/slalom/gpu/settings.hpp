@@ -1,10 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-
 #include "slalom/core/option_access.hpp"
 #include "slalom/gpu/kernels/guides.hpp"
 #include "slalom/gpu/kernels/samples.hpp"

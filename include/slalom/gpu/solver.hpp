@@ -1,10 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstring>
-#include <memory>
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/gpu/memory.hpp"

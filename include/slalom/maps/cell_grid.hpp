@@ -1,7 +1,6 @@
 #pragma once
 
 #include <bit>
-#include <cstddef>
 
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

@@ -1,11 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "slalom/core/derivatives/dual_math.hpp"
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

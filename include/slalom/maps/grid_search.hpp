@@ -1,10 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <span>
-#include <vector>
-
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/closed_discs.hpp"
 #include "slalom/maps/pose.hpp"

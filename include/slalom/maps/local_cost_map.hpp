@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "slalom/core/options.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/laser_scan.hpp"

@@ -2,10 +2,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/body_room.hpp"

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <span>
-#include <vector>
-
 #include "slalom/core/math.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/core/problem.hpp"

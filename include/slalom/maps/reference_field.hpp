@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
-
 #include "slalom/core/options.hpp"
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/cell_grid.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-#include <type_traits>
-
 #include "slalom/core/math.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/core/problem.hpp"

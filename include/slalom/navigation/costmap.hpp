@@ -1,8 +1,5 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "slalom/core/grid_view.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/distance_field.hpp"

@@ -1,12 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem.hpp"
 #include "slalom/maps/moving_obstacles.hpp"

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <iterator>
-#include <span>
-#include <string_view>
-
 #include "slalom/core/polymorphic.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/navigation/base.hpp"

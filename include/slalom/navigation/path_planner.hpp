@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "slalom/maps/grid_search.hpp"
 #include "slalom/navigation/costmap.hpp"
 

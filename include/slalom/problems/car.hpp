@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "slalom/core/options.hpp"
 #include "slalom/core/problem.hpp"
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <initializer_list>
-
 #include "slalom/core/options.hpp"
 #include "slalom/maps/pose.hpp"
 

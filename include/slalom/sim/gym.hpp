@@ -1,10 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "slalom/sim/car.hpp"
 #include "slalom/sim/lidar.hpp"
 

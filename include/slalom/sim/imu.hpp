@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/maps/imu_reading.hpp"

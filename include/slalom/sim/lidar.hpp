@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <numbers>
-#include <span>
-#include <vector>
-
 #include "slalom/core/options.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/sim/shapes.hpp"

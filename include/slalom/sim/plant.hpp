@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/maps/command.hpp"
 #include "slalom/sim/car.hpp"
 #include "slalom/sim/dynamics.hpp"

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
-#include <vector>
 
 #include "slalom/maps/command.hpp"
 #include "slalom/maps/pose.hpp"

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "slalom/sim/car.hpp"
 #include "slalom/sim/laps.hpp"
 #include "slalom/sim/pure_pursuit.hpp"

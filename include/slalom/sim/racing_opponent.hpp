@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <memory>
-#include <vector>
-
 #include "slalom/core/random.hpp"
 #include "slalom/sim/racing_line.hpp"
 #include "slalom/sim/world.hpp"

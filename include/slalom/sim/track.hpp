@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "slalom/maps/distance_field.hpp"
 #include "slalom/maps/occupancy_grid.hpp"

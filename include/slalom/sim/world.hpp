@@ -1,11 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/sim/gym.hpp"

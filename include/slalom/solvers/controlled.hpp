@@ -44,11 +44,6 @@ struct NoProblem {
 template <class P>
 struct Controlled {
   static_assert(check_problem<P>());
-  static_assert(HasTimeStep<P> ||
-                    !(
-                        requires { &P::ts; } || requires { &P::Ts; } || requires { &P::delta_t; } ||
-                        requires { &P::timestep; } || requires { &P::time_step; }),
-                "slalom: the problem's duration of a step must be `dt`, or the result of `time_step()`");
   using Evaluator = ProblemEvaluator<P>;
   using State = StateOf<P, double>;
   static constexpr int inputs = P::inputs;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/occupancy_grid.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <span>
-
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/tracking/object_tracker.hpp"

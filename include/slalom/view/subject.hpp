@@ -1,14 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <memory>
 #include <optional>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/occupancy_grid.hpp"

@@ -1,8 +1,5 @@
 #include "evaluation/driver/car_driver.hpp"
 
-#include <cmath>
-#include <limits>
-
 #include "evaluation/lap_setup.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 

@@ -1,14 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <variant>
-#include <vector>
-
 #include "evaluation/hardware_model.hpp"
 #include "evaluation/lap_rules.hpp"
 #include "evaluation/tracking/tracking_meter.hpp"

@@ -1,7 +1,5 @@
 #include "evaluation/overtaking/fault_judge.hpp"
 
-#include <cmath>
-
 namespace slalom::evaluation {
 namespace {
 

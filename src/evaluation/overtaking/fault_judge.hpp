@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "slalom/sim/world.hpp"
 
 namespace slalom::evaluation {

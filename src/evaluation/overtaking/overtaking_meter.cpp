@@ -1,7 +1,5 @@
 #include "evaluation/overtaking/overtaking_meter.hpp"
 
-#include <cmath>
-
 namespace slalom::evaluation {
 namespace {
 

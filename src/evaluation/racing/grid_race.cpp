@@ -1,13 +1,6 @@
 #include "slalom/evaluation/grid_race.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <optional>
-#include <stdexcept>
-#include <tuple>
-#include <utility>
 
 #include "evaluation/driver/car_driver.hpp"
 #include "evaluation/lap_setup.hpp"

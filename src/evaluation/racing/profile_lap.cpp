@@ -1,7 +1,4 @@
 // The speed profile of a course as a lap.
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/evaluation/race.hpp"

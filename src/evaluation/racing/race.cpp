@@ -1,13 +1,5 @@
 #include "slalom/evaluation/race.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <utility>
-
 namespace slalom::evaluation {
 namespace {
 

@@ -1,9 +1,5 @@
 #include "evaluation/racing/race_watch.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 namespace slalom::evaluation {
 namespace {
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "evaluation/overtaking/fault_judge.hpp"
 #include "slalom/evaluation/grid_race.hpp"
 

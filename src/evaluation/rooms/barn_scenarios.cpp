@@ -1,8 +1,4 @@
 #include <charconv>
-#include <cmath>
-#include <cstring>
-#include <numbers>
-#include <string>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"

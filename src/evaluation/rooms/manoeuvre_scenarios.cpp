@@ -1,5 +1,3 @@
-#include <cmath>
-#include <numbers>
 
 #include "slalom/evaluation/rooms/room_scenario.hpp"
 

@@ -1,8 +1,5 @@
 #include "slalom/evaluation/rooms/mover_watch.hpp"
 
-#include <cmath>
-#include <numbers>
-
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/tracking/people.hpp"
 

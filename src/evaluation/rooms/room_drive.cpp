@@ -1,10 +1,5 @@
 #include "slalom/evaluation/rooms/room_drive.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <span>
-
 #include "slalom/core/math.hpp"
 #include "slalom/core/options.hpp"
 #include "slalom/evaluation/drive.hpp"

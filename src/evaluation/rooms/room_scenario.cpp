@@ -1,7 +1,5 @@
 #include "slalom/evaluation/rooms/room_scenario.hpp"
 
-#include <stdexcept>
-
 namespace slalom::evaluation {
 
 namespace {

@@ -1,11 +1,6 @@
 #include "slalom/evaluation/rooms/room_world.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/laser_scan.hpp"

@@ -1,9 +1,6 @@
 #include "evaluation/tracking/tracking_meter.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "slalom/sim/shapes.hpp"
 

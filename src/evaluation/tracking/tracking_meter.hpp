@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include "slalom/evaluation/tracking_record.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/sim/wheel_odometry.hpp"

@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/sim/racing_benchmark.hpp"
 

@@ -1,9 +1,6 @@
 #include "slalom/sim/racing_benchmark.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <stdexcept>
 
 #include "slalom/sim/shapes.hpp"
 #include "slalom/sim/world.hpp"

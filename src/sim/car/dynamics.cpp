@@ -1,7 +1,6 @@
 #include "slalom/sim/dynamics.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/core/gravity.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

@@ -1,7 +1,5 @@
 #include "slalom/sim/imu.hpp"
 
-#include <cmath>
-
 namespace slalom::sim {
 
 Imu::Imu(const ImuOptions& options) : options_(options), random_({options.seed, 0}) {

@@ -1,8 +1,6 @@
 #include "slalom/sim/plant.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 

@@ -1,7 +1,5 @@
 #include "slalom/sim/wheel_odometry.hpp"
 
-#include <cmath>
-
 namespace slalom::sim {
 
 WheelOdometry::WheelOdometry(const CarParameters& car, const WheelOdometryOptions& options)

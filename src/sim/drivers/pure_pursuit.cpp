@@ -1,8 +1,6 @@
 #include "slalom/sim/pure_pursuit.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"

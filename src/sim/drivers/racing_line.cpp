@@ -1,8 +1,6 @@
 #include "slalom/sim/racing_line.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/core/options.hpp"

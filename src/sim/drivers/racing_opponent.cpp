@@ -1,10 +1,6 @@
 #include "slalom/sim/racing_opponent.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <utility>
 
 #include "slalom/core/options.hpp"
 

@@ -1,7 +1,6 @@
 #include "slalom/sim/gym.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 

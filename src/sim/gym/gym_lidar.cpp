@@ -1,9 +1,6 @@
 // The scan of f1tenth_gym. A beam walks from cell to cell by the cells' distances to the nearest wall, centre
 // to centre, until it is in a wall cell, so that ranges are up to a cell off.
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/sim/lidar.hpp"

@@ -1,8 +1,6 @@
 #include "slalom/sim/lidar.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "sim/lidar/scan.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "sim/lidar/scan.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

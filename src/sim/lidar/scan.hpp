@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "slalom/core/dispatch.hpp"
 
 namespace slalom::sim::detail {

@@ -1,9 +1,6 @@
 #include "slalom/sim/room/crowd.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "slalom/core/options.hpp"

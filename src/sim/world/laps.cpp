@@ -1,7 +1,6 @@
 #include "slalom/sim/laps.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "slalom/core/options.hpp"
 

@@ -1,10 +1,6 @@
 #include "slalom/sim/placement.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/core/options.hpp"
 #include "slalom/sim/gym.hpp"

@@ -1,7 +1,6 @@
 #include "slalom/sim/shapes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

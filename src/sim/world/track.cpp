@@ -1,9 +1,6 @@
 #include "slalom/sim/track.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/options.hpp"

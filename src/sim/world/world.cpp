@@ -1,9 +1,6 @@
 #include "slalom/sim/world.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/maps/pose_limits.hpp"
 

@@ -1,7 +1,5 @@
 #include "slalom/vehicle/configuration/configuration.hpp"
 
-#include <stdexcept>
-
 namespace slalom::vehicle {
 namespace {
 

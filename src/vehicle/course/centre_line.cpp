@@ -1,10 +1,6 @@
 #include "vehicle/course/track_parts.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
-#include <string>
 
 namespace slalom::vehicle::detail {
 namespace {

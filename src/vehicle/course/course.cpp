@@ -1,9 +1,5 @@
 #include "slalom/vehicle/course/course.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/read_file.hpp"

@@ -1,7 +1,6 @@
 #include "slalom/vehicle/course/course_check.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "slalom/core/numbers/saturate_cast.hpp"

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <string>
-#include <string_view>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "slalom/vehicle/course/course.hpp"
 
 /// Readers of the files of a course.

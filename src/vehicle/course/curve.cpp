@@ -1,7 +1,5 @@
 #include "vehicle/course/curve.hpp"
 
-#include <limits>
-
 namespace slalom::vehicle::detail {
 namespace {
 

@@ -1,10 +1,5 @@
 #include "slalom/vehicle/course/raceline.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
 #include "slalom/core/option_access.hpp"
 #include "vehicle/course/curve.hpp"
 

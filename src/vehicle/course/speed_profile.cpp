@@ -1,9 +1,5 @@
 #include "slalom/vehicle/course/speed_profile.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
 #include "slalom/core/gravity.hpp"
 #include "vehicle/course/speed_passes.hpp"
 #include "vehicle/require.hpp"

@@ -1,10 +1,5 @@
 #include "slalom/vehicle/course/track_generator.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 #include "slalom/vehicle/course/raceline.hpp"
 #include "vehicle/course/track_parts.hpp"
 #include "vehicle/require.hpp"

@@ -1,8 +1,5 @@
 #include "vehicle/estimation/parameter_estimator.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "slalom/core/math.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 

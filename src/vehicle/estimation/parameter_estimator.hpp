@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "vehicle/estimation/hypothesis_bank.hpp"

@@ -1,9 +1,5 @@
 #include "vehicle/estimation/state_observer.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "slalom/core/math.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <optional>
 
 #include "slalom/maps/imu_reading.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"

@@ -1,10 +1,6 @@
 #include "slalom/vehicle/localisation/localiser.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "localiser_particles.hpp"
 #include "localiser_search.hpp"

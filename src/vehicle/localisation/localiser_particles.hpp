@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <numbers>
-#include <vector>
-
 #include "localiser_bins.hpp"
 #include "localiser_sensor.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

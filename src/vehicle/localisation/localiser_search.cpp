@@ -1,9 +1,5 @@
 #include "localiser_search.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 namespace slalom::vehicle::detail {
 namespace {
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "localiser_particles.hpp"
 
 namespace slalom::vehicle::detail {

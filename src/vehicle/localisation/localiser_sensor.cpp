@@ -1,11 +1,5 @@
 #include "localiser_sensor.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-#include <string>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/maps/distance_field.hpp"
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/occupancy_grid.hpp"

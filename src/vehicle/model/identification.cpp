@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "slalom/maps/pose.hpp"
 #include "vehicle/model/least_squares.hpp"

@@ -1,8 +1,5 @@
 #include "slalom/vehicle/model/path_tracking.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/vehicle/model/kinematic.hpp"
 

@@ -1,5 +1,3 @@
-#include <stdexcept>
-#include <utility>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/vehicle/model/problem_model.hpp"

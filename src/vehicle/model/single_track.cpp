@@ -1,10 +1,5 @@
 #include "slalom/vehicle/model/single_track.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
 #include "slalom/core/gravity.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 

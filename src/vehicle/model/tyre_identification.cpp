@@ -1,11 +1,6 @@
 #include "slalom/vehicle/model/tyre_identification.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "slalom/core/gravity.hpp"
 #include "slalom/core/math.hpp"

@@ -1,11 +1,7 @@
 #include "slalom/vehicle/racing/corridor.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
-#include <stdexcept>
-#include <string>
 
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/maps/pose_limits.hpp"

@@ -1,6 +1,4 @@
 // The files of courses that are made: maps, lines and course.yaml.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "slalom/core/error.hpp"

@@ -1,8 +1,4 @@
 // The map that is drawn of a corridor.
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/maps/image.hpp"

@@ -1,9 +1,5 @@
 #include "vehicle/racing/free_space.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "slalom/core/numbers/saturate_cast.hpp"
 #include "vehicle/racing/cell_regions.hpp"
 

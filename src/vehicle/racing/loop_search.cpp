@@ -1,9 +1,6 @@
 #include "vehicle/racing/loop_search.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <deque>
-#include <limits>
 #include <queue>
 #include <utility>
 

@@ -1,7 +1,5 @@
 #include "vehicle/racing/map_corridor.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <optional>

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/vehicle/racing/corridor.hpp"
 #include "vehicle/racing/free_space.hpp"
 

@@ -1,11 +1,7 @@
 #include "slalom/vehicle/racing/minimum_time.hpp"
 
 #include <Eigen/SparseCholesky>
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <stdexcept>
-#include <string>
 
 #include "vehicle/racing/raceline_program.hpp"
 

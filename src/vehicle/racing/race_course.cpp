@@ -1,9 +1,6 @@
 #include "slalom/vehicle/racing/race_course.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <stdexcept>
 
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/maps/pose_limits.hpp"

@@ -1,9 +1,6 @@
 #include "vehicle/racing/raceline_program.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "slalom/core/derivatives/dual_math.hpp"
 

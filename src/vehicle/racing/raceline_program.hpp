@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <vector>
 
 #include "slalom/vehicle/racing/corridor.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"

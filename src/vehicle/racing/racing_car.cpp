@@ -1,8 +1,5 @@
 #include "slalom/vehicle/racing/racing_car.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "slalom/core/gravity.hpp"
 #include "vehicle/course/speed_passes.hpp"
 #include "vehicle/require.hpp"

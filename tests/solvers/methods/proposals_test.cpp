@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "slalom/solvers/controllers.hpp"
 #include "slalom/solvers/registry.hpp"

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <vector>
 
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/registry.hpp"

@@ -1,11 +1,6 @@
 // The path of a lap of the racing benchmark through the place where the lap ends.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "tools/evaluation/racing_benchmark.hpp"
 
 namespace slalom::tools {

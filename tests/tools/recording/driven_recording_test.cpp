@@ -1,10 +1,7 @@
 // Recorded drives, and bags of rosbag2: which messages and topics are used, what a sample is, and what is
 // refused.
-#include <gtest/gtest.h>
 
 #include <sqlite3.h>
-#include <cmath>
-#include <fstream>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/model/identification.hpp"

@@ -2,8 +2,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <functional>
-
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/network/mlp.hpp"

@@ -3,11 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <numbers>
-
 #include "slalom/core/random.hpp"
 #include "slalom/sim/imu.hpp"
 #include "slalom/sim/plant.hpp"

@@ -3,10 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <deque>
-#include <stdexcept>
-#include <vector>
 
 #include "slalom/core/random.hpp"
 #include "slalom/sim/plant.hpp"

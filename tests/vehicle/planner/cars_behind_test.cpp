@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <numeric>
-#include <vector>
 
 #include "support/allocations.hpp"
 #include "support/predicted.hpp"

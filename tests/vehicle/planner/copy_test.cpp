@@ -1,12 +1,6 @@
 // A copy of a planner goes on with the same bits, and shares nothing with the original.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "support/allocations.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 

@@ -3,12 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <initializer_list>
-#include <limits>
 #include <utility>
-#include <vector>
 
 #include "support/allocations.hpp"
 #include "support/lane.hpp"

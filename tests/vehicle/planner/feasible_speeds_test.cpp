@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "vehicle/planner/map_options.hpp"
 
 namespace slalom::vehicle::detail::feasible_speeds_test {

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/pose.hpp"

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
-
 namespace slalom::vehicle::detail::obstacle_memory_test {
 namespace {
 

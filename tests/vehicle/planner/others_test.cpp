@@ -1,12 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
-
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/vehicle/planner/planner.hpp"

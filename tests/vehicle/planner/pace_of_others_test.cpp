@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
-
 #include "support/predicted.hpp"
 
 namespace slalom::vehicle::detail::pace_of_others_test {

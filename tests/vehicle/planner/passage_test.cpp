@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "support/allocations.hpp"
 #include "support/lane.hpp"
 

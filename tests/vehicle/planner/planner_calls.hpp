@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <optional>
-#include <stdexcept>
-#include <vector>
-
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "solvers/set_option.hpp"

@@ -3,11 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <memory>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/moving_obstacles.hpp"

@@ -3,12 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <vector>
-
 #include "vehicle/planner/lane_scan.hpp"
 
 namespace slalom::vehicle::detail::sight_test {

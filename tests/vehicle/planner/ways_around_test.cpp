@@ -3,11 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
-#include <numbers>
-#include <vector>
-
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"

@@ -1,8 +1,4 @@
 // Courses as people draw them: lines without walls or beside the map, eights, gaps, roads without a margin.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
 
 #include "slalom/vehicle/racing/race_course.hpp"
 #include "support/thrown_words.hpp"

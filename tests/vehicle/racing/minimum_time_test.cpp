@@ -1,11 +1,7 @@
 // The minimum-time line: known answers, limits, optimality, errors.
 #include "slalom/vehicle/racing/minimum_time.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <random>
-#include <stdexcept>
 
 #include "slalom/vehicle/course/raceline.hpp"
 #include "support/thrown_words.hpp"

@@ -1,13 +1,6 @@
 // Courses from maps: the loop that is found, dirt, directions, open lines, files.
 #include "slalom/vehicle/racing/race_course.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <tuple>
-
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "support/temporary_folder.hpp"

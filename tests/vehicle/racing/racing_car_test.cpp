@@ -1,12 +1,6 @@
 // Cars: profiles, configurations.
 #include "slalom/vehicle/racing/racing_car.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
 #include "support/thrown_words.hpp"
 
 namespace slalom::vehicle::racing_car_test {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/vehicle/racing/corridor.hpp"
 

@@ -1,9 +1,6 @@
 #include "controller.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
-#include <utility>
 
 #include <nav2_core/controller_exceptions.hpp>
 #include <pluginlib/class_list_macros.hpp>

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <memory>
 #include <mutex>
-#include <string>
 
 #include <nav2_core/controller.hpp>
 

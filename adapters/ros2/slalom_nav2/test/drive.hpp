@@ -1,11 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include <geometry_msgs/msg/twist.hpp>
-#include <nav_msgs/msg/occupancy_grid.hpp>
 #include <nav_msgs/msg/odometry.hpp>
 #include <tf2_msgs/msg/tf_message.hpp>
 

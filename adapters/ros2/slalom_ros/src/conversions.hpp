@@ -1,9 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <string>
 
 #if __has_include(<tf2/buffer_core.hpp>)
 #include <tf2/buffer_core.hpp>

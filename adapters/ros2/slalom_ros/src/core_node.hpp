@@ -1,9 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-
 #include <tf2_ros/transform_listener.h>
 
 #include "conversions.hpp"

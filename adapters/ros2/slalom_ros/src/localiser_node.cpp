@@ -1,8 +1,6 @@
 // Localisation: computes the transform from map to odom, `pf/pose/odom` and `particlecloud` from `scan`,
 // `odom` and a map. LocaliserCore does the work. docs/on-the-car.md has topics, parameters and faults.
 #include <ctime>
-#include <limits>
-#include <optional>
 
 #include <geometry_msgs/msg/pose_array.hpp>
 #include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>

@@ -1,7 +1,6 @@
 #include "managed_node.hpp"
 
 #include <exception>
-#include <utility>
 
 #include <lifecycle_msgs/msg/state.hpp>
 

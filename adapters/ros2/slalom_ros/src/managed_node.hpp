@@ -2,10 +2,7 @@
 
 #include <chrono>
 #include <memory>
-#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <rclcpp/rclcpp.hpp>

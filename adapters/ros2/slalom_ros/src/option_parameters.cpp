@@ -1,10 +1,5 @@
 #include "option_parameters.hpp"
 
-#include <cstdint>
-#include <stdexcept>
-#include <type_traits>
-#include <variant>
-
 namespace slalom_ros {
 namespace {
 

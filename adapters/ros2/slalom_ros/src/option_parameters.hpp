@@ -3,8 +3,6 @@
 #include <functional>
 #include <memory>
 #include <set>
-#include <string>
-#include <vector>
 
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 

@@ -1,7 +1,6 @@
 // The controller: computes `drive` from `scan`, `odom` and tf, with a new plan for every scan. PlannerCore
 // does the work. docs/on-the-car.md has topics, frames, parameters and faults.
 #include <cmath>
-#include <optional>
 
 #include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
 #include <nav_msgs/msg/odometry.hpp>

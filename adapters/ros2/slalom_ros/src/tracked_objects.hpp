@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include <slalom_msgs/msg/tracked_objects.hpp>
 
 #include "conversions.hpp"

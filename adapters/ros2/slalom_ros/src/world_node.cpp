@@ -1,11 +1,7 @@
 // The simulator as a car: subscribes to `drive` and publishes `scan`, `odom` (wheel odometry) with its
 // transforms, the parked cars, and the true state as `ground_truth`, `laps` and `collisions`. Like a real car
 // it must brake without a finite command for a while, or when two nodes command it.
-#include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <map>
-#include <optional>
 
 #include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
 #include <nav_msgs/msg/odometry.hpp>

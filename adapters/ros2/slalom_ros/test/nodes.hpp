@@ -1,11 +1,7 @@
 #pragma once
 
 #include <map>
-#include <memory>
-#include <string>
-#include <thread>
 #include <utility>
-#include <vector>
 
 #include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
 #include <class_loader/class_loader.hpp>

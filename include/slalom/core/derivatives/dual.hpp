@@ -1,7 +1,5 @@
 #pragma once
 
-#include <concepts>
-
 #include "slalom/core/simd.hpp"
 
 /// Dual numbers: a scalar type for problems that carries exact derivatives along (forward-mode automatic

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cstring>
-
 #include "slalom/core/derivatives/dual_math.hpp"
 #include "slalom/core/problem_check.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <string>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <type_traits>
-
 #include "slalom/core/simd.hpp"
 
 /// Mathematics on packs: the functions of math.hpp, lane by lane. Accuracy: math.hpp.

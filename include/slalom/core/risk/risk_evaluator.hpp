@@ -1,11 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <concepts>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/core/risk/risk_measure.hpp"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "slalom/core/options.hpp"
 
 namespace slalom {

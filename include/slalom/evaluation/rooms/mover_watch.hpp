@@ -1,8 +1,5 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "slalom/navigation/scan_map.hpp"
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor.hpp"

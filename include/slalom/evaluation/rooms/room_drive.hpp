@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "slalom/evaluation/rooms/room_scenario.hpp"
 #include "slalom/navigation/navigator.hpp"
 

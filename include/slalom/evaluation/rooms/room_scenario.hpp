@@ -1,11 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <numbers>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "slalom/maps/pose.hpp"
 #include "slalom/navigation/base.hpp"

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <deque>
-#include <limits>
-#include <span>
-#include <vector>
 
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/rooms/mover_watch.hpp"

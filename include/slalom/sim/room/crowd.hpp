@@ -1,8 +1,5 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "slalom/sim/room/room.hpp"
 
 namespace slalom::sim {

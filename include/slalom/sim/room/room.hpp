@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/sim/shapes.hpp"

@@ -1,10 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/solvers/registry.hpp"

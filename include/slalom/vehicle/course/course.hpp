@@ -1,9 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "slalom/vehicle/course/speed_profile.hpp"

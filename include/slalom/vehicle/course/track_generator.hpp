@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <concepts>
-
 #include "slalom/vehicle/model/obstacle_cost.hpp"
 #include "slalom/vehicle/model/tracking_cost.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <utility>
-
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <tuple>
 
 #include "slalom/vehicle/model/kinematic.hpp"

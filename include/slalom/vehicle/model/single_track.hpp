@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "slalom/maps/command.hpp"
 #include "slalom/vehicle/model/single_track_dynamics.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "slalom/vehicle/model/identification.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 #include "slalom/vehicle/model/single_track_options.hpp"

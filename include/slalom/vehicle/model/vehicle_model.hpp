@@ -1,8 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <span>
-
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/instruction_set.hpp"
 #include "slalom/maps/command.hpp"

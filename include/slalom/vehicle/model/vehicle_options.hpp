@@ -1,9 +1,5 @@
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <type_traits>
-
 #include "slalom/vehicle/model/registry.hpp"
 
 namespace slalom::vehicle {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <concepts>
-
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem.hpp"
 #include "slalom/maps/command.hpp"

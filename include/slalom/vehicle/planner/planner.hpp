@@ -1,10 +1,6 @@
 #pragma once
 
-#include <array>
-#include <memory>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "slalom/maps/command.hpp"
 #include "slalom/maps/imu_reading.hpp"

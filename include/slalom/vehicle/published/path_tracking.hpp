@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "slalom/vehicle/model/actuation.hpp"
 #include "slalom/vehicle/model/obstacle_cost.hpp"
 #include "slalom/vehicle/model/tracking_cost.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "slalom/vehicle/course/track_generator.hpp"
 #include "slalom/vehicle/racing/corridor.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"

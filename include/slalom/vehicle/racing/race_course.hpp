@@ -1,11 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/course/track_generator.hpp"

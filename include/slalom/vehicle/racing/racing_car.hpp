@@ -1,11 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/course/speed_profile.hpp"
 
