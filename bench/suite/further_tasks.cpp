@@ -177,7 +177,8 @@ struct Gaps {
   }
   template <class T>
   mask_t<T> collides(const State<T>& s) const {
-    return (abs(s.x - T(6)) < T(0.4)) & (abs(abs(s.y) - T(2.2)) > T(0.4));
+    const mask_t<T> at_wall = abs(s.x - T(6))<T(0.4), off_gaps = abs(abs(s.y) - T(2.2))> T(0.4);
+    return at_wall & off_gaps;
   }
 };
 
