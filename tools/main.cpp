@@ -20,5 +20,6 @@ int main(int argc, char** argv) {
                                        {"replay", declare_replay},
                                        {"reproduce", declare_reproduce},
                                        {"track", declare_track},
+                                       {"tune", declare_tune},
                                        {"view", declare_view}}));
 }

@@ -117,7 +117,7 @@ TEST_F(CommandLine, EveryNumberIsCheckedInTheSameWords) {
 TEST_F(CommandLine, HelpFitsTheTerminalAndHasExamples) {
   for (const std::string command :
        {"bench", "compare", "course", "drive", "eval", "explain", "export", "identify", "navigate", "options",
-        "race", "racing-benchmark", "replay", "reproduce", "track", "view"}) {
+        "race", "racing-benchmark", "replay", "reproduce", "track", "tune", "view"}) {
     const std::string text = timed(command + " --help").output;
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << command << ": " << line;

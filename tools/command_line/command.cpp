@@ -26,51 +26,41 @@ std::string range_number(double value) {
 }
 
 /// "must be a whole number in [1, 10]"
-std::string rule_text(bool is_whole, const Range& range) {
+std::string rule_text(bool is_whole, const Rules& range) {
   const std::string text = is_whole ? "must be a whole number" : "must be a number";
   if (std::isinf(range.least)) return text;
   if (std::isinf(range.most)) return text + " from " + range_number(range.least);
   return text + " in [" + range_number(range.least) + ", " + range_number(range.most) + "]";
 }
 
-bool contains(const Range& range, double value) {
+bool contains(const Rules& range, double value) {
   return value >= range.least && value <= range.most;
 }
 
-template <class T>
-Option declare_text(CLI::App& parser, const std::string& name, T& value, const std::string& help) {
-  CLI::Option* parsed = parser.add_option(name, value, help);
-  if (!value.empty()) parsed->capture_default_str();
-  // An empty value usually comes from a shell variable that is not set.
-  parsed->check([](const std::string& text) { return text.empty() ? "the value must not be empty" : ""; });
-  return Option(parsed);
+/// Lets an option take only the numbers that a type can hold and that are in the range. The parser converts
+/// the text only after this check.
+template <class Value>
+void check_numbers(CLI::Option* option, Rules range) {
+  constexpr bool is_whole = std::is_integral_v<Value>;
+  if constexpr (std::is_unsigned_v<Value>) range.least = 0;
+  if constexpr (sizeof(Value) < sizeof(int)) range.most = std::numeric_limits<Value>::max();
+  option->type_name(is_whole ? "INT" : "NUMBER");
+  option->check([range](const std::string& text) {
+    Value number{};
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, number);
+    const bool accepted =
+        read.ec == std::errc{} && read.ptr == end && contains(range, static_cast<double>(number));
+    return accepted ? "" : "'" + text + "' " + rule_text(is_whole, range);
+  });
 }
 
 }  // namespace
 
-Option& Option::required() {
-  parsed_->required();
-  return *this;
-}
-
-Option& Option::comma_separated() {
-  parsed_->delimiter(',');
-  return *this;
-}
-
-Option& Option::repeatable() {
-  parsed_->allow_extra_args(false);
-  return *this;
-}
-
-Option& Option::needs(const Option& other) {
-  parsed_->needs(other.parsed_);
-  return *this;
-}
-
-Option& Option::excludes(const Option& other) {
-  parsed_->excludes(other.parsed_);
-  return *this;
+void Subcommand::set(CLI::Option* option, const Rules& rules) {
+  option->required(rules.required);
+  if (rules.needs) option->needs(parser_.get_option(rules.needs));
+  for (const char* other : rules.excludes) option->excludes(parser_.get_option(other));
 }
 
 void Subcommand::summary(const std::string& text) {
@@ -84,49 +74,42 @@ void Subcommand::examples(std::initializer_list<const char*> commands, const std
   parser_.footer(footer);
 }
 
-Option Subcommand::option(const std::string& name, std::string& value, const std::string& help) {
-  return declare_text(parser_, name, value, help);
+template <class Value>
+void Subcommand::option(const std::string& name, Value& value, const std::string& help, const Rules& rules) {
+  CLI::Option* const parsed = parser_.add_option(name, value, help);
+  if constexpr (requires { value.empty(); }) {
+    if (!value.empty()) parsed->capture_default_str();
+    // An empty value usually comes from a shell variable that is not set.
+    parsed->check([](const std::string& text) { return text.empty() ? "the value must not be empty" : ""; });
+    if (rules.comma_separated)
+      parsed->delimiter(',');
+    else if (!std::is_same_v<Value, std::string>)
+      parsed->allow_extra_args(false);
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    check_numbers<double>(parsed, rules);
+  } else {
+    if (contains(rules, static_cast<double>(value))) parsed->capture_default_str();
+    check_numbers<Value>(parsed, rules);
+  }
+  set(parsed, rules);
 }
 
-Option Subcommand::option(const std::string& name, std::vector<std::string>& value, const std::string& help) {
-  return declare_text(parser_, name, value, help);
+template void Subcommand::option(const std::string&, std::string&, const std::string&, const Rules&);
+template void Subcommand::option(const std::string&, std::vector<std::string>&, const std::string&,
+                                 const Rules&);
+template void Subcommand::option(const std::string&, int&, const std::string&, const Rules&);
+template void Subcommand::option(const std::string&, std::uint16_t&, const std::string&, const Rules&);
+template void Subcommand::option(const std::string&, std::uint64_t&, const std::string&, const Rules&);
+template void Subcommand::option(const std::string&, double&, const std::string&, const Rules&);
+template void Subcommand::option(const std::string&, std::optional<double>&, const std::string&,
+                                 const Rules&);
+
+void Subcommand::flag(const std::string& name, bool& value, const std::string& help, const Rules& rules) {
+  set(parser_.add_flag(name, value, help), rules);
 }
 
-template <class Number>
-Option Subcommand::option(const std::string& name, Number& value, const std::string& help, Range range) {
-  constexpr bool is_optional = std::is_same_v<Number, std::optional<double>>;
-  using Value = std::conditional_t<is_optional, double, Number>;
-  constexpr bool is_whole = std::is_integral_v<Value>;
-  if constexpr (std::is_unsigned_v<Value>) range.least = 0;
-  if constexpr (sizeof(Value) < sizeof(int)) range.most = std::numeric_limits<Value>::max();
-  CLI::Option* parsed = parser_.add_option(name, value, help);
-  parsed->type_name(is_whole ? "INT" : "NUMBER");
-  if constexpr (!is_optional)
-    if (contains(range, static_cast<double>(value))) parsed->capture_default_str();
-  // The parser converts the text only after this check.
-  parsed->check([range](const std::string& text) {
-    Value number{};
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, number);
-    const bool accepted =
-        read.ec == std::errc{} && read.ptr == end && contains(range, static_cast<double>(number));
-    return accepted ? "" : "'" + text + "' " + rule_text(is_whole, range);
-  });
-  return Option(parsed);
-}
-
-template Option Subcommand::option(const std::string&, int&, const std::string&, Range);
-template Option Subcommand::option(const std::string&, std::uint16_t&, const std::string&, Range);
-template Option Subcommand::option(const std::string&, std::uint64_t&, const std::string&, Range);
-template Option Subcommand::option(const std::string&, double&, const std::string&, Range);
-template Option Subcommand::option(const std::string&, std::optional<double>&, const std::string&, Range);
-
-Option Subcommand::flag(const std::string& name, bool& value, const std::string& help) {
-  return Option(parser_.add_flag(name, value, help));
-}
-
-Option Subcommand::json(std::string& file, const std::string& what) {
-  return option("--json", file, "Write " + what + " as JSON to this file, or to standard output: -");
+void Subcommand::json(std::string& file, const std::string& what) {
+  option("--json", file, "Write " + what + " as JSON to this file, or to standard output: -");
 }
 
 bool Subcommand::given(const std::string& name) const {

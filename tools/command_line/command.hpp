@@ -39,30 +39,14 @@ auto for_option(const std::string& option, Action&& action) {
   }
 }
 
-/// The numbers that an option accepts: all in [least, most].
-struct Range {
-  double least = -std::numeric_limits<double>::infinity();
+/// The rule of an option's values, beyond that of its type.
+struct Rules {
+  double least = -std::numeric_limits<double>::infinity();  ///< numbers in [least, most]
   double most = std::numeric_limits<double>::infinity();
-};
-
-/// An option of a command while it is declared. It refers to the command, which must outlive it.
-class Option {
- public:
-  explicit Option(CLI::Option* parsed) : parsed_(parsed) {}
-
-  /// The command cannot run without the option.
-  Option& required();
-  /// Reads a list from one text with commas between its values.
-  Option& comma_separated();
-  /// Reads a list from several uses of the option, one value each.
-  Option& repeatable();
-  /// Rejects the option without the other one.
-  Option& needs(const Option& other);
-  /// Rejects the option together with the other one.
-  Option& excludes(const Option& other);
-
- private:
-  CLI::Option* parsed_;
+  bool required = false;         ///< the command cannot run without the option
+  bool comma_separated = false;  ///< a list in one text; else each use of the option has a value of the list
+  const char* needs = nullptr;   ///< an option declared before, without which it is rejected
+  std::vector<const char*> excludes{};  ///< options declared before, with which it is rejected
 };
 
 /// A command of the program: its options and its action.
@@ -81,15 +65,13 @@ class Subcommand {
   /// Declares an option whose value goes to `value`, which must live as long as the action. A name without
   /// dashes declares a positional argument. The help shows the present value as the default, unless it is
   /// empty or outside the range. Every value that is not a number, not in the range, or empty is rejected in
-  /// the same words.
-  Option option(const std::string& name, std::string& value, const std::string& help);
-  Option option(const std::string& name, std::vector<std::string>& value, const std::string& help);
-  /// A number: int, std::uint16_t, std::uint64_t, double, or std::optional<double>.
-  template <class Number>
-  Option option(const std::string& name, Number& value, const std::string& help, Range range = {});
+  /// the same words. The value: std::string, std::vector<std::string>, int, std::uint16_t, std::uint64_t,
+  /// double, or std::optional<double>.
+  template <class Value>
+  void option(const std::string& name, Value& value, const std::string& help, const Rules& rules = {});
   /// Declares --json, the file to which the command writes `what`.
-  Option json(std::string& file, const std::string& what);
-  Option flag(const std::string& name, bool& value, const std::string& help);
+  void json(std::string& file, const std::string& what);
+  void flag(const std::string& name, bool& value, const std::string& help, const Rules& rules = {});
 
   /// Whether the user gave the option.
   bool given(const std::string& name) const;
@@ -101,6 +83,8 @@ class Subcommand {
   int run() const { return action_(); }
 
  private:
+  void set(CLI::Option* option, const Rules& rules);
+
   CLI::App& parser_;
   std::function<int()> action_;
 };

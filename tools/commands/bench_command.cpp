@@ -220,9 +220,9 @@ void declare_bench(Subcommand& command) {
   command.option("--config", arguments->config,
                  "Configuration to measure [fixed workload: the methods and the vehicle problem of the "
                  "configuration published, with one trajectory per rollout]");
-  command.option("--set", arguments->set, "section.option=value; may be repeated").repeatable();
-  command.option("--methods", arguments->methods, "Methods to measure, separated by commas [all]")
-      .comma_separated();
+  command.option("--set", arguments->set, "section.option=value; may be repeated");
+  command.option("--methods", arguments->methods, "Methods to measure, separated by commas [all]",
+                 {.comma_separated = true});
   command.option("--seconds", arguments->seconds, "Duration of each measurement, s", {0.01, 600.0});
   command.flag("--scaling", arguments->scaling,
                "Also measure over samples, horizon, threads and instruction sets");

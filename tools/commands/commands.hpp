@@ -20,6 +20,12 @@ void declare_racing_benchmark(Subcommand& command);
 void declare_replay(Subcommand& command);
 void declare_reproduce(Subcommand& command);
 void declare_track(Subcommand& command);
+void declare_tune(Subcommand& command);
 void declare_view(Subcommand& command);
+
+/// Becomes a process of Python that calls `main` of a module of the package that was built or installed with
+/// this program; it has the words of this command line after the command's name. The interpreter is
+/// $SLALOM_PYTHON, or else that of the system. Throws IoError if it cannot be started.
+[[noreturn]] void become_python(const std::string& module);
 
 }  // namespace slalom::tools

@@ -250,13 +250,13 @@ int compare(const CompareArguments& arguments) {
 void declare_compare(Subcommand& command) {
   command.summary("Compare two evaluations: which is better, with tests of significance");
   const auto arguments = std::make_shared<CompareArguments>();
-  command.option("first", arguments->first, "Output folder of an evaluation, or a folder of several")
-      .required();
-  command
-      .option("second", arguments->second,
-              "Output folder of the other evaluation, or a folder of several; evaluations of equal name are "
-              "compared")
-      .required();
+  command.option("first", arguments->first, "Output folder of an evaluation, or a folder of several",
+                 {.required = true});
+  command.option(
+      "second", arguments->second,
+      "Output folder of the other evaluation, or a folder of several; evaluations of equal name are "
+      "compared",
+      {.required = true});
   command.json(arguments->json, "the comparison");
   command.examples({"compare BEFORE AFTER", "compare BEFORE AFTER --json compared.json"});
   command.action([arguments] { return compare(*arguments); });

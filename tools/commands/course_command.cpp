@@ -154,11 +154,10 @@ void course(CourseArguments arguments) {
 void declare_course(Subcommand& command) {
   command.summary("Make a course from a map: corridor, centre line, minimum-time raceline, picture");
   const auto arguments = std::make_shared<CourseArguments>();
-  command
-      .option("input", arguments->input,
-              "Map (ROS YAML file), or a centre line with widths (.csv), from which a map is drawn")
-      .required();
-  command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
+  command.option("input", arguments->input,
+                 "Map (ROS YAML file), or a centre line with widths (.csv), from which a map is drawn",
+                 {.required = true});
+  command.option("--out", arguments->out, "Output folder; created if it does not exist", {.required = true});
   command.option(
       "--line", arguments->line,
       "Line to drive along: .csv with x and y, or a recorded drive; else the program finds a loop");
@@ -171,11 +170,10 @@ void declare_course(Subcommand& command) {
                  {0, 10});
   command.option("--narrowest", arguments->narrowest, "Least width of the gaps that a found loop may use, m",
                  {0, 1000});
-  const Option start =
-      command.option("--start", arguments->start,
-                     "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if "
-                     "the course passes it along +x]");
-  command.flag("--reverse", arguments->reverse, "Drive the other way round").excludes(start);
+  command.option("--start", arguments->start,
+                 "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if "
+                 "the course passes it along +x]");
+  command.flag("--reverse", arguments->reverse, "Drive the other way round", {.excludes = {"--start"}});
   command.option("--name", arguments->name, "Name of the course [name of the folder]");
   command.option("--description", arguments->description, "Description for course.yaml");
   command.json(arguments->json, "a summary");

@@ -305,25 +305,21 @@ void declare_drive(Subcommand& command) {
   command.option("--seed", arguments->seed, "Seed of lap 1; lap k has SEED + (k - 1) (obstacles + 5)");
   command.option("--laps", arguments->laps, "Number of laps; each starts from standstill", {1, 100000});
   command.json(arguments->json, "the results");
-  const Option record =
-      command.option("--record", arguments->record, "Record every control step to this MCAP file");
-  command
-      .flag("--record-all", arguments->record_all,
-            "Record all candidates, guides and the map of costs, of every control step")
-      .needs(record);
-  command
-      .flag("--record-times", arguments->record_times,
-            "Also record wall-clock times, which differ from run to run")
-      .needs(record);
+  command.option("--record", arguments->record, "Record every control step to this MCAP file");
+  command.flag("--record-all", arguments->record_all,
+               "Record all candidates, guides and the map of costs, of every control step",
+               {.needs = "--record"});
+  command.flag("--record-times", arguments->record_times,
+               "Also record wall-clock times, which differ from run to run", {.needs = "--record"});
   command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG, SVG or PDF");
-  const Option again = command.option(
-      "--again", arguments->again,
-      "Drive a lap of this evaluation (output folder of slalom eval) again, under its settings; "
-      "--method may also have options, as in the results, and --course the course's new folder. "
-      "The exit status is 1 unless it is the same to the last bit");
-  command.option("--lap", arguments->lap, "With --again: number of the lap, from 0", {0, 999999})
-      .needs(again);
-  command.option("--scenario", arguments->experiment_scenario, "With --again: pt or oa").needs(again);
+  command.option("--again", arguments->again,
+                 "Drive a lap of this evaluation (output folder of slalom eval) again, under its settings; "
+                 "--method may also have options, as in the results, and --course the course's new folder. "
+                 "The exit status is 1 unless it is the same to the last bit");
+  command.option("--lap", arguments->lap, "With --again: number of the lap, from 0",
+                 {.least = 0, .most = 999999, .needs = "--again"});
+  command.option("--scenario", arguments->experiment_scenario, "With --again: pt or oa",
+                 {.needs = "--again"});
   command.examples({"drive --course eel --obstacles 5 --laps 3 --plot lap.png",
                     "drive --method mppi --set mppi.samples=2000 --record lap.mcap",
                     "drive --again OUT --method svg_mppi --lap 3 --plot lap.png"});

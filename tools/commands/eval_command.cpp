@@ -1,15 +1,8 @@
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <system_error>
 
 #include "json/json.hpp"
 #include "tools/commands/commands.hpp"
@@ -35,34 +28,6 @@ struct EvalArguments {
   std::string cluster, part;
   std::string conditions = "ideal";
 };
-
-/// Becomes a process of Python that calls `main` of a module of the package that was built or installed with
-/// this program; it has the words of this command line after the command's name. The interpreter is
-/// $SLALOM_PYTHON, or else that of the system. Throws IoError if it cannot be started.
-[[noreturn]] void become_python(const std::string& module) {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"),
-                              prefix = program.parent_path().parent_path();
-  const char *const chosen = std::getenv("SLALOM_PYTHON"), *const others = std::getenv("PYTHONPATH");
-  const std::string python = chosen                                        ? chosen
-                             : std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3"
-                                                                           : "python3";
-  const std::string path = (prefix / "adapters/python:").string() +
-                           (prefix / "lib/python3/dist-packages").string() +
-                           (others ? ":" + std::string(others) : "");
-  ::setenv("PYTHONPATH", path.c_str(), 1);
-  ::setenv("SLALOM_PROGRAM", program.c_str(), 1);
-  std::vector<std::string> words{python, "-c",
-                                 "from slalom import study, " + module + " as m; study.end_with(m.main)"};
-  std::ifstream line("/proc/self/cmdline", std::ios::binary);
-  int index = 0;
-  for (std::string word; std::getline(line, word, '\0');)
-    if (++index > 2) words.push_back(word);
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  ::execvp(python.c_str(), pointers.data());
-  throw IoError(python, 0, "cannot be started: " + std::generic_category().message(errno));
-}
 
 int eval(const EvalArguments& arguments) {
   if (!arguments.part.empty()) {
@@ -116,18 +81,16 @@ int eval(const EvalArguments& arguments) {
 void declare_eval(Subcommand& command) {
   command.summary("Evaluate methods over many laps, with confidence intervals and paired tests");
   const auto arguments = std::make_shared<EvalArguments>();
-  command.option("--methods", arguments->methods, "Methods, separated by commas").comma_separated();
-  command
-      .option("--scenario", arguments->scenarios, "pt: path tracking, oa: obstacle avoidance; or both: pt,oa")
-      .comma_separated();
+  command.option("--methods", arguments->methods, "Methods, separated by commas", {.comma_separated = true});
+  command.option("--scenario", arguments->scenarios,
+                 "pt: path tracking, oa: obstacle avoidance; or both: pt,oa", {.comma_separated = true});
   command.option("--laps", arguments->laps, "Number of laps of each method in each scenario", {1, 1000000});
   command.option("--obstacles", arguments->obstacles, "Number of parked cars in scenario oa", {1, 1000});
-  command
-      .option("--set", arguments->sweeps,
-              "key=v1,v2,...: one experiment for each value, and for each combination of values if --set is "
-              "repeated. Options of the simulated world, such as world.friction, can be varied, too; slalom "
-              "options lists them")
-      .repeatable();
+  command.option(
+      "--set", arguments->sweeps,
+      "key=v1,v2,...: one experiment for each value, and for each combination of values if --set is "
+      "repeated. Options of the simulated world, such as world.friction, can be varied, too; slalom "
+      "options lists them");
   command.option(
       "--conditions", arguments->conditions,
       "car: tyres that saturate, sensor noise, a localised pose, 20 ms of latency, and one experiment "

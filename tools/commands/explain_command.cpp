@@ -17,8 +17,9 @@ void declare_explain(Subcommand& command) {
   command.summary(
       "Draw a figure of the SVG-MPPI paper: how methods solve a problem with two equally good ways");
   const auto arguments = std::make_shared<ExplainArguments>();
-  command.option("--figure", arguments->figure, "Figure of the paper: 1, 3 or 4", {1, 4}).required();
-  command.option("--plot", arguments->plot, "Write the figure to this PNG, SVG or PDF").required();
+  command.option("--figure", arguments->figure, "Figure of the paper: 1, 3 or 4",
+                 {.least = 1, .most = 4, .required = true});
+  command.option("--plot", arguments->plot, "Write the figure to this PNG, SVG or PDF", {.required = true});
   command.option("--seed", arguments->seed, "Seed of the random numbers");
   command.examples({"explain --figure 4 --plot figure.png"});
   command.action([arguments] {

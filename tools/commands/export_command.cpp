@@ -36,13 +36,12 @@ int export_recording(const ExportArguments& arguments, bool has_span) {
 void declare_export(Subcommand& command) {
   command.summary("Write a recording as one HTML file, or as a video from above");
   const auto arguments = std::make_shared<ExportArguments>();
-  command.option("recording", arguments->recording, "Recording in MCAP").required();
-  command
-      .option(
-          "file", arguments->file,
-          "File to write: .html, which opens in any browser; or .gif, .webm, .mp4 or .webp, for which the "
-          "program ffmpeg must be installed")
-      .required();
+  command.option("recording", arguments->recording, "Recording in MCAP", {.required = true});
+  command.option(
+      "file", arguments->file,
+      "File to write: .html, which opens in any browser; or .gif, .webm, .mp4 or .webp, for which the "
+      "program ffmpeg must be installed",
+      {.required = true});
   command.option("--from", arguments->span.from, "Video: first second of the recording", {0, 1e6});
   command.option("--to", arguments->span.to, "Video: last second of the recording", {0, 1e6});
   command.option("--speed", arguments->span.speed, "Video: speed; 0.5 is slow motion", {0.01, 100});

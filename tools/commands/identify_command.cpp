@@ -154,20 +154,16 @@ void declare_identify(Subcommand& command) {
   command.summary(
       "Estimate steering, delay and wheelbase of a car, or its tyres and friction, from a recording");
   const auto arguments = std::make_shared<IdentifyArguments>();
-  command
-      .option("recording", arguments->recording,
-              "Recording of slalom drive --record, or a bag of rosbag2 (file or folder)")
-      .required();
-  const auto tyres =
-      command.flag("--tyres", arguments->tyres,
-                   "Find friction and cornering stiffness, of a drive close to the limit of grip");
-  command
-      .option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]", {0.01, 20.0})
-      .excludes(tyres);
-  command
-      .option("--config", arguments->config,
-              "With --tyres: configuration with the lengths, mass and inertia of the car")
-      .needs(tyres);
+  command.option("recording", arguments->recording,
+                 "Recording of slalom drive --record, or a bag of rosbag2 (file or folder)",
+                 {.required = true});
+  command.flag("--tyres", arguments->tyres,
+               "Find friction and cornering stiffness, of a drive close to the limit of grip");
+  command.option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]",
+                 {.least = 0.01, .most = 20.0, .excludes = {"--tyres"}});
+  command.option("--config", arguments->config,
+                 "With --tyres: configuration with the lengths, mass and inertia of the car",
+                 {.needs = "--tyres"});
   command.json(arguments->json, "the estimates");
   command.examples({"identify lap.mcap --wheelbase 0.33", "identify first --tyres --config my_car.yaml"});
   command.action([arguments] { return identify(*arguments); });

@@ -119,14 +119,13 @@ void declare_navigate(Subcommand& command) {
                  "Drive through the worlds of the dataset BARN in this folder (docs/navigation.md)");
   command.option("--barn-step", arguments->barn_step, "Take every N-th world; BARN's test takes every 6th",
                  {1, 300});
-  command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names())
-      .comma_separated();
+  command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names(),
+                 {.comma_separated = true});
   command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario",
                  {1, 100000});
   command.option("--seed", arguments->first_seed, "Seed of the first drive");
-  command
-      .option("--set", arguments->set, "key=value: an option of the navigator or its method; can be repeated")
-      .repeatable();
+  command.option("--set", arguments->set,
+                 "key=value: an option of the navigator or its method; can be repeated");
   command.option("--jobs", arguments->jobs, "Number of drives that run in parallel", {1, 1024});
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
   command.option("--table", arguments->table,

@@ -86,13 +86,12 @@ void declare_options(Subcommand& command) {
   command.summary("List all options with values, units and ranges");
   const auto arguments = std::make_shared<OptionsArguments>();
   command.option("--config", arguments->scenario.config, config_help);
-  command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
-  const Option method = command.option("--method", arguments->method,
-                                       "Only the options of this method, vehicle, planner and world");
-  const Option json = command.json(arguments->json, "the options");
-  command.flag("--yaml", arguments->yaml, "Print the complete configuration as YAML")
-      .excludes(method)
-      .excludes(json);
+  command.option("--set", arguments->scenario.set, "section.option=value; may be repeated");
+  command.option("--method", arguments->method,
+                 "Only the options of this method, vehicle, planner and world");
+  command.json(arguments->json, "the options");
+  command.flag("--yaml", arguments->yaml, "Print the complete configuration as YAML",
+               {.excludes = {"--method", "--json"}});
   command.examples({"options --method svg_mppi", "options --config race --yaml"});
   command.action([arguments] {
     options(*arguments);

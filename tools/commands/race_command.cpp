@@ -158,12 +158,10 @@ void add_grid_options(Subcommand& command, GridRaceArguments& several) {
   command.option("--cars", several.cars,
                  "A race of so many cars, each with its own planner, LiDAR and tracker of the others",
                  {2, evaluation::most_race_cars});
-  command
-      .option(
-          "--against", several.against,
-          "METHOD, CONFIG or CONFIG:METHOD of another car; may be repeated. If --cars is more, the own car "
-          "and these follow again in turn. --set applies to the configuration of --config and to the world")
-      .repeatable();
+  command.option(
+      "--against", several.against,
+      "METHOD, CONFIG or CONFIG:METHOD of another car; may be repeated. If --cars is more, the own car "
+      "and these follow again in turn. --set applies to the configuration of --config and to the world");
   command.option("--races", several.races,
                  "Number of races; the cars move by one place of the grid from each to the next",
                  {1, 100000});

@@ -56,14 +56,13 @@ void declare_racing_benchmark(Subcommand& command) {
       "Drive the racing benchmark of Evans et al. (arXiv 2402.18558): lap times on its four maps");
   const auto arguments = std::make_shared<BenchmarkArguments>();
   arguments->scenario.config = "racing_benchmark";
-  command
-      .option("maps", arguments->maps,
-              "Folder of the benchmark's maps aut, esp, gbr and mco, with their centre lines")
-      .required();
+  command.option("maps", arguments->maps,
+                 "Folder of the benchmark's maps aut, esp, gbr and mco, with their centre lines",
+                 {.required = true});
   command.option("--driver", arguments->driver,
                  "follow_the_gap, or a method, with which a planner drives along the minimum-time raceline");
   command.option("--config", arguments->scenario.config, config_help);
-  command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
+  command.option("--set", arguments->scenario.set, "section.option=value; may be repeated");
   command.option(
       "--margin", arguments->margin,
       "Distance that the car on the raceline keeps from walls, m; in narrow places less, down to 0.4 "

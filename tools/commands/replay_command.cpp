@@ -41,41 +41,34 @@ void declare_replay(Subcommand& command) {
   command.summary("Show a recording in the browser, or compare a planner with the driver of a recording");
   const auto arguments = std::make_shared<ReplayArguments>();
   AgainstArguments& against = arguments->against;
-  command
-      .option("recording", against.recording,
-              "Recording in MCAP, or with --against a bag of rosbag2 (file or folder)")
-      .required();
-  Option host = command.option("--host", arguments->host, "Address to listen on");
-  Option port = command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
+  command.option("recording", against.recording,
+                 "Recording in MCAP, or with --against a bag of rosbag2 (file or folder)",
+                 {.required = true});
+  command.option("--host", arguments->host, "Address to listen on");
+  command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
   against.scenario.config.clear();
-  const Option planner = command.option(
+  command.option(
       "--against", against.scenario.config,
-      "Compare the planner of this configuration with the driver of a recording with all scans, or of a bag");
-  for (Option* served : {&host, &port}) served->excludes(planner);
+      "Compare the planner of this configuration with the driver of a recording with all scans, or of a bag",
+      {.excludes = {"--host", "--port"}});
+  const Rules with_planner{.needs = "--against"};
   against.scenario.course.clear();
-  Option course =
-      command.option("--course", against.scenario.course, "With --against: course name or folder");
-  course.needs(planner);
-  Option(planner).needs(course);
-  command.option("--method", against.method, "With --against: one of " + method_names()).needs(planner);
-  command
-      .option("--set", against.scenario.set,
-              "With --against: section.option=value of the configuration; may be repeated")
-      .repeatable()
-      .needs(planner);
-  command
-      .option("--start", against.scenario.start,
-              "With --against: first pose x,y,yaw of the rear axle, for a bag without poses on the map "
-              "[searched on the whole map]")
-      .needs(planner);
-  command
-      .option("--plot", against.plot,
-              "With --against: write a picture of drive and plans to this PNG, SVG or PDF")
-      .needs(planner);
-  command.option("--json", against.json, "With --against: write all moments to this file (- for stdout)")
-      .needs(planner);
+  command.option("--course", against.scenario.course, "With --against: course name or folder", with_planner);
+  command.option("--method", against.method, "With --against: one of " + method_names(), with_planner);
+  command.option("--set", against.scenario.set,
+                 "With --against: section.option=value of the configuration; may be repeated", with_planner);
+  command.option("--start", against.scenario.start,
+                 "With --against: first pose x,y,yaw of the rear axle, for a bag without poses on the map "
+                 "[searched on the whole map]",
+                 with_planner);
+  command.option("--plot", against.plot,
+                 "With --against: write a picture of drive and plans to this PNG, SVG or PDF", with_planner);
+  command.option("--json", against.json, "With --against: write all moments to this file (- for stdout)",
+                 with_planner);
   command.examples({"replay lap.mcap", "replay bag --against default --course my_course --plot against.png"});
   command.action([arguments, &command] {
+    if (command.given("--against") && !command.given("--course"))
+      throw CommandLineError("--against", "needs --course");
     return command.given("--against") ? replay_against(arguments->against) : replay(*arguments);
   });
 }

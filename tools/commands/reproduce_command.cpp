@@ -124,15 +124,15 @@ void declare_reproduce(Subcommand& command) {
       "Clone of the authors' repository, github.com/kohonda/proj-svg_mppi, for its courses and logs; "
       "without it, the laps are driven on stag, unless --course is given, and compared with nothing");
   for (const PaperTable& table : paper_tables) arguments->tables.push_back(table.name);
-  command.option("--tables", arguments->tables, "Tables, separated by commas: table1, table2, covariances")
-      .comma_separated();
+  command.option("--tables", arguments->tables, "Tables, separated by commas: table1, table2, covariances",
+                 {.comma_separated = true});
   command.option("--laps-pt", arguments->laps_pt, "Number of path-tracking laps of each row", {1, 1000000});
   command.option("--laps-oa", arguments->laps_oa, "Number of obstacle-avoidance laps of each row",
                  {1, 1000000});
   command.flag("--quick", arguments->quick, "Drive a tenth of the laps");
   command.flag("--claims", arguments->claims,
                "Only test the paper's claims on the logs of --paper, without driving");
-  command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();
+  command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated");
   command.examples({"reproduce --paper path/to/proj-svg_mppi --quick --out OUT"});
   command.action([arguments, &command] {
     arguments->course_given = command.given("--course");

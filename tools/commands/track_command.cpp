@@ -87,7 +87,7 @@ void declare_track(Subcommand& command) {
   command.summary("Generate a course: map, raceline with speeds, obstacle path, picture");
   const auto arguments = std::make_shared<TrackArguments>();
   TrackGeneratorOptions& options = arguments->options;
-  command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
+  command.option("--out", arguments->out, "Output folder; created if it does not exist", {.required = true});
   command.option("--seed", options.seed, "Seed; the same options and seed give the same files");
   command.option("--length", options.length, "Length of the centre line, m; the line to drive is shorter",
                  {20, 1000});

@@ -135,16 +135,14 @@ void add_world_options(Subcommand& command, ScenarioArguments& a) {
 
 void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
   add_world_options(command, a);
-  command
-      .option("--set", a.set,
-              "section.option=value, or option=value for the method's own; may be repeated (slalom options "
-              "lists them)")
-      .repeatable();
+  command.option(
+      "--set", a.set,
+      "section.option=value, or option=value for the method's own; may be repeated (slalom options "
+      "lists them)");
   command.option("--obstacles", a.obstacles, "Number of parked cars on the course", {0, 1000});
-  command
-      .option("--obstacle", a.obstacle,
-              "Place x,y,yaw of a parked car, m, m, rad; may be repeated; --obstacles adds others at random")
-      .repeatable();
+  command.option(
+      "--obstacle", a.obstacle,
+      "Place x,y,yaw of a parked car, m, m, rad; may be repeated; --obstacles adds others at random");
   command.option(
       "--opponents", a.opponents,
       "Number of cars that drive along the course line at half its speed; only with --evaluation true",

@@ -7,6 +7,7 @@
     drive.states, drive.inputs, drive.costs, drive.times
 """
 
+import importlib
 import importlib.util
 
 from . import _slalom, display, plot
@@ -35,6 +36,8 @@ class SymptomWarning(RuntimeWarning):
 
 
 def __getattr__(name: str) -> object:
+    if name == "tune":  # needs Optuna
+        return importlib.import_module("slalom.tuner").tune
     if name in _DRIVING:
         raise AttributeError(f"slalom.{name} is not in this build, which has no cars, robots, courses and simulator: install it "
                              "with SLALOM_DRIVING=1 pip install, or build all layers with CMake")
@@ -42,7 +45,7 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, "compile", "gpu", "plot", "study"])
+    return sorted([*__all__, "compile", "gpu", "plot", "study", "tune"])
 
 
 display.install(_slalom)

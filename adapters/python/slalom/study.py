@@ -30,6 +30,10 @@ class OtherBuild(RuntimeError):
     """This machine has another build of the program than the study."""
 
 
+class RunError(RuntimeError):
+    """A program ended with an error."""
+
+
 def path_of(program: str) -> str:
     """The path of a program: beside $SLALOM_PROGRAM or this package, or of the PATH."""
     folders = [Path(os.environ.get("SLALOM_PROGRAM", "/nowhere")).parent, *(each / "bin" for each in Path(__file__).parents)]
@@ -51,8 +55,8 @@ def outputs_of(build: str, commands: list[list[str]], text: str = "") -> list[st
         raise OtherBuild(f"{path} of {socket.gethostname()} is build {build_of(path)}, the study has {build}")
     for _, *words in commands:
         ended = subprocess.run([path, *words], input=text, capture_output=True, text=True, check=False)
-        if ended.returncode and not ended.stdout:  # `slalom navigate` tells a collision by its status
-            raise RuntimeError(ended.stderr.strip() or f"{path} ended with status {ended.returncode}")
+        if ended.returncode > (1 if ended.stdout else 0) or ended.returncode < 0:  # 1 is a collision of `slalom navigate`
+            raise RunError(ended.stderr.strip() or f"{path} ended with status {ended.returncode}")
         outputs.append(ended.stdout)
     return outputs
 
@@ -62,7 +66,36 @@ def value_of(text: str) -> Any:
     for kind in (int, float):
         with contextlib.suppress(ValueError):
             return kind(text)
-    return {"True": True, "False": False}.get(text, text)
+    return {"true": True, "false": False}.get(text.lower(), text)
+
+
+def needed(module: str, package: str = "") -> Any:
+    """A module of another package. Raises ImportError that names the package."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise ImportError(f"{error}: install python3-{module} (Debian), or {package or module} of the index") from None
+
+
+def keep(file: Path, settings: str) -> None:
+    """Writes the settings of a folder. Raises ValueError if it has others."""
+    if file.exists() and file.read_text() != settings:
+        raise ValueError(f"{file}: the folder has runs of other settings or of another build; choose another folder")
+    file.write_text(settings)
+
+
+@contextlib.contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Holds the lock of a folder. Raises RuntimeError if another process has it."""
+    with (folder / "lock").open("a") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise RuntimeError(f"{folder}: is in use by another process: wait until it has ended") from None
+        try:
+            yield
+        finally:
+            fcntl.flock(lock, fcntl.LOCK_UN)  # the processes of the pool have the file, too
 
 
 class Study:
@@ -70,6 +103,7 @@ class Study:
     place, of those that the option `where` names with commas between, has the seed `seed` + k. Others go to its program."""
 
     program, count, where = "slalom", "seeds", "scenario"
+    scored, stride = "the score of a run", 1  # for a tuner: what it makes small, and the difference of the seeds of two runs
 
     def __init__(self, out: Any, **options: Any):
         self.out, self.options = Path(out), dict[str, Any]({"methods": "svg_mppi", "set": [], "seed": 0, self.count: 32}, **options)
@@ -79,6 +113,10 @@ class Study:
         self.experiments = [tuple[str, ...]([self.method, each, " ".join(self.sets).replace(",", ";")]) for each in places]
         self.runs = [(experiment, run_) for experiment in range(len(places)) for run_ in range(self.counted)]
 
+    def score(self, row: dict[str, Any]) -> float:
+        """The figure that a tuner makes small."""
+        return float(row["score"])
+
     def words(self, *without: str) -> list[str]:
         """The options as words of a command."""
         given = {name: value for name, value in self.options.items() if name not in ("set", *without)}
@@ -86,6 +124,8 @@ class Study:
 
     def command(self, experiment: int, run_: int) -> list[str]:
         """The command that a run of an experiment is."""
+        if "," in self.method:
+            raise ValueError(f"methods: '{self.method}' must be one method")
         return [self.program, *self.words("seed", "seeds", self.where), "--seeds", "1", f"--{self.where}", self.experiments[experiment][1]]
 
     def figures(self, output: Any) -> dict[str, Any]:
@@ -96,14 +136,15 @@ class Study:
         """A function and its arguments, for a worker."""
         return outputs_of, self.build, [self.command(*each) for each in runs]
 
+    def settings(self) -> str:
+        """The text of settings.json."""
+        settings = {"kind": type(self).__name__, "build": self.build, **self.options}
+        return json.dumps(settings, indent=2, default=lambda each: getattr(each, "__name__", type(each).__name__)) + "\n"
+
     def prepare(self) -> None:
         """Makes the folder. Raises ValueError if it has other runs."""
         self.out.mkdir(parents=True, exist_ok=True)
-        file, settings = self.out / "settings.json", {"kind": type(self).__name__, "build": self.build, **self.options}
-        text = json.dumps(settings, indent=2, default=lambda each: getattr(each, "__name__", type(each).__name__)) + "\n"
-        if file.exists() and file.read_text() != text:
-            raise ValueError(f"{file}: the folder has runs of other settings or of another build; choose another folder")
-        file.write_text(text)
+        keep(self.out / "settings.json", self.settings())
 
     def lines(self, runs: list[tuple[int, int]], outputs: list[Any]) -> list[str]:
         """The header of the table and the lines of these runs."""
@@ -132,46 +173,57 @@ class Study:
 class Laps(Study):
     """Laps of cars: an evaluation of `slalom eval` with these options, `_` for `-`; `laps` is their number."""
 
-    count = "laps"
+    count, scored = "laps", "the time of a lap in s, 10 more for each collision, and 60 where it does not finish"
 
     def __init__(self, out: Any, **options: Any):
         super().__init__(out, **options)
+        self.stride = int(self.options.get("obstacles", 5)) + 5
         self.line = ["eval", "--resume", "--out", str(out), *self.words(), *(f"--set={each}" for each in self.sets)]
 
     def prepare(self) -> None:
         outputs_of(self.build, [["slalom", *self.line, "--prepare"]])
-        self.settings = (self.out / "settings.json").read_text()
-        found = json.loads(self.settings)["experiments"]
+        self.text = (self.out / "settings.json").read_text()
+        found = json.loads(self.text)["experiments"]
         self.experiments = [(each["method"], each["scenario"], each["set"]) for each in found]
         self.runs = [(experiment, lap) for experiment, each in enumerate(found) for lap in range(each["laps"])]
 
     def work(self, runs: list[tuple[int, int]]) -> tuple[Any, ...]:
         words = ["slalom", "eval", "--part", " ".join(f"{experiment}:{lap}" for experiment, lap in runs)]
-        return outputs_of, self.build, [words], self.settings
+        return outputs_of, self.build, [words], self.text
 
     def lines(self, runs: list[tuple[int, int]], outputs: list[Any]) -> list[str]:
         return ["", *outputs[0].splitlines()]  # the program has written the header
 
+    def score(self, row: dict[str, Any]) -> float:
+        return float(row["time"] + 10 * row["collisions"] + 60 * (not row["finished"]))
+
     def finish(self, quiet: bool) -> None:
-        nowhere = subprocess.DEVNULL
-        subprocess.run([path_of("slalom"), *self.line, "--resume"], check=True, stdout=nowhere if quiet else None, stderr=nowhere)
+        [said] = outputs_of(self.build, [["slalom", *self.line, "--resume"]])
+        print("" if quiet else said, end="")
 
 
 class Rooms(Study):
     """Drives of `slalom navigate` through the rooms of `scenario`, each with `seeds` seeds."""
+
+    scored = "the time of a drive in s, and 60 more where it fails"
+
+    def score(self, row: dict[str, Any]) -> float:
+        return float(row["time_s"] + 60 * (not row["success"]))
 
     def command(self, experiment: int, run_: int) -> list[str]:
         words = ["--json", "-", "--seed", str(self.seed + run_), *(f"--set={each}" for each in self.sets)]
         return ["slalom", "navigate", *super().command(experiment, run_)[1:], *words]
 
     def figures(self, output: Any) -> dict[str, Any]:
-        return {name: int(each) if isinstance(each, bool) else each for name, each in json.loads(output)["results"][0]["by_seed"][0].items()}
+        if len(every := json.loads(output)["results"]) > 1:  # `rooms`, `manoeuvres`
+            raise ValueError(f"scenario: '{self.options['scenario']}' must name rooms, with commas between; `slalom navigate --help` lists them")
+        return {name: int(each) if isinstance(each, bool) else each for name, each in every[0]["by_seed"][0].items()}
 
 
 class Suite(Study):
     """Runs of `slalom_problem_suite`, of a build tree, on `tasks` with so many `rollouts` in a solve, 64 if not given."""
 
-    program, where = "slalom_problem_suite", "tasks"
+    program, where, scored = "slalom_problem_suite", "tasks", "1 for a run that fails"
 
     def command(self, experiment: int, run_: int) -> list[str]:
         words = ["--first-seed", str(self.seed + run_), "--methods", ":".join([self.method, *self.sets])]
@@ -253,16 +305,9 @@ def run(study: Study, client: Any = None, *, jobs: int = 0, seconds: float = 5, 
     `dask.distributed.Client`, in tasks of about so many seconds; returns the rows of all. Raises what a run raised, ValueError
     for a folder of another study, OtherBuild without a worker of this build, and OSError where the folder cannot be written."""
     study.prepare()
-    with (study.out / "lock").open("a") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise RuntimeError(f"{study.out}: is in use by another process: wait until it has ended") from None
-        try:
-            if not (study.out / TABLE).exists():
-                _drive(study, client, jobs, seconds, quiet)
-        finally:
-            fcntl.flock(lock, fcntl.LOCK_UN)  # the processes of the pool have the file, too
+    with locked(study.out):
+        if not (study.out / TABLE).exists():
+            _drive(study, client, jobs, seconds, quiet)
     study.finish(quiet)
     return study.rows()
 
@@ -272,22 +317,20 @@ def words_of_process() -> list[str]:
     return [part for word in sys.argv[1:] for part in (word.split("=", 1) if word.startswith("--") else [word])]
 
 
-def end_with(action: Callable[[], Any]) -> None:
-    """Does what a command of the program does, with the exit status and the errors of the program."""
+def end_with(module: str) -> None:
+    """Calls `main` of a module of this package, with the exit status and the errors of the program."""
     try:
-        action()
+        importlib.import_module(module, __package__).main()
     except KeyboardInterrupt:
         print("\nslalom: interrupted; the runs so far are kept", file=sys.stderr)
         os._exit(130)
-    except ImportError as error:
-        sys.exit(f"slalom: {error} (Debian: python3-{error.name})")
     except Exception as error:
         sys.exit(f"slalom: {error}")
 
 
 def connect(address: str) -> Any:
     """A Dask client of a scheduler, which waits ten minutes for one that was lost."""
-    Client: Any = importlib.import_module("distributed").Client
+    Client = needed("distributed").Client
     Client(address, timeout=60, set_as_default=False).close()
     return Client(address, timeout=600, set_as_default=False)
 

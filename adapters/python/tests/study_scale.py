@@ -1,6 +1,7 @@
-"""Measures what a study costs beside its runs on a Dask cluster of this machine, and simulates up to 64 workers with it.
+"""Measures what a study costs beside its runs on a Dask cluster of this machine, drives laps with one worker and with two, and
+simulates up to 64 workers with the times of these tasks.
 
-usage: study_scale.py FOLDER SECONDS_OF_A_LAP..., the times of some laps
+usage: study_scale.py FOLDER [OPTION=VALUE of slalom eval]...
 """
 
 import heapq
@@ -20,12 +21,28 @@ def waits(seed, seconds=0.0):
     return time.sleep(seconds) or seed
 
 
+def timed(call, *arguments):
+    begin = time.monotonic()
+    return [*call(*arguments), time.monotonic() - begin]
+
+
+class Timed(study.Laps):
+    """Laps that keep the times of their tasks."""
+
+    def work(self, runs):
+        return (timed, *super().work(runs))
+
+    def lines(self, runs, outputs):
+        self.tasks = [*getattr(self, "tasks", []), (len(runs), outputs.pop())]
+        return super().lines(runs, outputs)
+
+
 def processor_time(process):  # s
     return sum(map(int, Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[11:13])) / os.sysconf("SC_CLK_TCK")
 
 
 def efficiency(workers, laps, cost, count, seconds=5.0):
-    """Runs' time over workers' time, with the tasks of a study: each takes `cost` s of study and scheduler, one at a time."""
+    """Tasks' time over workers' time: each task takes `cost` s of study and scheduler, one at a time."""
     left, spent, ran, free, ends, runs = count, 0.0, 0, 0.0, [(0.0, 0.0, 0)] * workers, cycle(laps)
     while left:
         end, took, size = heapq.heappop(ends)
@@ -36,20 +53,30 @@ def efficiency(workers, laps, cost, count, seconds=5.0):
     return sum(x for x, _ in zip(cycle(laps), range(count))) / (workers * max(end for end, _, _ in ends))
 
 
-def main():
-    laps = [float(word) for word in sys.argv[2:]]
-    with faults.Cluster() as cluster, distributed.Client(cluster.address, timeout=120, set_as_default=False) as client:
-        client.wait_for_workers(2)
+def drive(made, workers, seconds):
+    """The wall time of a study, and the processor times of study, scheduler and workers."""
+    with faults.Cluster(workers) as cluster, distributed.Client(cluster.address, timeout=120, set_as_default=False) as client:
+        client.wait_for_workers(workers)
         processes = [os.getpid(), cluster.scheduler.pid, *(each.pid for each in cluster.workers)]
-        for name, seconds, count in (("first tasks", 0, 20), ("tasks without work", 0, 400), ("tasks of 1 s", 1, 40)):
-            before, begin = [processor_time(each) for each in processes], time.monotonic()
-            made = study.Function(f"{sys.argv[1]}/{name}", function=waits, seeds=count, set=[f"seconds={seconds}"])
-            list(study.run(made, client, seconds=seconds, quiet=True))
-            costs = [1e3 * (processor_time(each) - b) / count for each, b in zip(processes, before)]
-            print(f"{count} {name}: {time.monotonic() - begin:.2f} s; processor time of a task: {np.round(costs, 1)} ms: study, scheduler, workers")
-            cost = (costs[0] + costs[1]) / 1e3 if not seconds else cost
+        before, begin = [processor_time(each) for each in processes], time.monotonic()
+        list(study.run(made, client, seconds=seconds, quiet=True))
+        return time.monotonic() - begin, [processor_time(each) - b for each, b in zip(processes, before)]
+
+
+def main(folder, *options):
+    for name, seconds, count in ("first tasks", 0, 20), ("tasks without work", 0, 200), ("tasks of 1 s", 1, 40):
+        made = study.Function(f"{folder}/{name}", function=waits, seeds=count, set=[f"seconds={seconds}"])
+        wall, costs = drive(made, 2, seconds)
+        print(f"{count} {name}: {wall:.2f} s; processor time of a task: {np.round(1e3 * np.array(costs) / count, 1)} ms: study, scheduler, workers")
+        cost = (costs[0] + costs[1]) / count if not seconds else cost
+    for workers in 1, 2:
+        made = Timed(f"{folder}/{workers}", **dict(each.split("=") for each in options))
+        wall, busy, laps = drive(made, workers, 5)[0], sum(took for _, took in made.tasks), len(made.runs)
+        print(f"{workers} workers, measured: {laps} laps in {len(made.tasks)} tasks of {busy / laps:.2f} s a lap, {wall:.1f} s: "
+              f"efficiency {100 * busy / workers / wall:.1f} %")
+    times = [took / size for size, took in made.tasks for _ in range(size)]
     for workers in (1, 2, 4, 8, 16, 32, 64):
-        print(f"{workers} workers: efficiency {100 * efficiency(workers, laps, cost, 10000):.1f} %")
+        print(f"{workers} workers, simulated: efficiency {100 * efficiency(workers, times, cost, 10000):.1f} %")
 
 
-main()
+main(*sys.argv[1:])

@@ -147,7 +147,7 @@ def test_the_stubs_name_everything():
 
 USE = """
 import numpy as np
-import slalom
+import slalom.tuner
 from slalom.mlp import Mlp
 
 controller = slalom.SvgMppi(slalom.CartPole(track=3.0), horizon=10, input_min=-10, input_max=[10])

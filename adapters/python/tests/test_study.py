@@ -1,5 +1,6 @@
 """Studies are those of `slalom eval`, and survive every fault."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -98,3 +99,15 @@ def test_a_worker_of_another_build_is_refused(alone, tmp_path):
         cluster.start_worker()
         list(study.run(laps(tmp_path / "refused"), client, quiet=True))
     assert faults.repeatable(tmp_path / "refused") == faults.repeatable(folder)
+
+
+def test_rooms_are_driven_as_by_slalom_navigate(alone, tmp_path):
+    words = ["--scenario=straight", "--methods=mppi", "--set=samples=64"]
+    rows = list(study.run(study.Rooms(tmp_path / "r", scenario="straight,heading", methods="mppi", set=["samples=64"], seeds=2, seed=3), quiet=True))
+    said = subprocess.run([study.path_of("slalom"), "navigate", *words, "--seeds=2", "--seed=3", "--json=-"], capture_output=True, check=False).stdout
+    for row, drive in zip(rows, json.loads(said)["results"][0]["by_seed"]):
+        assert row["scenario"] == "straight" and all(row[name] == each for name, each in drive.items() if not name.startswith("update"))
+    assert [row["scenario"] for row in rows] == ["straight"] * 2 + ["heading"] * 2
+    for options, text in ({"scenario": "rooms"}, "must name rooms"), ({"scenario": "bay", "methods": "mppi,icem"}, "must be one method"):
+        with pytest.raises(ValueError, match=text):
+            study.run(study.Rooms(tmp_path / text, seeds=1, **{"set": ["samples=4"], **options}), quiet=True)
