@@ -177,7 +177,8 @@ struct Gaps {
   }
   template <class T>
   mask_t<T> collides(const State<T>& s) const {
-    return (abs(s.x - T(6)) < T(0.4)) & (abs(abs(s.y) - T(2.2)) > T(0.4));
+    const mask_t<T> at_wall = abs(s.x - T(6))<T(0.4), off_gaps = abs(abs(s.y) - T(2.2))> T(0.4);
+    return at_wall & off_gaps;
   }
 };
 
@@ -234,7 +235,9 @@ struct Crossing : PointMass {
     mask_t<T> hit(false);
     for (const double lane : {1.5, 3.0, 4.5}) {
       const T behind = s.x + T(lane == 3 ? 2.5 : -2) * s.time + T(lane);
-      hit = hit | ((abs(s.y - T(lane)) < T(0.6)) & (cos(T(wave) * behind) > T(std::cos(wave * 1.2))));
+      const mask_t<T> on_lane = abs(s.y - T(lane)) < T(0.6);
+      const mask_t<T> one_passes = cos(T(wave) * behind) > T(std::cos(wave * 1.2));
+      hit = hit | (on_lane & one_passes);
     }
     return hit;
   }

@@ -116,7 +116,7 @@ void ControllerCore::connect(const ControlledProblem& problem) {
   previous_.resize(inputs);
   given_ = before_ = reach_ = previous_;
   state_.resize(static_cast<std::size_t>(problem.states()));
-  moved_ = state_;
+  predicted_ = moved_ = state_;
   errors_ = PredictionErrors(problem.states());
   rest(problem);
 }
@@ -138,7 +138,12 @@ bool ControllerCore::begin(ControlledProblem& problem, std::span<const double> s
             : !valid_times(request, problem.evaluator().time_step()) ? Status::invalid_time
                                                                      : Status::ok;
   if (status_ != Status::ok) return false;
-  if (predict(problem, request.elapsed)) errors_.add(state, state_);
+  if (predict(problem, request.elapsed)) {
+    // A value that has not changed at all is one of a frame that moves with the robot.
+    for (std::size_t i = 0; i < state.size(); ++i)
+      if (state[i] == state_[i]) predicted_[i] = state[i];
+    errors_.add(state, predicted_);
+  }
   std::copy(state.begin(), state.end(), state_.begin());
   has_state_ = true;
   recall_input(problem, request.elapsed);
@@ -169,18 +174,19 @@ void ControllerCore::recall_input(const ControlledProblem& problem, double elaps
   }
 }
 
-/// Moves the start of the last solve forward by the time since then. Returns false if that is not possible.
+/// Predicts the present state from the start of the last solve. Returns false if that is not possible.
 bool ControllerCore::predict(const ControlledProblem& problem, double elapsed) noexcept {
   const double step = problem.evaluator().time_step(), steps = step > 0 ? elapsed / step : 0;
   const double whole = std::round(steps), left = std::abs(steps - whole) < 1e-6 ? whole : steps;
   if (!has_state_ || !(left > 0 && left <= solver_->horizon())) return false;
   const std::size_t inputs = previous_.size();
+  predicted_ = state_;
   for (int k = 0; k < left; ++k) {
-    std::copy(state_.begin(), state_.end(), moved_.begin());
+    moved_ = predicted_;
     const auto at = static_cast<std::size_t>(k) * inputs;
     if (!problem.advance(moved_, std::span(inputs_).subspan(at, inputs), k)) return false;
-    for (std::size_t i = 0; i < state_.size(); ++i)
-      state_[i] = std::lerp(state_[i], moved_[i], std::min(left - k, 1.0));
+    for (std::size_t i = 0; i < moved_.size(); ++i)
+      predicted_[i] = std::lerp(predicted_[i], moved_[i], std::min(left - k, 1.0));
   }
   return true;
 }

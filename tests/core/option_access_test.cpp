@@ -1,5 +1,6 @@
 // Options by name and as text: every type, every refusal with its value and rule.
 #include "slalom/core/option_access.hpp"
+#include "slalom/core/error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -50,6 +50,26 @@ TEST(FinalCheck, APreviousInputOutsideTheBoundsIsMovedIntoThem) {
   expect_valid(plan, 0.5, 1, 1, plan.inputs[0][0]);
 }
 
+TEST(FinalCheck, IgnoresAPreviousInputThatIsNotANumber) {
+  Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
+  const double before = controller.solve(at_rest).inputs[0][0];
+  controller.set_previous_input({{not_a_number}});
+  const auto plan = controller.solve(at_rest);
+  expect_valid(plan, 0.5, 1, 0.05, before);
+  EXPECT_GT(plan.corrections, 0);
+  EXPECT_EQ(controller.solve(at_rest).corrections, 0);
+}
+
+TEST(FinalCheck, TheAnswerBeforeTheFirstSolveIsWithinTheBounds) {
+  Mppi controller{RateLimited{}, {.horizon = 4, .samples = 64, .input_min = 0.5, .input_max = 1}};
+  const auto plan = controller.solve({not_a_number, 0});
+  EXPECT_EQ(plan.status, Status::non_finite_state);
+  expect_valid(plan, 0.5, 1, 0, 0.5);
+  controller.solve(at_rest);
+  controller.reset(1);
+  expect_valid(controller.solve({not_a_number, 0}), 0.5, 1, 0, 0.5);
+}
+
 TEST(FinalCheck, ASolverOfOnesOwnIsHeldWithinTheProblemsBounds) {
   struct Bounded : testing::DoubleIntegrator {
     double input_min = -1, input_max = 1;

@@ -90,6 +90,8 @@ TEST(Controller, TellsItsSolverWherePredictionsFailed) {
   EXPECT_FLOAT_EQ(witness.present[1], 0.7f);
   controller.solve({5, 5});  // no time has passed, so nothing was predicted
   EXPECT_FLOAT_EQ(witness.starts[6][1], 5.125f);
+  for (int i = 0; i < 10; ++i) controller.solve({5, 5}, {.elapsed = 0.1});
+  EXPECT_TRUE(witness.starts.empty()) << "what never changes is a frame that moves with the robot";
   controller.reset(1);
   controller.solve({7, 7}, {.elapsed = 0.1});
   EXPECT_TRUE(witness.starts.empty());

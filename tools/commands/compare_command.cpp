@@ -91,7 +91,7 @@ Json differing_settings(const Json& a, const Json& b) {
 
 /// Prints a match: the figures of both sides, and the p values of their differences.
 void print(const Match& m, const std::array<std::string, 2>& names, std::FILE* out) {
-  const auto& [a, b] = m.results;
+  const auto &a = m.results[0], &b = m.results[1];
   const auto end_of = [](const std::string& name) {
     return name.size() > 26 ? name.substr(name.size() - 26) : name;
   };

@@ -53,7 +53,7 @@ ReportChart chart_of(const PaperTable& table, const Evaluated& evaluated) {
   ReportChart chart{table.figure, table.title, {}};
   for (const PaperRow& row : paper_rows()) {
     if (row.table != table.name) continue;
-    ChartRow& shown = chart.rows.emplace_back(row.name);
+    ChartRow& shown = chart.rows.emplace_back(ChartRow{row.name});
     for (const auto& r : evaluated.results)
       if (const auto& e = evaluated.experiment(r.experiment); drives(e, row))
         (e.scenario == "pt" ? shown.tracking : shown.obstacles) = &r;

@@ -77,17 +77,18 @@ int tune(const TuneArguments& a) {
 void declare_tune(Subcommand& command) {
   command.summary("Find values of options with which runs are better, by Optuna (docs/studies.md)");
   const auto a = std::make_shared<TuneArguments>();
-  command.option("KIND", a->kind, "car: laps; navigator: drives through rooms; suite: the problem suite")
-      .required();
+  command.option("KIND", a->kind, "car: laps; navigator: drives through rooms; suite: the problem suite",
+                 {.required = true});
   const char* const vary =
       "key=LOW..HIGH or key=v1,v2,...: values of an option; by the logarithm if HIGH is ten times LOW or "
       "more";
-  command.option("--vary", a->vary, vary).repeatable().required();
-  command.option("--set", a->set, "key=value: an option that stays").repeatable();
+  command.option("--vary", a->vary, vary, {.required = true});
+  command.option("--set", a->set, "key=value: an option that stays");
   for (std::size_t i = 0; i < std::size(words); ++i) command.option(words[i][0], a->texts[i], words[i][1]);
   for (std::size_t i = 0; i < std::size(numbers); ++i)
     command.option(numbers[i][0], a->values[i], numbers[i][1], {0, 1e9});
-  command.option("--out", a->out, "Folder of trials and best.yaml; the same call goes on there").required();
+  command.option("--out", a->out, "Folder of trials and best.yaml; the same call goes on there",
+                 {.required = true});
   command.examples({"tune car --course eel --vary vehicle.usable_grip=0.7..0.95 --minutes 20 --out OUT",
                     "tune suite --tasks crane --vary batches=1..5 --vary noise_exponent=1.0..4.0 --out OUT"});
   command.action([a] { return tune(*a); });

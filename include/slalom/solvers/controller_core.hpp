@@ -107,13 +107,14 @@ class ControllerCore {
 
   InputBounds bounds_;
   Polymorphic<Solver> solver_;
-  std::vector<double> inputs_;    ///< [step][input]
-  std::vector<double> previous_;  ///< valid input applied before the last solve, or the remainder
-  std::vector<double> given_;     ///< argument of the last set_previous_input
-  std::vector<double> before_;    ///< inputs of a step, for the check of the next one
-  std::vector<double> reach_;     ///< largest change of each input in a step
-  std::vector<double> state_;     ///< start of the last solve
-  std::vector<double> moved_;     ///< the same a step later, or a state near it
+  std::vector<double> inputs_;     ///< [step][input]
+  std::vector<double> previous_;   ///< valid input applied before the last solve, or the remainder
+  std::vector<double> given_;      ///< argument of the last set_previous_input
+  std::vector<double> before_;     ///< inputs of a step, for the check of the next one
+  std::vector<double> reach_;      ///< largest change of each input in a step
+  std::vector<double> state_;      ///< start of the last solve
+  std::vector<double> predicted_;  ///< the state that was predicted for the present time
+  std::vector<double> moved_;      ///< the same a step later, or a state near it
   PredictionErrors errors_;
   bool has_state_ = false;  ///< whether there was a solve since the last reset
   bool told_ = true;        ///< whether the next solve uses `given_`

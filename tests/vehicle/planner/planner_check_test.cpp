@@ -26,6 +26,33 @@ maps::LaserScanView scan_of(const std::vector<float>& ranges) {
   return {ranges, -2.35, 4.7 / 270, 0.05, 30};
 }
 
+TEST(PlannerCheck, PathsWhosePointsNearlyCoincideAreRefusedOrDriven) {
+  const auto wall = wall_around(10);
+  const auto drives = [&](double radius, int points, bool closed) {
+    std::vector<maps::ReferencePoint> path;
+    for (double x = -20; !closed && x < 0; x += 0.1) path.push_back({x, 0, 0, 3});
+    for (int i = 0; i < points; ++i) {
+      const double angle = 2 * 3.14159265358979 * i / points;
+      path.push_back({radius * std::cos(angle), radius * std::sin(angle), angle, 3});
+    }
+    try {
+      Planner planner = testing::sliding_planner({}, {}, path);
+      const testing::CallLimits limits;
+      EXPECT_TRUE(std::isfinite(planner.update({scan_of(wall), {{0, 0, 0}, 3}}).command.steer));
+      limits.check();
+      return true;
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+  };
+  for (const double radius : {0.0, 3e-10, 1e-3}) {
+    EXPECT_FALSE(drives(radius, 100, true)) << radius;
+    EXPECT_TRUE(drives(radius, 100000, false)) << radius;
+  }
+  EXPECT_FALSE(drives(1, 100000, true));
+  for (const int points : {20, 50000}) EXPECT_TRUE(drives(1, points, true));
+}
+
 TEST(PlannerCheck, BrakingStaysBelowTheLargestSpeed) {
   Planner planner = make_planner(8);
   const auto wall = wall_around(1.5F);
