@@ -90,7 +90,7 @@ class Tuner:
         key, found = hashlib.sha256(" ".join(sets).encode()).hexdigest()[:16] if sets else "before", []
         for k, each in enumerate(self.given):
             options = {**each.options, each.count: count, "seed": each.seed + each.stride * first, "set": [*each.sets, *sets]}
-            part = type(each)(self.out / "runs" / key / f"{k}-{first}", **options)
+            part = type(each)(self.out / "runs" / key / f"{k}-{first}-{count}", **options)
             found += [each.score(row) for row in studies.run(part, quiet=True, **self.running)]
         return found
 
