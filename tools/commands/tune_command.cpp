@@ -89,8 +89,8 @@ void declare_tune(Subcommand& command) {
     command.option(numbers[i][0], a->values[i], numbers[i][1], {0, 1e9});
   command.option("--out", a->out, "Folder of trials and best.yaml; the same call goes on there",
                  {.required = true});
-  command.examples({"tune car --course eel --vary vehicle.usable_grip=0.7..0.95 --minutes 20 --out OUT",
-                    "tune suite --tasks crane --vary batches=1..5 --vary noise_exponent=1.0..4.0 --out OUT"});
+  command.examples({"tune car --course eel --vary vehicle.usable_grip=0.7..0.9 --out OUT",
+                    "tune suite --tasks crane --vary batches=1..5 --out OUT"});
   command.action([a] { return tune(*a); });
 }
 
