@@ -265,5 +265,15 @@ TEST_F(StoredLaps, AFolderHasOneStoreAtATime) {
   EXPECT_EQ(LapStore(folder_, evaluation_, true).rows().size(), 2u);
 }
 
+TEST_F(StoredLaps, SettingsOfAnyDepthAreRefused) {
+  store(false);
+  for (const int depth : {100, 1000000}) {
+    const std::size_t brackets = static_cast<std::size_t>(depth);
+    write("settings.json", "{\"a\": " + std::string(brackets, '[') + std::string(brackets, ']') + "}");
+    expect_error_with<IoError>({"settings.json: must not nest deeper than 64 levels"},
+                               [&] { LapStore(folder_, evaluation_, true); });
+  }
+}
+
 }  // namespace
 }  // namespace slalom::evaluation::stored_laps_test

@@ -1,8 +1,10 @@
 #include "slalom/maps/ros_map.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -244,6 +246,41 @@ TEST(FiniteNumber, IsAWholeDecimalText) {
   for (const char* text :
        {"", "+", "-", "1 ", " 1", "1,5", "0x10", "inf", ".inf", ".nan", "nan", "1e999", "one"})
     EXPECT_EQ(finite_number(text), std::nullopt) << text;
+}
+
+TEST_F(RosMap, ATruncatedPngIsNamed) {
+  GreyImage image{64, 64, {}, {}};
+  for (int i = 0; i < 64 * 64; ++i) image.grey.push_back(static_cast<std::uint8_t>(i * 7919 >> 3));
+  save_png(image, folder_ / "whole.png");
+  EXPECT_EQ(load_image(folder_ / "whole.png").grey, image.grey);
+  const std::string bytes = testing::content(folder_ / "whole.png");
+  for (const std::size_t length : {std::size_t{10}, std::size_t{30}, std::size_t{60}, bytes.size() / 2}) {
+    EXPECT_THROW(load_image(write("cut.png", bytes.substr(0, length))), IoError) << length;
+  }
+  std::string huge = bytes;
+  huge[16] = huge[20] = '\x7f';  // both sides near 2^31, behind a checksum that no longer fits
+  EXPECT_THROW(load_image(write("huge.png", huge)), IoError);
+}
+
+TEST_F(RosMap, OnlyRegularFilesAreRead) {
+  const Path pipe = folder_ / "map.pgm";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_error(map(geometry + thresholds), 0, "regular file");
+  expect_error(pipe, 0, "regular file");
+}
+
+TEST(RosMapData, PublishedMapsLoad) {
+  const char* root = std::getenv("SLALOM_DATA_DIR");
+  if (!root || !*root) GTEST_SKIP() << "no maps: set SLALOM_DATA_DIR to a folder that has berlin/map.yaml";
+  for (const char* name : {"berlin/map.yaml", "spielberg/map.yaml", "oschersleben/Oschersleben_map.yaml"}) {
+    const OccupancyGrid grid = load_ros_map(Path(root) / name);
+    std::size_t counts[3] = {};
+    for (const Occupancy cell : grid.cells) ++counts[static_cast<int>(cell)];
+    std::cout << name << ": " << grid.width << " x " << grid.height << " at " << grid.resolution
+              << " m; free " << counts[0] << ", occupied " << counts[1] << ", unknown " << counts[2] << '\n';
+    EXPECT_GT(counts[0], 10000u) << name;
+    EXPECT_GT(counts[1], 1000u) << name;
+  }
 }
 
 }  // namespace

@@ -165,5 +165,34 @@ TEST_P(SolverContract, AcceptsEnormousAndEqualCosts) {
 INSTANTIATE_TEST_SUITE_P(Solvers, SolverContract, ::testing::ValuesIn(option_sets()),
                          [](const auto& set) { return set.param.name; });
 
+TEST_P(SolverContract, KeepsTheBoundsOfManyInputsOfDifferentScale) {
+  const int inputs = 7;
+  std::vector<double> low, high, variance;
+  for (int i = 0; i < inputs; ++i) {
+    low.push_back(i % 2 ? std::pow(2.0, i) : -std::pow(2.0, i));  // every other one excludes 0
+    high.push_back(std::pow(3.0, i));
+    variance.push_back(std::pow(4.0, i) / 16);
+  }
+  const auto solver = make(inputs, [&](SolverOptions& o) {
+    small(o);
+    set(o, "input_min", low);
+    set(o, "input_max", high);
+    set(o, "variance", variance);
+  });
+  const auto evaluator = FunctionEvaluator(inputs, [&](const SequenceBatch& batch, int k) {
+    double cost = 0;
+    for (int t = 0; t < batch.steps(); ++t)
+      for (int i = 0; i < inputs; ++i) cost += std::abs(static_cast<double>(batch.at(t, i, k)));
+    return std::pair(cost, false);
+  });
+  for (int n = 0; n < 5; ++n) {
+    const auto& result = solver->solve(evaluator, {.elapsed = 0.03});
+    for (std::size_t k = 0; k < result.inputs.size(); ++k) {
+      EXPECT_GE(static_cast<double>(result.inputs[k]), low[k % inputs]);
+      EXPECT_LE(static_cast<double>(result.inputs[k]), high[k % inputs]);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace slalom

@@ -200,5 +200,26 @@ TEST(AllocationFailure, ATrackerAndAPredictorAreMadeOrThrow) {
   EXPECT_GT(testing::fail_every_allocation([&] { return Predictor(path).update({}, 0).size(); }), 3);
 }
 
+TEST(TrackerCheck, BeamsThatAreNearlyOneEnd) {
+  // An object spans 1e8 such beams; the test would not end if each were looked at.
+  ObjectTracker tracker(room());
+  std::vector<float> ranges;
+  double stamp = 0;
+  const auto objects = [&](double increment) {
+    return tracker
+        .update({.scan = {ranges, -1.5, increment, 0.05, 30}, .sensor = {}, .stamp = stamp += 0.025})
+        .objects.size();
+  };
+  for (int i = 0; i < 200; ++i) {
+    for (int k = 0; k < 8; ++k) {
+      ranges.assign(181, 30.0F);
+      std::fill_n(ranges.begin() + 80, 15, 1.2F);
+      objects(0.0175);
+    }
+    EXPECT_GT(objects(0.0175), 0u);
+    objects(1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace slalom::tracking::tracking_parts_test

@@ -180,5 +180,19 @@ TEST(PlannerPrediction, CostsNothingBeforeAPlanAndAfterAReset) {
   EXPECT_EQ(planner.predict(straight_on, states).state, 0);
 }
 
+TEST(PlannerCheck, ScansWhoseBeamsAreTurnsApartEndAmongOthers) {
+  Planner planner = make_planner(8);
+  const auto wall = wall_around(1.5F);
+  std::vector<maps::PredictedPose> poses(2, {{7, 0, 0}, 0.1, 0.1});
+  const maps::PredictedObstacle other{
+      .length = 0.6, .width = 0.3, .interval = 0.1, .hypotheses = 1, .weights = {1}, .poses = poses};
+  for (const double increment : {3.2, 1e3, 1e12, 1e300}) {
+    PlannerInput input{.scan = scan_of(wall), .odometry = {{5, 0, 0}, 3}};
+    input.scan.angle_increment = increment;
+    input.others = {&other, 1};
+    EXPECT_TRUE(std::isfinite(planner.update(input).command.steer)) << increment;
+  }
+}
+
 }  // namespace
 }  // namespace slalom::vehicle::planner_check_test
