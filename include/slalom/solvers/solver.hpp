@@ -19,8 +19,8 @@ struct SequenceList {
   int sequences = 0;              ///< number of sequences
 };
 
-/// States near the present one, in which a plan may really start or be after a step: each differs from it as
-/// an earlier prediction differed from what came.
+/// States near the present one, in which the robot may really be: each differs from it as an earlier
+/// prediction differed from the state that came.
 class NearbyStates {
  public:
   virtual ~NearbyStates() = default;
