@@ -178,7 +178,7 @@ TEST(PaperEquations, GuidesTakeAnEighthOfTheRollouts) {
     return std::pair(two_ways(static_cast<double>(batch.data(0)[k])), false);
   });
   make_solver(options, 1)->solve(evaluator, {});
-  EXPECT_NEAR(rollouts - 8000, 10 * 1 * 100, 20);
+  EXPECT_NEAR(rollouts - 8000, 10 * 1 * 100, 130) << "with the guide itself, in whole packs";
 }
 
 /// Equation (13) for S = 1/2 a (v - c)^2: exp(-S / lambda) has the variance lambda / a, and q* of equation
