@@ -56,25 +56,29 @@ auto evaluator_of(double (*cost)(double)) {
   });
 }
 
-/// Equations (7) and (8): the solution is the mean of q* ~ exp(-S / lambda) N(nominal, Sigma), although the
-/// samples are drawn around the last solution.
+/// Equations (7) and (8): the solution is the mean of q* ~ exp(-S / lambda) N(nominal, Sigma), wherever the
+/// samples are drawn: around the last solution, as in the paper, or around the nominal sequence.
 TEST(PaperEquations, WeightsOfEquation8GiveTheMeanOfTheOptimalDistribution) {
   SvgMppiOptions options = printed();
   options.adapt_covariance = false;
   options.variance = 0.4;
   options.guides.iterations = 4;
   const auto evaluator = evaluator_of(two_ways);
-  const auto solver = make_solver(options, 1);
-  double last = 0, distance = 0;
-  for (int solve = 0; solve < 4; ++solve) {
-    const SolveResult& result = solver->solve(evaluator, {});
-    const double nominal = result.nominal[0], lambda = options.temperature;
-    const Function q = [&](double v) { return std::exp(-two_ways(v) / lambda) * normal(v, nominal, 0.4); };
-    EXPECT_NEAR(result.inputs[0], integral([&](double v) { return v * q(v); }) / integral(q), 0.01) << solve;
-    distance = std::max(distance, std::abs(nominal - last));
-    last = static_cast<double>(result.inputs[0]);
+  for (const SampleCentre centre : {SampleCentre::solution, SampleCentre::nominal}) {
+    options.guides.sample_around = centre;
+    const auto solver = make_solver(options, 1);
+    double last = 0, distance = 0;
+    for (int solve = 0; solve < 4; ++solve) {
+      const SolveResult& result = solver->solve(evaluator, {});
+      const double nominal = result.nominal[0], lambda = options.temperature;
+      const Function q = [&](double v) { return std::exp(-two_ways(v) / lambda) * normal(v, nominal, 0.4); };
+      EXPECT_NEAR(result.inputs[0], integral([&](double v) { return v * q(v); }) / integral(q), 0.01)
+          << solve;
+      distance = std::max(distance, std::abs(nominal - last));
+      last = static_cast<double>(result.inputs[0]);
+    }
+    EXPECT_GT(distance, 0.2) << "the control term of (8) must not vanish";
   }
-  EXPECT_GT(distance, 0.2) << "the control term of (8) must not vanish";
 }
 
 /// Equation (10) as printed says KL(Q || Q*) = -E[log q*/q] <= -log E[q*/q]. By Jensen's inequality it is the
