@@ -69,7 +69,7 @@ export default async function (h) {
     const { width, height } = await page.evaluate(() => slalom.stage.size);
     assert.ok(x > 0 && x < width && y > 0 && y < height, `the goal is at ${x}, ${y}`);
     await look.send({ do: "undo" });
-    await look.until(() => slalom.options.undo === 0);
+    await look.until(() => slalom.frame.bodies.some((b) => b.kind === 6 && b.x === 8));
     const text = await page.evaluate(() => {
       const { camera, ...stage } = slalom.stage;
       camera.fit(0, 0, 0.01, 0.005);
@@ -83,26 +83,22 @@ export default async function (h) {
     await page.click("[data-follow=fit]");
   });
 
-  await h.test(
-    "a second method, its fork and captions are there for a problem, and its goal is drawn",
-    async () => {
-      await look.send({ do: "ghost", method: "mppi" });
-      await look.restart();
-      await look.until(() => slalom.scalar("tick") >= 5 && slalom.frame.ghostFrame);
-      await look.seek(3);
-      await page.click("#split");
-      await look.drawn();
-      const captions = await page.locator(".caption").evaluateAll((all) => all.map((e) => e.dataset.verdict));
-      assert.deepEqual(captions, ["commits", "averages"]);
-      const goal = await page.evaluate(() => slalom.frame.bodies.find((b) => b.kind === 6));
-      assert.deepEqual([goal.x, goal.y], [8, 0]);
-      await look.drag(await look.placeOf(goal), await look.placeOf({ x: 7, y: 1 }));
-      await look.until(() => Math.abs(slalom.frame.bodies.find((b) => b.kind === 6).y - 1) < 0.1);
-      await look.send({ do: "undo" });
-      await look.send({ do: "ghost", method: "" });
-      await look.until(() => !slalom.frame.ghostFrame);
-    },
-  );
+  await h.test("a second method and captions are there for a problem, and its goal is dragged", async () => {
+    const two = await h.start("view", "--problem", "differential_drive", "--against", "mppi", "--port", "0");
+    const both = await h.open(two.address);
+    await both.until(() => window.slalom?.frame?.ghostFrame && slalom.scalar("tick") >= 5);
+    await both.seek(3);
+    await both.drawn();
+    const captions = both.page.locator(".caption");
+    const verdicts = await captions.evaluateAll((all) => all.map((e) => e.dataset.verdict));
+    assert.deepEqual(verdicts, ["commits", "averages"]);
+    const goal = await both.page.evaluate(() => slalom.frame.bodies.find((b) => b.kind === 6));
+    assert.deepEqual([goal.x, goal.y], [8, 0]);
+    await both.drag(await both.placeOf(goal), await both.placeOf({ x: 7, y: 1 }));
+    await both.until(() => Math.abs(slalom.frame.bodies.find((b) => b.kind === 6).y - 1) < 0.1);
+    await both.page.close();
+    await two.stop();
+  });
 
   await h.test("method, options and parameters change, and can be reset", async () => {
     await page.selectOption("#method", "mppi");
