@@ -48,11 +48,7 @@ SolverOptions method_options(const std::vector<std::string>& parts, const Task& 
                           : rollouts;
     return options;
   }
-  const int* const iterations = options.find<int>("iterations");
-  const double* const decay = options.find<double>("sample_decay");
-  double batches = 1;
-  for (int i = 1; iterations && i < *iterations; ++i) batches += std::pow(decay ? *decay : 1, -i);
-  *options.find<int>("samples") = static_cast<int>(rollouts / batches);
+  *options.find<int>("samples") = rollouts;
   return options;
 }
 

@@ -1,6 +1,8 @@
 
 #include "slalom/navigation/navigator.hpp"
 #include "slalom/solvers/registry.hpp"
+#include "slalom/solvers/reverse_mppi_options.hpp"
+#include "slalom/solvers/sv_mpc_options.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -32,12 +34,11 @@ void set_shared(SolverOptions& options, const BaseOptions& base) {
   set(options, "control_cost_discount", 1.0);
 }
 
-/// The rollouts of a solve with these options, divided by its samples. Those of icem decrease.
+/// The rollouts of a solve with these options, divided by its samples.
 int rollouts_per_sample(const SolverOptions& options) {
-  const int* const iterations = options.find<int>("iterations");
-  const int* const gradient_samples = options.find<int>("gradient_samples");
-  if (!iterations) return 1;
-  return gradient_samples ? 1 + *iterations * *gradient_samples : *iterations;
+  if (const auto* reverse = options.get_if<ReverseMppiOptions>()) return reverse->iterations;
+  const auto* stein = options.get_if<SvMpcOptions>();
+  return stein ? 1 + stein->iterations * stein->gradient_samples : 1;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""Checks the documentation: its links resolve, the tests that it names exist, its excerpts stand in their files, its code
+"""Checks the documentation: its links resolve, its excerpts stand in their files, its code
 compiles and runs, its patches apply, its commands and their options exist.
 
 usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | patches ROOT | shell ROOT PROGRAM | site FOLDER
@@ -53,11 +53,7 @@ def anchors(path):
 
 def check_links(root):
     errors = []
-    tests = {".".join(found) for file in (root / "tests").rglob("*.cpp")
-             for found in re.findall(r"TEST\w*\((\w+),\s*(\w+)\)", file.read_text())}
     for page in pages(root):
-        errors += [f"{page}: there is no test {name}" for name in re.findall(r"`([A-Z]\w+\.[A-Z]\w+)`", page.read_text())
-                   if name not in tests]
         for target in LINK.findall(outside_blocks(page)):
             if re.match(r"\w+:", target):
                 continue

@@ -62,6 +62,22 @@ TEST_P(SolverContract, FindsTheOptimumOfALinearQuadraticProblem) {
   EXPECT_LT(excess, tolerance) << "optimal " << optimal;
 }
 
+TEST_P(SolverContract, SamplesAreTheRolloutsOfASolve) {
+  int counted = 0;
+  const auto evaluator = simple(1, [&](float u, float, int) { return ++counted, u * u; });
+  const auto solver = make(1, small);
+  solver->solve(evaluator, {});  // dial_mpc makes more updates in it
+  counted = 0;
+  const int rollouts = solver->solve(evaluator, {}).rollouts;
+  EXPECT_EQ(rollouts, counted);
+  // The samples of these are particles, of an iteration, or beside those of guides.
+  const std::string& name = GetParam().name;
+  const bool beside = name.starts_with("svg_mppi_") || solver->name() == std::string("reverse_mppi") ||
+                      solver->name() == std::string("sv_mpc");
+  if (beside) return;
+  EXPECT_EQ(rollouts, std::min(*GetParam().options.find<int>("samples"), 300));
+}
+
 TEST_P(SolverContract, EverySampleIsWithinBounds) {
   if (GetParam().name == "sv_mpc_published") GTEST_SKIP() << "the published particles leave the bounds";
   const auto solver = make(1, small);

@@ -72,6 +72,8 @@ void bind_results(py::class_<Plan>& plan) {
   number("effective_sample_size", &SolveResult::effective_sample_size, "1 / sum of squared weights");
   number("collided_share", &SolveResult::collided_share, "fraction of the samples that collide, 0 ... 1");
   number("iterations", &SolveResult::iterations, "number of guide or distribution updates");
+  number("rollouts", &SolveResult::rollouts,
+         "number of control sequences evaluated, those of guides and choices included");
   number("temperature", &SolveResult::temperature, "the temperature in use");
 
   const auto array = [&](const char* name, auto make, auto SolveResult::*field, const char* help) {

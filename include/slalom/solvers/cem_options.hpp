@@ -15,7 +15,7 @@ struct CemOptions {
   static constexpr const char* method = "cem";  ///< name in configurations
 
   int horizon = 30;
-  int samples = 512;      ///< control sequences drawn in each iteration
+  int samples = 1024;     ///< control sequences drawn in a solve, a part in each iteration
   PerInput variance = 0;  ///< variance at the start of every solve
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();

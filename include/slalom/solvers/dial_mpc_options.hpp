@@ -17,7 +17,7 @@ struct DialMpcOptions {
   static constexpr const char* method = "dial_mpc";  ///< name in configurations
 
   int horizon = 30;
-  int samples = 512;  ///< control sequences drawn in each update
+  int samples = 1024;  ///< control sequences drawn in a solve, equally many in each update
   double temperature = 0;
   PerInput variance = 0;  ///< variance in the first update, at the last step
   PerInput input_min = -std::numeric_limits<double>::infinity();

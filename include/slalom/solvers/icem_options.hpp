@@ -17,7 +17,7 @@ struct IcemOptions {
   static constexpr const char* method = "icem";  ///< name in configurations
 
   int horizon = 30;
-  int samples = 320;      ///< control sequences drawn in the first iteration
+  int samples = 1024;     ///< control sequences drawn in a solve, the most of them in the first iteration
   PerInput variance = 0;  ///< variance at the start of every solve
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();

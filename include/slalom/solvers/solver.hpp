@@ -87,6 +87,7 @@ struct SolveResult {
   double collided_share = 0;          ///< share of the samples that collide, 0 ... 1
   double temperature = 0;             ///< lambda in use; 0 with `cem` and `icem`, which have none
   int iterations = 0;                 ///< guide or distribution updates made
+  int rollouts = 0;                   ///< control sequences evaluated, those of guides and choices included
   Symptom suspicion = Symptom::none;  ///< the first symptom of which this solve has the sign
   int suspicious_solves = 0;          ///< solves in a row with this suspicion, this one included
   StageTimes times;                   ///< times of the stages

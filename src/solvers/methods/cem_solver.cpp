@@ -21,15 +21,24 @@ struct Memory {
   bool add_mean = false;        ///< the mean is a sample of the last iteration
 };
 
-/// The number of samples of each iteration, of which the last entry holds for all later ones:
-/// max(K gamma^-i, 2 elites).
-std::vector<int> batch_sizes(int samples, int iterations, int elites, double decay) {
-  std::vector<int> sizes{samples};
-  const int min_size = std::min(samples, 2 * elites);
-  double wanted = samples;
-  while (static_cast<int>(sizes.size()) < iterations && sizes.back() > min_size && decay > 1) {
-    wanted /= decay;
-    sizes.push_back(std::max(saturate_cast<int>(std::round(wanted)), min_size));
+/// The number of elites in batches of which the first has so many samples.
+int elites_of(const CemOptions& o, int samples) {
+  return std::clamp(saturate_cast<int>(std::round(o.elite_share * samples)), 1, samples);
+}
+
+/// Divides the rollouts of a solve among its iterations, each of which has 1 / gamma of the samples of the
+/// one before, and at least twice the elites.
+std::vector<int> batch_sizes(const CemOptions& o, double decay) {
+  std::vector<double> ends;
+  double size = 1, end = 0;
+  for (int i = 0; i < o.iterations; ++i, size /= decay) ends.push_back(end += size);
+  std::vector<int> sizes;
+  int drawn = 0, least = 1;
+  for (const double to : ends) {
+    const int wanted = saturate_cast<int>(std::ceil(o.samples * (to / end))) - drawn;
+    sizes.push_back(sizes.empty() ? wanted : std::clamp(wanted, least, sizes[0]));
+    if (drawn == 0) least = std::min(2 * elites_of(o, sizes[0]), sizes[0]);
+    drawn += sizes.back();
   }
   return sizes;
 }
@@ -45,10 +54,12 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
         name_(name),
         options_(options),
         memory_(memory),
-        elites_(std::clamp(saturate_cast<int>(std::round(options.elite_share * options.samples)), 1,
-                           options.samples)),
+        sizes_(batch_sizes(options, memory.sample_decay)),
+        batch_(options.horizon, inputs, sizes_[0],
+               detail::NoiseShape(options.noise, options.horizon, inputs)),
+        elites_(elites_of(options, sizes_[0])),
         max_kept_(saturate_cast<int>(std::round(memory.kept_elite_share * elites_))),
-        order_(options.samples),
+        order_(sizes_[0]),
         kept_(static_cast<std::size_t>(max_kept_ + 1) * size()),
         mean_(size()),
         variance_(size()),
@@ -59,9 +70,6 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
         elite_mean_(size()),
         best_(size()),
         sums_(size()) {
-    for (const int samples : batch_sizes(options.samples, options.iterations, elites_, memory.sample_decay))
-      batches_.emplace_back(options.horizon, inputs, samples,
-                            detail::NoiseShape(options.noise, options.horizon, inputs));
     reset(options.seed);
   }
 
@@ -89,28 +97,25 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
     Status status = Status::deadline;
     float best_cost = std::numeric_limits<float>::infinity();
     int iteration = 0;
-    last_batch_ = 0;
     for (; iteration < options_.iterations && !deadline.passed(); ++iteration) {
-      last_batch_ = std::min(static_cast<std::size_t>(iteration), batches_.size() - 1);
-      detail::SampleSet& batch = batches_[last_batch_];
-      batch.propose(iteration == 0 ? request.proposals : SequenceList{});
-      statistics = sample(batch, evaluator, iteration, deadline);
+      batch_.set_samples(sizes_[static_cast<std::size_t>(iteration)]);
+      batch_.propose(iteration == 0 ? request.proposals : SequenceList{});
+      statistics = sample(evaluator, iteration, deadline);
       result_.times.draw += statistics.draw_time;
       result_.times.evaluate += statistics.evaluate_time;
       status = statistics.finite == 0 ? Status::degenerate : Status::ok;
       if (status != Status::ok || statistics.evaluated == 0) break;
-      refit(batch, best_cost);
+      refit(best_cost);
     }
-    const detail::SampleSet& batch = batches_[last_batch_];
-    if (status == Status::ok && (iteration < options_.iterations || statistics.evaluated < batch.samples()))
+    if (status == Status::ok && (iteration < options_.iterations || statistics.evaluated < batch_.samples()))
       status = Status::deadline;
     if (statistics.evaluated == 0) status = Status::deadline;
-    if (status == Status::ok && statistics.collided == batch.samples()) status = Status::all_collided;
+    if (status == Status::ok && statistics.collided == batch_.samples()) status = Status::all_collided;
     if (!(best_cost < std::numeric_limits<float>::infinity()))
       std::copy(mean_.begin(), mean_.end(), best_.begin());
     result_.status = status;
     result_.iterations = iteration;
-    detail::report_samples(batch, statistics, batch.sum_weights(batch.samples()), result_);
+    detail::report_samples(batch_, statistics, batch_.sum_weights(batch_.samples()), result_);
     next_solve();
   }
 
@@ -120,7 +125,7 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
     result_.inputs = options_.send_best ? best_ : mean_;
     result_.nominal = zero_;
     result_.variances = variance_;
-    if (result_.samples) detail::bind_samples(batches_[last_batch_], result_);
+    if (result_.samples) detail::bind_samples(batch_, result_);
   }
 
  private:
@@ -136,27 +141,27 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
 
   /// Draws the samples of an iteration, replaces the last ones before the proposals by what is remembered,
   /// and evaluates all.
-  detail::BatchStatistics sample(detail::SampleSet& batch, const BatchEvaluator& evaluator, int iteration,
+  detail::BatchStatistics sample(const BatchEvaluator& evaluator, int iteration,
                                  const Deadline& deadline) noexcept {
     for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(variance_[r]);
     const detail::SamplingDistribution to{mean_.data(), deviation_.data(), low().data(), high().data(),
-                                          zero_mean_from(batch.samples(), options_.zero_mean_share)};
+                                          zero_mean_from(batch_.samples(), options_.zero_mean_share)};
     const bool with_mean = memory_.add_mean && iteration + 1 == options_.iterations;
     if (with_mean) std::copy(mean_.begin(), mean_.end(), kept(kept_count_).begin());
-    return batch.draw_and_evaluate(evaluator, key(iteration), to, nullptr, pool(), deadline,
-                                   {kept_, kept_count_ + with_mean});
+    return batch_.draw_and_evaluate(evaluator, key(iteration), to, nullptr, pool(), deadline,
+                                    {kept_, kept_count_ + with_mean});
   }
 
   /// Fits the distribution to the elites, which have equal weights.
-  void refit(detail::SampleSet& batch, float& best_cost) noexcept {
+  void refit(float& best_cost) noexcept {
     const auto begin = detail::Clock::now();
-    const auto costs = batch.costs();
+    const auto costs = batch_.costs();
     const auto order = std::span(order_).first(costs.size());
     std::iota(order.begin(), order.end(), 0);
     // The smaller index wins ties, so that the choice does not depend on the library's algorithm.
     const auto better = [&](int a, int b) { return costs[a] < costs[b] || (costs[a] == costs[b] && a < b); };
     std::nth_element(order.begin(), order.begin() + elites_ - 1, order.end(), better);
-    std::fill(batch.weights().begin(), batch.weights().end(), 0.0f);
+    std::fill_n(batch_.weights().data(), batch_.stride(), 0.0f);
     int used = 0, best = order[0];
     for (int i = 0; i < elites_; ++i) {
       const int k = order[i];
@@ -165,15 +170,15 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
     }
     for (int i = 0; i < elites_; ++i) {
       const int k = order[i];
-      if (std::isfinite(costs[k])) batch.weights()[k] = 1.0f / used;
+      if (std::isfinite(costs[k])) batch_.weights()[k] = 1.0f / used;
     }
     if (costs[best] < best_cost) {
       best_cost = costs[best];
-      batch.values().get_sample(best, best_);
+      batch_.values().get_sample(best, best_);
     }
-    batch.weighted_sums(zero_.data(), sums_.data(), pool());
+    batch_.weighted_sums(zero_.data(), sums_.data(), pool());
     std::copy(sums_.begin(), sums_.end(), elite_mean_.begin());
-    batch.weighted_squares(elite_mean_.data(), sums_.data(), pool());
+    batch_.weighted_squares(elite_mean_.data(), sums_.data(), pool());
     const float kept_share = static_cast<float>(options_.smoothing);
     for (std::size_t r = 0; r < size(); ++r) {
       const float least = std::min(min_variance_[r], first_variance_[r]);
@@ -184,16 +189,15 @@ class CemSolver final : public detail::MethodSolver<CemSolver> {
     clamp(mean_.data());
     kept_count_ = std::min(max_kept_, used);
     std::partial_sort(order.begin(), order.begin() + kept_count_, order.begin() + elites_, better);
-    for (int i = 0; i < kept_count_; ++i) batch.values().get_sample(order[i], kept(i));
+    for (int i = 0; i < kept_count_; ++i) batch_.values().get_sample(order[i], kept(i));
     result_.times.update += detail::seconds(begin, detail::Clock::now());
   }
 
   const char* name_;
   CemOptions options_;
   Memory memory_;
-  std::vector<detail::SampleSet>
-      batches_;                 ///< samples of the iterations; the last one also of all later ones
-  std::size_t last_batch_ = 0;  ///< batch of the last iteration made
+  std::vector<int> sizes_;   ///< samples of each iteration
+  detail::SampleSet batch_;  ///< samples of the last iteration made
   int elites_;
   int max_kept_;
   int kept_count_ = 0;

@@ -1,12 +1,34 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 
 #include "slalom/solvers/solver_base.hpp"
 #include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::detail {
+
+/// An evaluator that counts the sequences it evaluates.
+class CountingEvaluator final : public BatchEvaluator {
+ public:
+  explicit CountingEvaluator(const BatchEvaluator& evaluator) : evaluator_(evaluator) {}
+
+  int count() const noexcept { return count_; }
+  int inputs() const noexcept override { return evaluator_.inputs(); }
+  double time_step() const noexcept override { return evaluator_.time_step(); }
+  bool whole_batches() const noexcept override { return evaluator_.whole_batches(); }
+  const Sampler* sampler() const noexcept override { return evaluator_.sampler(); }
+  void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
+                std::uint8_t* collided) const noexcept override {
+    count_.fetch_add(count, std::memory_order_relaxed);
+    evaluator_.evaluate(batch, first, count, costs, collided);
+  }
+
+ private:
+  const BatchEvaluator& evaluator_;
+  mutable std::atomic<int> count_{0};
+};
 
 /// The frame of the solvers of this library: how they are copied, and what begins and ends a solve. `Self`
 /// has
@@ -22,13 +44,15 @@ class MethodSolver : public SolverBase {
     if (result_.inputs.data() == chosen_.data()) copy->result_.inputs = copy->chosen_;
     return copy;
   }
-  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+  const SolveResult& solve(const BatchEvaluator& problem, const SolveRequest& request) noexcept override {
     const auto start = Clock::now();
+    const CountingEvaluator evaluator(problem);
     result_.times = {};
     static_cast<Self&>(*this).bind_result();
     const double reserve = std::min(reserve_, 0.8 * request.deadline);
     static_cast<Self&>(*this).compute(evaluator, request, Deadline(start, request.deadline - reserve));
     if (this->takes_proposals() && !Self::plan_is_cheapest) this->choose(evaluator, request.proposals);
+    result_.rollouts = evaluator.count();
     result_.times.total = seconds(start, Clock::now());
     learn_reserve(result_.times.total - request.deadline);
     return result_;

@@ -115,7 +115,7 @@ std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
 std::unique_ptr<Solver> make_solver(const DialMpcOptions& o, int inputs, std::shared_ptr<ThreadPool> pool) {
   validate_options(o, DialMpcOptions::method, inputs);
   const MppiOptions options{.horizon = o.horizon,
-                            .samples = o.samples,
+                            .samples = std::max(o.samples / o.iterations, 1),
                             .temperature = o.temperature,
                             .variance = o.variance,
                             .input_min = o.input_min,

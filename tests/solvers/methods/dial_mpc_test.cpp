@@ -32,17 +32,18 @@ TEST(DialMpc, UpdatesMoreOftenInTheFirstSolve) {
 }
 
 TEST(DialMpc, NoiseShrinksOverUpdatesAndTowardsTheStart) {
-  constexpr int steps = 5, samples = 40000;
+  constexpr int steps = 5;
   const auto flat = testing::sum_over_steps([](double, int) { return 0.0; });
   for (const int iterations : {1, 3}) {
     const auto solver = make_solver(DialMpcOptions{.horizon = steps,
-                                                   .samples = samples,
+                                                   .samples = 80000,
                                                    .variance = 4,
                                                    .first_iterations = iterations,
                                                    .iteration_decay = 0.6,
                                                    .horizon_decay = 0.4},
                                     1);
     const SolveResult& result = solver->solve(flat, {});
+    const int samples = result.samples->samples();
     for (int t = 0; t < steps; ++t) {
       const double deviation = 2 * std::pow(0.6, iterations - 1) * std::pow(0.4, 1 - t / (steps - 1.0));
       double squares = 0, sum = 0;

@@ -21,16 +21,19 @@ auto rough() {
 
 TEST(Icem, SamplesFallByTheDecayToTwiceTheElites) {
   const auto evaluator = rough();
-  const auto last_batch = [&](int iterations, double decay) {
+  const auto last_batch = [&](int samples, int iterations, double decay, int rollouts) {
     const auto solver = make_solver(
-        IcemOptions{.samples = 100, .iterations = iterations, .elite_share = 0.1, .sample_decay = decay}, 1);
-    return solver->solve(evaluator, {}).samples->samples();
+        IcemOptions{.samples = samples, .iterations = iterations, .elite_share = 0.1, .sample_decay = decay},
+        1);
+    const SolveResult& result = solver->solve(evaluator, {});
+    EXPECT_EQ(result.rollouts, rollouts);
+    return result.samples->samples();
   };
-  EXPECT_EQ(last_batch(1, 1.25), 100);
-  EXPECT_EQ(last_batch(2, 1.25), 80);
-  EXPECT_EQ(last_batch(4, 1.25), 51);  // 100 / 1.25^3 = 51.2
-  EXPECT_EQ(last_batch(20, 1.25), 20);
-  EXPECT_EQ(last_batch(20, 1), 100);
+  EXPECT_EQ(last_batch(100, 1, 1.25, 100), 100);
+  EXPECT_EQ(last_batch(180, 2, 1.25, 180), 80);
+  EXPECT_EQ(last_batch(295, 4, 1.25, 295), 51);   // 100, 80, 64, 51.2
+  EXPECT_EQ(last_batch(2000, 20, 1, 2000), 100);  // equal batches
+  EXPECT_EQ(last_batch(100, 20, 1.25, 133), 4);   // two elites
 }
 
 TEST(Icem, ElitesStayInTheNextSolve) {

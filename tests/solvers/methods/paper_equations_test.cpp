@@ -56,25 +56,29 @@ auto evaluator_of(double (*cost)(double)) {
   });
 }
 
-/// Equations (7) and (8): the solution is the mean of q* ~ exp(-S / lambda) N(nominal, Sigma), although the
-/// samples are drawn around the last solution.
+/// Equations (7) and (8): the solution is the mean of q* ~ exp(-S / lambda) N(nominal, Sigma), wherever the
+/// samples are drawn: around the last solution, as in the paper, or around the nominal sequence.
 TEST(PaperEquations, WeightsOfEquation8GiveTheMeanOfTheOptimalDistribution) {
   SvgMppiOptions options = printed();
   options.adapt_covariance = false;
   options.variance = 0.4;
   options.guides.iterations = 4;
   const auto evaluator = evaluator_of(two_ways);
-  const auto solver = make_solver(options, 1);
-  double last = 0, distance = 0;
-  for (int solve = 0; solve < 4; ++solve) {
-    const SolveResult& result = solver->solve(evaluator, {});
-    const double nominal = result.nominal[0], lambda = options.temperature;
-    const Function q = [&](double v) { return std::exp(-two_ways(v) / lambda) * normal(v, nominal, 0.4); };
-    EXPECT_NEAR(result.inputs[0], integral([&](double v) { return v * q(v); }) / integral(q), 0.01) << solve;
-    distance = std::max(distance, std::abs(nominal - last));
-    last = static_cast<double>(result.inputs[0]);
+  for (const SampleCentre centre : {SampleCentre::solution, SampleCentre::nominal}) {
+    options.guides.sample_around = centre;
+    const auto solver = make_solver(options, 1);
+    double last = 0, distance = 0;
+    for (int solve = 0; solve < 4; ++solve) {
+      const SolveResult& result = solver->solve(evaluator, {});
+      const double nominal = result.nominal[0], lambda = options.temperature;
+      const Function q = [&](double v) { return std::exp(-two_ways(v) / lambda) * normal(v, nominal, 0.4); };
+      EXPECT_NEAR(result.inputs[0], integral([&](double v) { return v * q(v); }) / integral(q), 0.01)
+          << solve;
+      distance = std::max(distance, std::abs(nominal - last));
+      last = static_cast<double>(result.inputs[0]);
+    }
+    EXPECT_GT(distance, 0.2) << "the control term of (8) must not vanish";
   }
-  EXPECT_GT(distance, 0.2) << "the control term of (8) must not vanish";
 }
 
 /// Equation (10) as printed says KL(Q || Q*) = -E[log q*/q] <= -log E[q*/q]. By Jensen's inequality it is the
@@ -107,6 +111,25 @@ TEST(PaperEquations, SurrogateGradientOfAQuadraticCost) {
   const SolveResult& result = solver->solve(evaluator, {});
   const double factor = 1 - 0.03 / (0.09 + 0.7 / 3);
   EXPECT_NEAR(result.nominal[0], 1.5 * (1 - std::pow(factor, 20)), 0.01);
+}
+
+/// The control term of (8) in (11), for S = 1/2 a (v - c)^2: guides go to c - lambda / a (u - n) / Sigma,
+/// with the last solution u and nominal sequence n. The smaller Sigma is, the more it holds them where they
+/// are.
+TEST(PaperEquations, ControlTermHoldsGuidesBack) {
+  SvgMppiOptions options = printed();
+  options.guides.weight = GuideWeight::importance;
+  options.guides.variance = options.variance = 0.2;
+  options.guides.iterations = 8;
+  options.adapt_covariance = false;
+  const auto evaluator = evaluator_of([](double v) { return 0.5 * 3 * (v - 1.5) * (v - 1.5); });
+  const auto solver = make_solver(options, 1);
+  const SolveResult& result = solver->solve(evaluator, {});
+  const double n = result.nominal[0], u = result.inputs[0];
+  const double share = 1 - std::pow(1 - 0.03 / (0.09 + 0.7 / 3), 8);
+  const double moved = share * (1.5 - 0.7 / 3 * (u - n) / 0.2 - n);
+  EXPECT_NEAR(solver->solve(evaluator, {}).nominal[0] - n, moved, 0.01);
+  EXPECT_LT(std::abs(moved), 0.6 * std::abs(share * (1.5 - n))) << "without the term";
 }
 
 /// Equation (11) for any cost: a step goes the fraction epsilon / Sigma_g of the way to the mean of exp(-S /
@@ -147,17 +170,34 @@ TEST(PaperEquations, NominalSequenceIsTheBestGuide) {
       << "a seed for which the first guide is not the best";
 }
 
+/// L K_g N rollouts of T steps move the guides: an eighth of the K of the batch after them, in L calls of
+/// which each needs the last.
+TEST(PaperEquations, GuidesTakeAnEighthOfTheRollouts) {
+  SvgMppiOptions options = printed();
+  options.samples = 8000;
+  options.guides.gradient_samples = 100;
+  int rollouts = 0;
+  const testing::FunctionEvaluator evaluator(1, [&](const SequenceBatch& batch, int k) {
+    ++rollouts;
+    return std::pair(two_ways(static_cast<double>(batch.data(0)[k])), false);
+  });
+  make_solver(options, 1)->solve(evaluator, {});
+  EXPECT_NEAR(rollouts - 8000, 10 * 1 * 100, 130) << "with the guide itself, in whole packs";
+}
+
 /// Equation (13) for S = 1/2 a (v - c)^2: exp(-S / lambda) has the variance lambda / a, and q* of equation
 /// (5) has 1 / (a / lambda + 1 / Sigma). As printed, the square root of that is the "variance".
 TEST(PaperEquations, FitRecoversTheVarianceOfAGaussian) {
-  const auto evaluator = evaluator_of([](double v) { return 0.5 * 3 * (v - 1.5) * (v - 1.5); });
-  const auto fitted = [&](auto change) {
+  const auto steep = evaluator_of([](double v) { return 0.5 * 3 * (v - 1.5) * (v - 1.5); });
+  const auto flat = evaluator_of([](double v) { return 0.5 * 0.3 * (v - 1.5) * (v - 1.5); });
+  const auto fitted = [&](auto change, const BatchEvaluator* evaluator = nullptr) {
     SvgMppiOptions options = printed();
     options.guides.variance = 0.5;
     options.guides.gradient_samples = 500;
     options.guides.iterations = 12;
     change(options);
-    return static_cast<double>(make_solver(options, 1)->solve(evaluator, {}).variances[0]);
+    return static_cast<double>(
+        make_solver(options, 1)->solve(evaluator ? *evaluator : steep, {}).variances[0]);
   };
   const double variance = 0.7 / 3, optimal = 1 / (1 / variance + 1 / 0.5);
   EXPECT_NEAR(fitted([](SvgMppiOptions& o) {
@@ -172,6 +212,16 @@ TEST(PaperEquations, FitRecoversTheVarianceOfAGaussian) {
                 o.published.fit_standard_deviation = true;
               }),
               std::sqrt(optimal), 0.01 * std::sqrt(optimal));
+  EXPECT_GT(fitted(printed_target, &flat), 1.5 * optimal) << "where q* hardly changes, the variance is large";
+  // With the fit as the next Sigma, as (5) and (13) ask for, it shrinks in every solve: no Sigma > 0 agrees.
+  double sigma = 0.5;
+  for (int n = 1; n < 4; ++n) {
+    sigma = fitted([&](SvgMppiOptions& o) {
+      printed_target(o);
+      o.guides.variance = sigma;
+    });
+    EXPECT_NEAR(1 / sigma, 1 / 0.5 + n / variance, 0.1) << n;
+  }
   EXPECT_EQ(fitted([&](SvgMppiOptions& o) {
               printed_target(o);
               o.guides.iterations = 2;

@@ -38,23 +38,6 @@ SvgMppiOptions options(SampleCentre centre) {
   return o;
 }
 
-TEST(SampleCentre, BothFormsEstimateTheMeanOfTheSameDistribution) {
-  // q*(v) ~ exp(-S(v) / lambda) N(v | n, Sigma) is a Gaussian here, whose mean is known.
-  for (const SampleCentre centre : {SampleCentre::nominal, SampleCentre::solution}) {
-    const auto solver = make_solver(options(centre), 1);
-    const auto evaluator = spring();
-    for (int i = 0; i < 60; ++i) solver->solve(evaluator, {});
-    const SolveResult& result = solver->solve(evaluator, {});
-    ASSERT_GT(result.effective_sample_size, 1000);
-    for (std::size_t t = 0; t < sample_steps; ++t) {
-      const double n = result.nominal[t], precision = 1 / static_cast<double>(result.variances[t]);
-      const double mean =
-          (n * precision + stiffness * wanted / temperature) / (precision + stiffness / temperature);
-      EXPECT_NEAR(result.inputs[t], mean, 0.03) << t;
-    }
-  }
-}
-
 TEST(SampleCentre, SamplesKeepTheirWeightsFarFromTheLastSolution) {
   // In the first solve the last solution is 0, and guides that take large sample_steps are ten deviations
   // away.
