@@ -8,7 +8,7 @@ namespace {
 
 constexpr double longest_path = 2.1e5;  // steps of a path, which an update takes anew where it is blocked
 constexpr double search_period = 0.1;   // s between searches while there is no way
-constexpr int cells_of_update = 60000;  // of a search, which goes on in the next update
+constexpr int cells_of_update = 60000;  // cells that an update searches; the next goes on
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
 constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place

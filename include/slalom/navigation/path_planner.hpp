@@ -57,7 +57,7 @@ class PathPlanner {
   maps::GridGeometry geometry_;
   maps::GridSearch grid_;
   std::size_t most_points_;
-  std::vector<Mark> marks_;  ///< of each cell
+  std::vector<Mark> marks_;  ///< [cell]
   float elsewhere_ = 1;      ///< factor of prices off the way that was kept
   maps::Point start_;        ///< m
   int priced_ = 0;           ///< cells whose prices are known
