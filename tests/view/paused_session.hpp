@@ -33,8 +33,11 @@ class PausedSession {
   void tell(const json& command) { say({command.dump()}); }
   /// Drives some steps from the one that is shown.
   void step(int steps) { tell({{"do", "step"}, {"ticks", steps}}); }
+  /// Lets the drive continue from the step that is shown: what followed is forgotten.
+  void continue_here() { say({R"({"do": "play"})", R"({"do": "pause"})"}); }
   /// Drives from the step that is shown up to another; its frame.
   std::string step_to(int tick) {
+    continue_here();
     step(tick - last("state")["tick"].get<int>());
     return frame(tick);
   }

@@ -1,6 +1,7 @@
 // Commands to the drive of an own problem: going back, changes that fail, other durations of steps.
 
 #include "slalom/problems/differential_drive.hpp"
+#include "slalom/solvers/controllers.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/view/serve.hpp"
 #include "view/paused_session.hpp"
@@ -12,6 +13,24 @@ using problems::DifferentialDrive;
 using State = DifferentialDrive::State<double>;
 
 int moves = 0;  // calls of the drawing's `move`
+
+/// A place on a line that is to follow a goal, which moves with the time.
+struct Follower {
+  template <class T>
+  struct State {
+    T x;
+  };
+  static constexpr int inputs = 1;
+  double dt = 0.1, goal = 0;
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 1>& u) const {
+    return {x.x + T(dt) * u[0]};
+  }
+  template <class T>
+  T stage_cost(const State<T>& x, const Input<T, 1>&) const {
+    return (x.x - T(goal)) * (x.x - T(goal));
+  }
+};
 
 /// A robot among discs. A disc that is moved beyond x = 50 m cannot be drawn.
 std::unique_ptr<Subject> robot() {
@@ -37,6 +56,45 @@ class OwnProblem : public ::testing::Test, protected PausedSession {
   OwnProblem() : PausedSession(robot()) { moves = 0; }
 };
 
+class MovingGoal : public ::testing::Test, protected PausedSession {
+ protected:
+  MovingGoal() : PausedSession(follower(), {.against = "mppi"}) {}
+  static std::unique_ptr<Subject> follower() {
+    Drawing<Follower> drawing{.pose = [](const Follower::State<double>& x) { return maps::Pose{x.x, 0, 0}; }};
+    drawing.shapes = [](const Follower& p) { return std::vector{disc(p.goal, 1, 0.1, ShapeKind::goal)}; };
+    drawing.clock = [](Follower& p, double time) { p.goal = 10 * time; };
+    return std::make_unique<detail::ControllerSubject<Follower>>(
+        SvgMppi{Follower{}, {.horizon = 10, .samples = 64, .input_min = {-5}, .input_max = {5}}},
+        std::move(drawing));
+  }
+  /// The place of the goal in a frame, m.
+  double goal(int tick) {
+    const std::string frame = this->frame(tick);
+    PayloadReader bodies(FrameReader(frame).block(Block::bodies));
+    bodies.take(4 + 24 + 4);
+    return bodies.f32();
+  }
+};
+
+TEST_F(MovingGoal, GoesWithTheClockOfTheDriveAlsoInThePast) {
+  step(8);
+  EXPECT_NEAR(goal(0), 0, 1e-6);
+  EXPECT_NEAR(goal(8), 8, 1e-5);
+  say({R"({"do": "seek", "tick": 3})"});
+  continue_here();
+  step(2);
+  EXPECT_NEAR(goal(5), 5, 1e-5);
+  say({R"({"do": "restart"})"});
+  EXPECT_NEAR(goal(0), 0, 1e-6);
+}
+
+TEST_F(MovingGoal, HasASecondMethodFromTheStartAndNoCollisions) {
+  step(2);
+  EXPECT_EQ(last("state")["ghost"], "mppi");
+  EXPECT_TRUE(std::isnan(figure("contacts", 1))) << "a state of this problem cannot collide";
+  EXPECT_FALSE(std::isnan(ghost_figure("x", 2)));
+}
+
 TEST_F(OwnProblem, ACommandWithAWrongValueChangesNothing) {
   say({R"({"do": "rate", "rate": 1e9})"});
   EXPECT_EQ(last("error")["message"], "rate: must be 0 for the maximum speed, or in [0.001, 100]");
@@ -52,6 +110,18 @@ TEST_F(OwnProblem, StepsAddUpAndAPauseEndsThem) {
   EXPECT_EQ(last("state")["newest"], 7);
   say({R"({"do": "step", "ticks": 3})", R"({"do": "pause"})"});
   EXPECT_EQ(last("state")["newest"], 7);
+}
+
+TEST_F(OwnProblem, AStepShowsWhatWasDrivenAndOnlyPlayForgetsIt) {
+  step(6);
+  say({R"({"do": "seek", "tick": 2})", R"({"do": "step", "ticks": 3})"});
+  EXPECT_EQ(last("state")["tick"], 5);
+  EXPECT_EQ(last("state")["newest"], 6);
+  say({R"({"do": "step", "ticks": 3})"});
+  EXPECT_EQ(last("state")["newest"], 8) << "one that was driven, and two more";
+  say({R"({"do": "seek", "tick": 2})"});
+  continue_here();
+  EXPECT_EQ(last("state")["newest"], 2);
 }
 
 TEST_F(OwnProblem, OptionsAreThoseOfTheStepThatIsShown) {
@@ -147,7 +217,7 @@ TEST_F(OwnProblem, AGhostDrivesBesideOnTheSameScene) {
   say({R"({"do": "move", "body": 1, "x": 3, "y": 1})"});
   EXPECT_EQ(moves, 2) << "the disc in both scenes";
   say({R"({"do": "seek", "tick": 6})"});
-  step(3);
+  step_to(9);
   EXPECT_EQ(figure("x", 9), x);
   EXPECT_EQ(ghost_figure("x", 9), ghost) << "both are driven again exactly";
   say({R"({"do": "restart"})"});

@@ -49,6 +49,23 @@ TEST(ViewServer, ServesItsPageAndNothingElse) {
   EXPECT_NE(answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\n\r\n").find(" 405 "), std::string::npos);
 }
 
+TEST(ViewServer, TakesTheNextPortWhereOneIsTaken) {
+  const Server first({}, page);
+  const Server second({.port = first.port(), .ports = 10}, page);
+  EXPECT_GT(second.port(), first.port());
+  EXPECT_LT(second.port(), first.port() + 10);
+  EXPECT_THROW(Server({.port = first.port()}, page), std::runtime_error);
+}
+
+TEST(ViewServer, MakesAResourceAtItsFirstRequest) {
+  int made = 0;
+  auto make = std::async(std::launch::deferred, [&] { return "<p>" + std::to_string(++made) + "</p>"; });
+  const Server server({}, {{"/", {.type = "text/html", .body = {}, .later = make.share()}}});
+  EXPECT_EQ(made, 0);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_TRUE(answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").ends_with("<p>1</p>"));
+}
+
 TEST(ViewServer, ServesItsPageCompressedOrPlainWithHeaders) {
   const Server server({}, {{"/", {"text/html", "<p>here</p>", "compressed"}}});
   for (const auto& [accepted, packed] : {std::pair("Accept-Encoding: gzip\r\n", true),

@@ -1,4 +1,4 @@
-// A session of a car: the drive of the command line, going back exactly, edits, and the introduction.
+// A session of a car: the drive of the command line, going back exactly, edits, and a ghost.
 
 #include "view/car/car_subject.hpp"
 #include "view/paused_session.hpp"
@@ -269,18 +269,17 @@ TEST_F(ViewSession, LoadsOnlyListedCourses) {
   EXPECT_EQ(state["seed"], "9");
 }
 
-SessionOptions introduction() {
+SessionOptions with_ghost() {
   SessionOptions options = session_options();
   options.scenario = {
       .course = "stag", .method = "svg_mppi", .config = "default", .seed = 77, .obstacles = 1};
   options.against = "mppi";
-  options.introduction = true;
   return options;
 }
 
-class Introduction : public ViewSession {
+class TwoControllers : public ViewSession {
  protected:
-  Introduction() : ViewSession(introduction()) {}
+  TwoControllers() : ViewSession(with_ghost()) {}
 };
 
 /// The frame of the ghost within a frame.
@@ -288,17 +287,7 @@ std::string_view ghost_of(const std::string& frame) {
   return FrameReader(frame).block(Block::ghost_frame);
 }
 
-/// Returns the distance by which the parked car lies ahead of the car of a frame, m.
-double parked_ahead(std::string_view frame) {
-  PayloadReader bodies(FrameReader(frame).block(Block::bodies));
-  bodies.take(4 + 4);  // the count, and the number and kind of the car
-  const double x = bodies.f32(), y = bodies.f32(), yaw = bodies.f32();
-  bodies.take(2 * sizeof(float) + 4);
-  const double dx = bodies.f32() - x;
-  return std::cos(yaw) * dx + std::sin(yaw) * (bodies.f32() - y);
-}
-
-TEST_F(Introduction, FramesHoldWhatBothControllersConsider) {
+TEST_F(TwoControllers, FramesHoldWhatBothControllersConsider) {
   const std::string both = step_to(3);
   const std::string_view ghost = ghost_of(both);
   ASSERT_FALSE(ghost.empty());
@@ -314,34 +303,6 @@ TEST_F(Introduction, FramesHoldWhatBothControllersConsider) {
             FrameReader(both).block(Block::bodies).substr(4 + 24));
   tell({{"do", "ghost"}, {"method", ""}});
   EXPECT_TRUE(ghost_of(step_to(4)).empty());
-}
-
-TEST_F(Introduction, SlowsDownUntilBothCarsHavePassed) {
-  json state = last("state");
-  EXPECT_EQ(state["introduction"], true);
-  EXPECT_EQ(state["rate"], 0.5) << "nothing is near";
-  std::vector<double> rates{0.5};
-  bool has_passed = false;
-  for (int tick = 4; tick < 160 && rates.back() != 1; tick += 4) {
-    const std::string both = step_to(tick);
-    state = last("state");
-    if (state["rate"] != rates.back()) rates.push_back(state["rate"]);
-    has_passed = parked_ahead(both) < 0 && parked_ahead(ghost_of(both)) < 0;
-  }
-  EXPECT_EQ(rates, (std::vector<double>{0.5, 0.1, 1}));
-  EXPECT_TRUE(has_passed);
-  tell({{"do", "restart"}});
-  EXPECT_EQ(last("state")["rate"], 0.5) << "it is shown again";
-}
-
-TEST_F(Introduction, EndsWithAnotherMethodOrRate) {
-  tell({{"do", "method"}, {"method", "mppi"}});
-  EXPECT_EQ(last("state")["introduction"], false);
-  EXPECT_EQ(last("state")["rate"], 1) << "real time";
-  tell({{"do", "restart"}});
-  tell({{"do", "rate"}, {"rate", 2}});
-  step_to(30);
-  EXPECT_EQ(last("state")["rate"], 2);
 }
 
 }  // namespace

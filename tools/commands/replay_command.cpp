@@ -1,5 +1,6 @@
 
 #include "slalom/core/error.hpp"
+#include "slalom/view/serve.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/commands/replay_against.hpp"
 #include "tools/live_view/view_setup.hpp"
@@ -27,7 +28,7 @@ int replay(const ReplayArguments& arguments) {
   const view::ServerOptions options = server_options(arguments.host, arguments.port, "");
   view::Server server(options, {{"/", {"text/html; charset=utf-8", page_of_recording(recording)}}});
   const InterruptFlag interrupt;
-  print_address(view::address_of(server, options));
+  view::print_address(view::address_of(server, options));
   while (!interrupt.raised()) {
     server.wait(std::chrono::milliseconds(100));
     server.take();

@@ -22,13 +22,11 @@ struct ViewArguments {
   std::uint16_t port = 8400;
   std::string token, against, problem, room;
   bool record_all = false, record_times = false;
-  bool introduction = false;
 };
 
 /// A scenario in which MPPI averages two ways around a parked car and SVG-MPPI commits to one: the program of
 /// the paper, and a car in the middle of a straight.
 void set_introduction(ViewArguments& arguments) {
-  arguments.introduction = true;
   arguments.scenario.course = "stag";
   arguments.scenario.config = "published";
   arguments.scenario.obstacles = 1;
@@ -58,7 +56,7 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
   };
   options.choices = choices();
   options.against = arguments.against;
-  options.introduction = arguments.introduction;
+  options.introduction = true;
   options.further_arguments = further_arguments(arguments.scenario);
   view::add_files(options, {.program = std::string("slalom ") + version(),
                             .everything = arguments.record_all,
@@ -66,11 +64,29 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
   return options;
 }
 
-int view(const ViewArguments& arguments) {
+/// Returns the page of the introduction: a recording of its first 1.75 s.
+std::string introduction_page() {
+  ViewArguments arguments;
+  set_introduction(arguments);
+  view::Server nobody({}, {});
+  view::SessionOptions options = session_options(arguments);
+  auto subject = options.load(options.scenario);
+  view::StoredDrive drive = view::Session(std::move(subject), nobody, std::move(options)).record(70);
+  drive.ticks.erase(drive.ticks.begin(), drive.ticks.begin() + 34);  // nothing is near yet
+  std::string page = view::replay_page(drive, true);
+  return page.insert(page.find("<meta"), "<meta name=\"introduction\" />");
+}
+
+int view(const ViewArguments& arguments, bool begins_with_introduction) {
   view::ServerOptions address = server_options(arguments.host, arguments.port, arguments.token);
   if (!arguments.room.empty() || !arguments.problem.empty()) address.framed_by = view::notebooks;
-  view::Server server(address, {{"/", {"text/html; charset=utf-8", view::page_html(), view::page_gzip()}}});
-  view::SessionOptions options;
+  const std::string html = "text/html; charset=utf-8";
+  view::Server server(
+      address,
+      {{"/", {html, view::page_html(), view::page_gzip()}},
+       {"/introduction",
+        {.type = html, .body = {}, .later = std::async(std::launch::deferred, introduction_page).share()}}});
+  view::SessionOptions options{.against = arguments.against, .introduction = true};
   std::unique_ptr<view::Subject> subject;
   if (!arguments.room.empty()) {
     subject =
@@ -83,7 +99,7 @@ int view(const ViewArguments& arguments) {
   }
   view::Session session(std::move(subject), server, std::move(options));
   const InterruptFlag interrupt;
-  print_address(view::address_of(server, address));
+  view::print_address(view::address_of(server, address, begins_with_introduction ? "/introduction" : "/"));
   while (!interrupt.raised()) session.turn(std::chrono::milliseconds(50));
   return 0;
 }
@@ -110,28 +126,31 @@ void declare_view(Subcommand& command) {
                "Recordings saved from the page contain wall-clock times");
   command.option("--host", arguments->host,
                  "Address to listen on; addresses other than loopback require a token");
-  command.option("--port", arguments->port, "Port to listen on; 0 means any free port");
+  command.option("--port", arguments->port,
+                 "Port to listen on, or one of the next nine; 0 means any free port");
   command.option("--token", arguments->token,
                  "Token that the page must present; random if --host is not a loopback address");
   command.examples(
-      {"view", "view --course fox --against mppi --obstacles 5", "view --problem quadrotor",
+      {"view", "view --course fox --against mppi --obstacles 5", "view --problem quadrotor --against mppi",
        "view --room crowd-crossing"},
-      "Without options of the scenario, the page opens with an introduction: svg_mppi and mppi side by "
-      "side on the same seed, in slow motion before a parked car.");
+      "Without options of the scenario, it prints the address of an introduction: svg_mppi and mppi side by "
+      "side on the same seed before a parked car, recorded and explained.");
   command.action([arguments, &command] {
     for (const auto& [name, value] :
          {std::pair("--problem", arguments->problem), {"--room", arguments->room}}) {
       if (value.empty()) continue;
-      if (!command.given_only({name, "--method", "--seed", "--host", "--port", "--token"}))
-        throw CommandLineError(name, "has only --method, --seed, --host, --port and --token beside it");
-      return view(*arguments);
+      if (!command.given_only({name, "--method", "--against", "--seed", "--host", "--port", "--token"}))
+        throw CommandLineError(name,
+                               "has only --method, --against, --seed, --host, --port and --token beside it");
+      return view(*arguments, false);
     }
-    if (command.given_only({"--host", "--port", "--token", "--record-all", "--record-times", "--threads"}))
-      set_introduction(*arguments);
+    const bool is_new =
+        command.given_only({"--host", "--port", "--token", "--record-all", "--record-times", "--threads"});
+    if (is_new) set_introduction(*arguments);
     ScenarioArguments& scenario = arguments->scenario;
     if (!scenario.obstacle.empty() && !command.given("--obstacles"))
       scenario.obstacles = static_cast<int>(scenario.obstacle.size());
-    return view(*arguments);
+    return view(*arguments, is_new);
   });
 }
 

@@ -26,6 +26,10 @@ struct Solving {
   PerInput low, high;
 };
 
+Shape goal(double x, double y, double radius) {
+  return view::disc(x, y, radius, view::ShapeKind::goal);
+}
+
 template <class P>
 std::unique_ptr<view::SolverSubject> subject(P problem, const Solving& solving, view::Drawing<P> drawing) {
   SolverOptions options = solver_options(solving.method);
@@ -44,11 +48,13 @@ std::unique_ptr<view::SolverSubject> pendulum(Solving solving) {
   const auto rod = [tip](const State& x) {
     return std::vector<view::Line>{view::Line{{0, 0}, {tip(x).x, tip(x).y}}};
   };
+  const auto upright = [](const Pendulum&) { return std::vector{goal(0, 1, 0.06)}; };
   solving.horizon = 60, solving.low = -5, solving.high = 5;
   return subject(Pendulum{}, solving,
                  {.start = {down, 0},
                   .pose = tip,
                   .figure = rod,
+                  .shapes = upright,
                   .states = {"angle, rad", "rate, rad/s"},
                   .inputs = {"torque, N·m"},
                   .title = "pendulum"});
@@ -66,7 +72,7 @@ std::unique_ptr<view::SolverSubject> cart_pole(Solving solving) {
   };
   const auto ends = [](const CartPole& p) {
     return std::vector<Shape>{view::box({-p.track - 0.3, 0, 0}, 0.1, 0.4),
-                              view::box({p.track + 0.3, 0, 0}, 0.1, 0.4)};
+                              view::box({p.track + 0.3, 0, 0}, 0.1, 0.4), goal(0, 1, 0.06)};
   };
   solving.horizon = 75, solving.low = -15, solving.high = 15;
   return subject(CartPole{}, solving,
@@ -91,7 +97,7 @@ std::unique_ptr<view::SolverSubject> quadrotor(Solving solving) {
     const double inner = p.gap_centre - 0.5 * p.gap_width, outer = p.gap_centre + 0.5 * p.gap_width;
     return std::vector{view::box({middle, 0, 0}, thick, 2 * inner),
                        view::box({middle, outer + 1, 0}, thick, 2),
-                       view::box({middle, -outer - 1, 0}, thick, 2)};
+                       view::box({middle, -outer - 1, 0}, thick, 2), goal(p.goal_x, p.goal_z, 0.15)};
   };
   const auto rotors = [](const State& x) {
     const double c = 0.25 * std::cos(x.tilt), s = 0.25 * std::sin(x.tilt);
@@ -120,8 +126,12 @@ std::unique_ptr<view::SolverSubject> arm(Solving solving) {
     return std::vector<view::Line>{
         view::Line{{0, 0}, {p.elbow.x, p.elbow.y}, {p.wrist.x, p.wrist.y}, {p.hand.x, p.hand.y}}};
   };
-  const auto ball = [](const Arm& p) { return std::vector{view::disc(p.ball_x, p.ball_y, p.ball_radius)}; };
-  const auto move = [](Arm& p, int, const Point& to) { p.ball_x = to.x, p.ball_y = to.y; };
+  const auto ball = [](const Arm& p) {
+    return std::vector{view::disc(p.ball_x, p.ball_y, p.ball_radius), goal(p.goal_x, p.goal_y, 0.03)};
+  };
+  const auto move = [](Arm& p, int shape, const Point& to) {
+    (shape ? p.goal_x : p.ball_x) = to.x, (shape ? p.goal_y : p.ball_y) = to.y;
+  };
   State start;
   std::copy(Arm::start.begin(), Arm::start.end(), start.angle);
   std::vector<std::string> angles, speeds;

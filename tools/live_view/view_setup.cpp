@@ -60,14 +60,9 @@ view::ServerOptions server_options(const std::string& host, std::uint16_t port, 
   view::ServerOptions options;
   options.host = host;
   options.port = port;
+  options.ports = 10;
   options.token = token.empty() && !view::is_loopback(host) ? random_token() : token;
   return options;
-}
-
-void print_address(const std::string& address) {
-  std::printf("%s\n", address.c_str());
-  std::printf("open this address in a browser; Ctrl-C ends\n");
-  std::fflush(stdout);
 }
 
 }  // namespace slalom::tools

@@ -16,7 +16,5 @@ std::string further_arguments(const ScenarioArguments& arguments);
 /// The address to listen on. Everybody who can reach the server can control the drive; so other machines need
 /// a token, which is random if none is given. Throws IoError where an address cannot hold the token.
 view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token);
-/// Prints the address of the page.
-void print_address(const std::string& address);
 
 }  // namespace slalom::tools

@@ -112,6 +112,8 @@ class CarSource : public virtual FrameSource {
   SolveResult observe(const ControlStep& step, double prediction_step) {
     step_ = &step;
     prediction_step_ = prediction_step;
+    // The car may have touched something between two steps alone.
+    collides_ = step.seen.collides() || step.collisions > std::exchange(collisions_, step.collisions);
     const vehicle::PlannerOutput& out = step.output;
     inputs_.assign(out.inputs.begin(), out.inputs.end());
     SolveResult solve = out.solve ? *out.solve : SolveResult{};
@@ -193,14 +195,15 @@ class CarSource : public virtual FrameSource {
     return to.take_blocks();
   }
   std::optional<StepMeasures> measures() const override {
-    return StepMeasures{step_->time, step_->output.tick_time, step_->seen.collides(), step_->collisions,
-                        prediction_step_};
+    return StepMeasures{step_->time, step_->output.tick_time, collides_, step_->collisions, prediction_step_};
   }
 
  private:
   std::shared_ptr<const SubjectFacts> facts_;
   const ControlStep* step_ = nullptr;
   double prediction_step_ = 0;  ///< s
+  bool collides_ = false;       ///< since the step before
+  int collisions_ = INT_MAX;    ///< until the step before, where that is known
   std::vector<double> inputs_;
 };
 

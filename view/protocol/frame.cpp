@@ -144,11 +144,15 @@ class StepEncoder {
     to_.put({static_cast<double>(step_.tick), m.time, now_.x, now_.y, now_.yaw});
     to_.put({static_cast<double>(source_.status(solve_)), known(solve_.minimum_cost)});
     to_.put({known(solve_.expected_cost), known(solve_.effective_sample_size)});
-    to_.put({solve_.samples ? solve_.samples->samples() : 0.0, known(solve_.collided_share)});
+    to_.put({solve_.samples ? solve_.samples->samples() : 0.0,
+             facts_.can_collide ? known(solve_.collided_share) : none});
     to_.put({known(solve_.temperature), static_cast<double>(solve_.iterations), 1e3 * m.update_time});
-    to_.put({1e3 * step_.period, frame_.collides ? 1.0 : 0.0});
-    to_.put({static_cast<double>(m.collisions + (counts ? 0 : frame_.collides)), m.prediction_step});
+    const auto collision = [&](double value) { return facts_.can_collide ? value : none; };
+    to_.put({1e3 * step_.period, collision(frame_.collides)});
+    to_.put({collision(m.collisions + (counts ? 0 : frame_.collides)), m.prediction_step});
     to_.put({static_cast<double>(step_.method), cost, static_cast<double>(solve_.symptom())});
+    const bool leads_into = is_solved && !rolled_.collisions.empty() && rolled_.collisions[0] >= 0;
+    to_.put(leads_into ? rolled_.collisions[0] : none);
     for (const double sum : sums) to_.put(sum);
     if (facts_.figures.empty()) {
       for (const double value : step_.state) to_.put(value);
@@ -271,7 +275,7 @@ std::vector<std::string> scalar_names(const SubjectFacts& facts) {
   std::vector<std::string> names = words_of(
       "tick time x y yaw status minimum_cost expected_cost effective_samples samples collided_share "
       "temperature iterations tick_ms deadline_ms contact contacts prediction_step method plan_cost "
-      "symptom");
+      "symptom plan_collides_at");
   for (const std::string& term : facts.terms) names.push_back(term + "_cost");
   if (facts.figures.empty()) {
     for (const std::string& state : facts.states) names.push_back("state." + state);

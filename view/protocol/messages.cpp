@@ -177,7 +177,6 @@ std::string state_message(const DriveState& facts) {
                     {"ghost_label", facts.ghost_label},
                     {"generation", facts.generation},
                     {"edited", facts.edited},
-                    {"introduction", facts.introduction},
                     {"bounds", {b.x0, b.y0, b.x1, b.y1}}});
 }
 

@@ -61,7 +61,6 @@ struct DriveState {
   double control_period = 0;                ///< s
   int tick = -1, newest = -1, oldest = -1;  ///< the one shown, and the range of the stored ones
   bool paused = false, real_time = false, edited = false;
-  bool introduction = false;  ///< the scenario with which the program starts without arguments, unchanged
   std::string ghost{};        ///< its method; empty if there is none
   std::string ghost_label{};  ///< name of the ghost
   int generation = 0;         ///< number of drives that have begun

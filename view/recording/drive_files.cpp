@@ -33,14 +33,6 @@ void write(const StoredDrive& drive, Writer& to) {
   to.finish();
 }
 
-Message make_replay(const StoredDrive& drive, const RecorderOptions& files) {
-  std::vector<std::string> segments;
-  ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); },
-                        files.everything);
-  write(drive, replay);
-  return file_message(drive.name + ".html", replay_page(page_html(), segments));
-}
-
 Message make_recording(const StoredDrive& drive, RecorderOptions files) {
   const Scanner scanner = drive.scanner.value_or(Scanner{});
   files.settings = {{"settings", json_text({{"command_line", drive.command_line}})}};
@@ -54,6 +46,13 @@ Message make_recording(const StoredDrive& drive, RecorderOptions files) {
 
 }  // namespace
 
+std::string replay_page(const StoredDrive& drive, bool everything) {
+  std::vector<std::string> segments;
+  ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); }, everything);
+  write(drive, replay);
+  return replay_page(page_html(), segments);
+}
+
 void add_files(SessionOptions& options, const RecorderOptions& files) {
   options.packing = {pack, unpack};
   options.save = [files, writing = std::make_shared<std::future<void>>()](
@@ -62,7 +61,8 @@ void add_files(SessionOptions& options, const RecorderOptions& files) {
       throw std::invalid_argument("the previous file is still being written");
     *writing = std::async(std::launch::async, [=, drive = std::move(drive)] {
       try {
-        send(what == "replay" ? make_replay(drive, files) : make_recording(drive, files));
+        send(what == "replay" ? file_message(drive.name + ".html", replay_page(drive, files.everything))
+                              : make_recording(drive, files));
       } catch (const std::exception& error) {
         send({shared(json_text({{"type", "error"}, {"message", error.what()}})), false});
       }

@@ -56,11 +56,17 @@ struct Server::Implementation {
 
   void listen() {
     const ServerOptions& options = all.options;
-    const tcp::endpoint endpoint(parse_address(options.host), options.port);
+    tcp::endpoint endpoint(parse_address(options.host), options.port);
     try {
       acceptor.open(endpoint.protocol());
       acceptor.set_option(asio::socket_base::reuse_address(true));
-      acceptor.bind(endpoint);
+      error_code error;
+      for (int left = options.port == 0 ? 1 : options.ports; left > 0; --left) {
+        acceptor.bind(endpoint, error);
+        if (error != asio::error::address_in_use) break;
+        endpoint.port(static_cast<std::uint16_t>(endpoint.port() + 1));
+      }
+      if (error) throw boost::system::system_error(error);
       acceptor.listen();
       port = acceptor.local_endpoint().port();
     } catch (const std::exception& error) {
@@ -145,10 +151,10 @@ ServerCounters Server::counters() const {
   return {all.messages, all.frames_dropped, all.refused};
 }
 
-std::string address_of(const Server& server, const ServerOptions& options) {
+std::string address_of(const Server& server, const ServerOptions& options, const std::string& path) {
   const bool is_v6 = options.host.find(':') != std::string::npos;
   return "http://" + (is_v6 ? "[" + options.host + "]" : options.host) + ":" + std::to_string(server.port()) +
-         "/" + (options.token.empty() ? "" : "?token=" + options.token);
+         path + (options.token.empty() ? "" : "?token=" + options.token);
 }
 
 }  // namespace slalom::view

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <future>
 #include <map>
 #include <memory>
 #include <string>
@@ -23,6 +24,7 @@ namespace slalom::view {
 struct ServerOptions {
   std::string host = "127.0.0.1";    ///< IP address to listen on
   std::uint16_t port = 0;            ///< port to listen on; 0: any that is free
+  int ports = 1;                     ///< ports from `port` on, the first of which that is free is taken
   std::string token{};               ///< if not empty, page and WebSocket need `?token=`
   std::string framed_by = "'none'";  ///< pages that may show this one inside, as in `frame-ancestors`
   std::size_t max_message = 16384;   ///< bytes of a message from a client; a longer one ends the connection
@@ -39,6 +41,7 @@ struct Resource {
   std::string type;    ///< Content-Type
   std::string body;    ///< content
   std::string gzip{};  ///< the body compressed with gzip, for clients that ask for it; empty: none
+  std::shared_future<std::string> later{};  ///< the body, where the first request is to make it
 };
 
 /// A message to clients; shared, so that one copy serves all.
@@ -91,8 +94,8 @@ class Server {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The address of the page.
-std::string address_of(const Server& server, const ServerOptions& options);
+/// The address of a page.
+std::string address_of(const Server& server, const ServerOptions& options, const std::string& path = "/");
 
 /// Whether an address can be reached from this machine only. Throws std::invalid_argument if it is not an IP
 /// address.

@@ -9,33 +9,15 @@ constexpr std::size_t max_changes = 200;  // that can be undone
 // One is not always enough for a plan on the other side of an obstacle that was moved into the way.
 constexpr int solves_of_change = 3;
 
-// The introduction, in slow motion until driven body and ghost have passed the obstacle.
-constexpr double approaching_rate = 0.5, passing_rate = 0.1;
-constexpr double reach = 4;             // m from the body to an obstacle ahead, about the length of a plan
-constexpr double beside = 1.5;          // m to either side of the body's axis
-constexpr double behind = 0.6;          // m from the centre of a car to that of a car that it has passed
-constexpr int max_passing_ticks = 120;  // a car may be blocked
-
-/// Whether a shape that does not move lies ahead of the body, or beside it.
-bool has_obstacle_near(Run& run) {
-  const maps::Pose body = run.subject->poses(run.state).front();
-  return std::ranges::any_of(run.subject->shapes(), [&](const Shape& shape) {
-    const auto [ahead, aside] = maps::inverse_transform(body, {shape.pose.x, shape.pose.y});
-    return shape.kind != ShapeKind::opponent && ahead > -behind && ahead < reach && std::abs(aside) < beside;
-  });
-}
-
 }  // namespace
 
 Session::Session(std::unique_ptr<Subject> subject, Server& server, SessionOptions options)
     : server_(server), audience_(server), options_(std::move(options)) {
   state_.names = options_.scenario;
-  state_.introduction = options_.introduction;
   if (options_.choices.methods.empty())
     for (const char* name : solver_names()) options_.choices.methods.emplace_back(name);
   install(std::move(subject));
   if (!options_.against.empty()) set_ghost(options_.against);
-  slow_down();
 }
 
 /// Drives a subject from its start, without a ghost.
@@ -57,7 +39,7 @@ void Session::begin(Drives drives) {
   held_.reset();
   if (!facts().course.empty()) state_.bounds = bounds_of(facts().course);
   laps_ = 0;
-  viewed_ = passing_ticks_ = -1;
+  viewed_ = -1;
   steps_left_ = 0;
   ++state_.generation;
   pace_ = {};
@@ -67,7 +49,6 @@ void Session::begin(Drives drives) {
     std::erase_if(*changes, [](const Change& each) { return each.before.index() == 1; });
     for (Change& each : *changes) each.ticks = 0;
   }
-  slow_down();
   if (state_.paused) tick();
 }
 
@@ -125,22 +106,11 @@ void Session::keep(DrivenTick tick) {
   timeline_.keep(std::move(tick));
   const std::size_t laps = drives_->laps().size();
   is_state_changed_ = is_state_changed_ || laps != std::exchange(laps_, laps);
-  slow_down();
 }
 
-/// Keeps the introduction in slow motion until both have passed the obstacle.
-void Session::slow_down() {
-  if (!state_.introduction || passing_ticks_ > max_passing_ticks) return;
-  const bool is_near =
-      has_obstacle_near(drives_->driven) || (drives_->ghost && has_obstacle_near(*drives_->ghost));
-  if (is_near)
-    ++passing_ticks_;
-  else if (passing_ticks_ >= 0)
-    passing_ticks_ = max_passing_ticks + 1;
-  const bool is_over = passing_ticks_ > max_passing_ticks;
-  const double rate = is_over ? 1 : passing_ticks_ >= 0 ? passing_rate : approaching_rate;
-  is_state_changed_ = is_state_changed_ || rate != state_.rate;
-  state_.rate = rate;
+StoredDrive Session::record(int steps) {
+  while (timeline_.newest() + 1 < steps) tick();
+  return stored();
 }
 
 /// Applies an action to the drives, from the tick that is shown on. While nothing moves, this tick is driven

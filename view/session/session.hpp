@@ -25,7 +25,7 @@ struct SessionOptions {
   Choices choices{};
   std::string further_arguments{};  ///< arguments of the equivalent command line; begins with a space
   std::string against{};            ///< method of a ghost from the start, if any
-  bool introduction = false;        ///< in slow motion until the first obstacle has been passed
+  bool introduction = false;        ///< whether the server has the page of the introduction
   Packing packing{};                ///< form of stored frames
   /// Writes a file, perhaps in a thread of its own, and sends it to a page with `send`. `what`: recording or
   /// replay. Without it, the page cannot save a drive. Throws errors for the user.
@@ -43,6 +43,8 @@ class Session {
   /// Executes the commands that have come, and drives one step if it is due; waits for one, for `at_most` at
   /// most.
   void turn(std::chrono::nanoseconds at_most = {});
+  /// Drives until the drive has some steps, and returns it. For a session without a page.
+  StoredDrive record(int steps);
   /// Number of messages that were not valid commands.
   std::uint64_t refused() const noexcept { return audience_.refused(); }
   /// Whether ticks of a command "step" are left.
@@ -65,7 +67,6 @@ class Session {
   DrivenTick drive(Drives& drives, int solves);
   Frame drive(Run& run, StepRecord& record, double& update_time);
   void keep(DrivenTick tick);
-  void slow_down();
 
   // Time.
   Clock::duration until_due() const;
@@ -103,6 +104,7 @@ class Session {
   std::string hello() const;
   std::string state() const;
   OptionsFacts options_facts() const;
+  StoredDrive stored() const;
 
   const SubjectFacts& facts() const { return drives_->driven.subject->facts(); }
   double control_period() const { return drives_->driven.period; }
@@ -133,7 +135,6 @@ class Session {
   int viewed_ = -1;                       ///< step that is shown while it is not the newest
   int steps_left_ = 0;                    ///< steps of a command "step" that are still to come
   std::size_t laps_ = 0;                  ///< number of laps that have ended
-  int passing_ticks_ = -1;                ///< ticks of the introduction since an obstacle was near; -1 before
   std::array<double, 2> last_updates_{};  ///< s of wall clock, of what is driven and of the ghost
   Clock::time_point last_state_ = Clock::now(), last_frame_ = last_state_;
 };

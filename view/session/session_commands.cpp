@@ -76,10 +76,6 @@ ScenarioNames chosen_scenario(ScenarioNames names, const Json& command, const Ch
   return names;
 }
 
-bool is_among(std::initializer_list<std::string_view> names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
 }  // namespace
 
 void Session::obey(std::uint64_t client, const std::string& what, const Json& command) {
@@ -93,11 +89,6 @@ void Session::obey(std::uint64_t client, const std::string& what, const Json& co
   is_state_changed_ = true;
   if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_options(what, command))
     throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command of this page");
-  // Another scenario or another rate ends the introduction.
-  const bool is_other = is_among({"scenario", "method", "fork", "ghost", "set", "reset_options"}, what);
-  if (!state_.introduction || !(is_other || is_among({"rate", "real_time"}, what))) return;
-  state_.introduction = false;
-  if (is_other) state_.rate = 1;
 }
 
 bool Session::obey_edit(const std::string& what, const Json& command) {

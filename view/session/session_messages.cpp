@@ -30,7 +30,8 @@ std::string Session::hello() const {
                                     {"scenario", bool(options_.load)},
                                     {"real_time", facts().can_delay},
                                     {"save", bool(options_.save)},
-                                    {"ghost", !settings().method.empty()}})
+                                    {"ghost", !settings().method.empty()},
+                                    {"introduction", options_.introduction}})
     if (holds) can.emplace_back(word);
   return hello_message(facts(), options_.choices, stored_seconds, control_period(), can);
 }
@@ -67,18 +68,22 @@ void Session::save(std::uint64_t client, const std::string& what) {
   if (what != "replay" && what != "recording")
     throw std::invalid_argument("what: must be recording or replay");
   if (timeline_.empty()) throw std::invalid_argument("nothing has been driven yet");
-  const OptionsFacts options = options_facts();
-  StoredDrive drive{.hello = hello(),
-                    .options = options_message(options),
-                    .state = state(),
-                    .scene = scene_,
-                    .ticks = timeline_.stored(),
-                    .name = "slalom-" + facts().title + "-" + options.names.method + "-" +
-                            std::to_string(timeline_.newest()),
-                    .command_line = command_line(options),
-                    .scanner = facts().scanner};
-  options_.save(what, std::move(drive),
+  options_.save(what, stored(),
                 [&server = server_, client](Message message) { server.send(client, std::move(message)); });
+}
+
+/// Returns the last minute.
+StoredDrive Session::stored() const {
+  const OptionsFacts options = options_facts();
+  return {.hello = hello(),
+          .options = options_message(options),
+          .state = state(),
+          .scene = scene_,
+          .ticks = timeline_.stored(),
+          .name = "slalom-" + facts().title + "-" + options.names.method + "-" +
+                  std::to_string(timeline_.newest()),
+          .command_line = command_line(options),
+          .scanner = facts().scanner};
 }
 
 }  // namespace slalom::view

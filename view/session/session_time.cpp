@@ -29,12 +29,21 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
     state_.paused = true;
     steps_left_ = 0;
     publish_newest();
-  } else if (what == "play" || what == "step") {
-    const int steps = what == "step" ? field::steps(command) : 0;
+  } else if (what == "play") {
     continue_from_shown();
+    state_.paused = waiting_ = false;
+    steps_left_ = 0;
+    pace_ = {};
+  } else if (what == "step") {
+    int steps = field::steps(command);
+    if (viewed_ >= 0) {  // driven steps are shown, not driven again
+      const int shown = std::min(steps, timeline_.newest() - viewed_);
+      show_step(viewed_ + shown);
+      steps -= shown;
+    }
     waiting_ = false;
-    state_.paused = steps > 0;
-    steps_left_ = state_.paused ? std::min(steps_left_ + steps, field::max_steps) : 0;
+    state_.paused = true;
+    steps_left_ = std::min(steps_left_ + steps, field::max_steps);
     pace_ = {};
   } else if (what == "seek") {
     show_step(field::integer(command, "tick"));

@@ -12,6 +12,7 @@ ServerOptions server_options(const ServeOptions& given) {
   ServerOptions options;
   options.host = given.host;
   options.port = given.port;
+  options.ports = 10;
   options.token = given.token;
   options.framed_by = notebooks;
   return options;
@@ -19,10 +20,15 @@ ServerOptions server_options(const ServeOptions& given) {
 
 }  // namespace
 
+void print_address(const std::string& address) {
+  std::printf("%s\nopen this address in a browser; Ctrl-C ends\n", address.c_str());
+  std::fflush(stdout);
+}
+
 struct View::Implementation {
   Implementation(std::unique_ptr<Subject> subject, const ServeOptions& options)
       : server(server_options(options), {{"/", {"text/html; charset=utf-8", page_html(), page_gzip()}}}),
-        session((subject->restart(), std::move(subject)), server) {
+        session((subject->restart(), std::move(subject)), server, {.against = options.against}) {
     address = address_of(server, server_options(options));
     if (options.ready) options.ready(address);
   }

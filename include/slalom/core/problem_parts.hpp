@@ -30,6 +30,12 @@ using TerminalCostOf = decltype(terminal_cost<P, double>(
     std::declval<const P&>(), std::declval<const StateOf<P, double>&>(),
     look_up<P, double>(std::declval<const P&>(), std::declval<const StateOf<P, double>&>())));
 
+/// Whether a stage cost says whether its state collides.
+template <class P>
+inline constexpr bool can_collide = requires(StageCostOf<P> cost) {
+  cost.collided;
+};
+
 template <class C>
 inline constexpr int terms_in = 0;  ///< 0: a cost in one piece
 template <class T, int N>

@@ -12,7 +12,7 @@
 ///
 ///     slalom::view::serve(controller, {.start = {0, 0, 0}, .x = &State::x, .y = &State::y});
 ///
-/// and open http://127.0.0.1:8400.
+/// and open the address that it prints.
 namespace slalom::view {
 
 /// How a problem is drawn. Only `start`, and `x` and `y` or `pose`, must be given.
@@ -33,6 +33,9 @@ struct Drawing {
   std::function<std::vector<Shape>(const P&)> shapes{};
   /// Puts a shape elsewhere, by its index in `shapes`. Without it, shapes cannot be dragged.
   std::function<void(P&, int shape, const maps::Point& to)> move{};
+  /// Lets the problem's clock run: sets what changes with time. Called before each solve with the s since the
+  /// start.
+  std::function<void(P&, double time)> clock{};
   std::optional<maps::OccupancyGrid> map{};  ///< drawn under all else
   /// The real system; by default the problem itself.
   std::function<State(const State&, const Inputs&)> plant{};
@@ -43,12 +46,16 @@ struct Drawing {
 /// Where the page is served.
 struct ServeOptions {
   std::string host = "127.0.0.1";  ///< IP address to listen on
-  std::uint16_t port = 8400;       ///< 0: any that is free
+  std::uint16_t port = 8400;       ///< the first that is free from here on, of ten; 0: any
   /// Must stand in the address as ?token=...; needed for addresses that other machines can reach.
   std::string token{};
-  /// Called with the address of the page once it is served.
+  std::string against{};  ///< a second method, which drives beside the first from the start
+  /// Called with the address of the page once it is served; by default `serve` prints it.
   std::function<void(const std::string& address)> ready{};
 };
+
+/// Prints the address of a page, and how to end.
+void print_address(const std::string& address);
 
 /// A page that shows a subject.
 class View {
@@ -82,7 +89,15 @@ class ControllerSubject final : public SolverSubject {
       : controller_(std::move(controller)), drawing_(std::make_shared<const Drawing<P>>(std::move(drawing))) {
     const Drawing<P>& d = *drawing_;
     if (!d.pose && !(d.x && d.y)) throw std::invalid_argument("drawing: must have x and y, or pose");
-    SubjectFacts facts{d.title, d.states, d.inputs, {}, d.length, d.width, d.x && d.y, bool(d.move), d.map};
+    SubjectFacts facts{.title = d.title,
+                       .states = d.states,
+                       .inputs = d.inputs,
+                       .length = d.length,
+                       .width = d.width,
+                       .can_place = d.x && d.y,
+                       .can_move = bool(d.move),
+                       .can_collide = slalom::detail::can_collide<P>,
+                       .map = d.map};
     fill_names(facts.states, state_size, "state", "Drawing.states");
     fill_names(facts.inputs, P::inputs, "input", "Drawing.inputs");
     for (const CostTerm& term : slalom::detail::cost_terms_of<P>()) facts.terms.emplace_back(term.name);
@@ -108,7 +123,12 @@ class ControllerSubject final : public SolverSubject {
     return false;
   }
 
+  void restart() override {
+    time_ = 0;
+    SolverSubject::restart();
+  }
   const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
+    if (drawing_->clock) drawing_->clock(controller_.problem(), time_);
     const Plan<P> plan = controller_.solve(state_of(state.data()), request);
     plan_.clear();
     for (const Inputs& u : plan.inputs) plan_.insert(plan_.end(), u.value, u.value + P::inputs);
@@ -121,6 +141,7 @@ class ControllerSubject final : public SolverSubject {
     return slalom::roll_out<P>(controller_.evaluator(), state_of(state.data()), sequences, steps);
   }
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
+    time_ += time_step();
     Inputs u;
     std::copy_n(input.begin(), P::inputs, u.value);
     const State x = state_of(state.data());
@@ -177,15 +198,17 @@ class ControllerSubject final : public SolverSubject {
   std::shared_ptr<const Drawing<P>> drawing_;
   std::shared_ptr<const SubjectFacts> facts_;
   std::vector<double> plan_;
+  double time_ = 0;  ///< s since the start
 };
 
 }  // namespace detail
 
-/// Serves a page that shows how a controller, of which it takes a copy, solves its problem. Returns once
-/// `stop` is set. Throws like the constructor of `View`.
+/// Serves a page that shows how a controller, of which it takes a copy, solves its problem, and prints its
+/// address. Returns once `stop` is set. Throws like the constructor of `View`.
 template <Problem P>
 void serve(const Controller<P>& controller, std::type_identity_t<Drawing<P>> drawing,
-           const ServeOptions& options = {}, const std::atomic<bool>& stop = false) {
+           ServeOptions options = {}, const std::atomic<bool>& stop = false) {
+  if (!options.ready) options.ready = print_address;
   View view(std::make_unique<detail::ControllerSubject<P>>(controller, std::move(drawing)), options);
   while (!stop) view.turn(std::chrono::milliseconds(50));
 }

@@ -56,6 +56,7 @@ struct SubjectFacts {
   std::vector<std::string> states{}, inputs{}, terms{};  ///< names of states, inputs and cost terms
   double length = 0, width = 0;                          ///< m, of the body; 0: it is a dot
   bool can_place = false, can_move = false;              ///< whether body and shapes can be dragged
+  bool can_collide = true;                               ///< whether a state can collide
   std::optional<maps::OccupancyGrid> map{};              ///< drawn under the scene
   std::vector<std::string> statuses{};  ///< names of the values of FrameSource::status, if it has its own
 

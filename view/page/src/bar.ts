@@ -1,5 +1,5 @@
 import { ask, send } from "./connection";
-import { all, click, get, showIcon } from "./dom";
+import { all, click, get, say, showIcon } from "./dom";
 import { isReplay, on, page, period, scalar, tell } from "./page";
 import { past } from "./past";
 import { toast } from "./toast";
@@ -8,14 +8,21 @@ import { toast } from "./toast";
 
 let isPaused = false; // as it will be once the server has executed what was asked
 let pending = 0; // questions that it has not answered
+/** Whether an earlier step is shown, after which Play forgets what was driven. */
+const isPast = () => !isReplay && page.state!.tick < page.state!.newest;
 function showPlay() {
   showIcon(get("play"), isPaused ? "play" : "pause");
-  get("play").lastChild!.textContent = isPaused ? "Play" : "Pause";
+  say(get("play").lastChild!, !isPaused ? "Pause" : isPast() ? "Play from here" : "Play");
   get("play").classList.toggle("primary", isPaused);
 }
 export function play() {
   if (!page.state) return;
+  const { tick, newest } = page.state;
+  const forgets = isPaused && isPast();
   const answer = ask({ do: isPaused ? "play" : "pause" });
+  const seconds = (steps: number) => `${(steps * period()).toFixed(2)} s`;
+  if (forgets)
+    toast(`Drives on from ${seconds(tick)}; the ${seconds(newest - tick)} after it are forgotten.`);
   isPaused = !isPaused;
   pending += 1;
   showPlay();
@@ -73,8 +80,9 @@ function showTime() {
   const seconds = (steps: number) => (steps * period()).toFixed(1);
   const behind = (newest - Number(slider.value)) * period();
   const now = behind > 1e-6 ? `−${behind.toFixed(2)} s` : `${(scalar("time") || 0).toFixed(2)} s`;
-  get("time").textContent = isReplay ? `${seconds(state.tick)} of ${seconds(newest)} s` : now;
-  slider.setAttribute("aria-valuetext", get("time").textContent!);
+  const text = isReplay ? `${seconds(state.tick)} of ${seconds(newest)} s` : now;
+  say(get("time"), text);
+  slider.setAttribute("aria-valuetext", text);
 }
 
 on("state", (state) => {

@@ -18,6 +18,11 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/** Changes a text where it differs: the same text again would cost another layout. */
+export function say(node: Node, text: string) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
 /** Shows whether a button is pressed. */
 export function press(button: HTMLElement, on: boolean) {
   button.classList.toggle("on", on);

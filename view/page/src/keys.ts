@@ -1,5 +1,6 @@
 import * as bar from "./bar";
 import { click, get, make } from "./dom";
+import { next } from "./introduction";
 import { can } from "./page";
 import { openFork } from "./panes/fork";
 import { redo, undo } from "./panes/options";
@@ -45,6 +46,7 @@ const shortcuts: Shortcut[] = [
   ["K", "fork from the control step shown", { k: openFork }, "ghost"],
   ["S", "save or share: picture, replay, recording, link", { s: () => saveMenu.toggle() }],
   ["L", "layers", { l: () => get("layers").toggleAttribute("open") }],
+  ["N", "the next part of the introduction", { n: next }],
   ["T", "dark or light", { t: () => get("theme").click() }],
   ["?", "this help", { "?": help }],
 ];

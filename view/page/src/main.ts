@@ -1,6 +1,5 @@
 import "./style.css";
 import { acknowledge, ask, connect, send, waiting } from "./connection";
-import * as introduction from "./introduction";
 import "./keys";
 import { draw, isReplay, page, scalar } from "./page";
 import "./panes/charts";
@@ -29,5 +28,5 @@ requestAnimationFrame(turn);
 
 // For tests, and for debugging in the console: the news, and the modules.
 const figures = { scalar, waiting: () => waiting, isReplay };
-const modules = { past, introduction, layers, scene, stage, send, ask };
+const modules = { past, layers, scene, stage, send, ask };
 Object.assign(window, { slalom: Object.assign(Object.create(page), figures, modules) });

@@ -4,6 +4,8 @@ import type { Theme } from "./scene/palette";
 /** The recording inside this page, if there is one. */
 export const recordings = document.querySelectorAll('script[type="application/x-slalom-replay"]');
 export const isReplay = recordings.length > 0;
+/** Whether this page is the introduction, which is a recording. */
+export const isIntroduction = document.querySelector("meta[name=introduction]") !== null;
 
 /** The program inside this page's folder that takes the place of a server, if there is one. */
 export const solver = document.querySelector<HTMLMetaElement>('meta[name="solver"]')?.content;

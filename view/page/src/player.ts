@@ -1,4 +1,4 @@
-import { recordings } from "./page";
+import { isIntroduction, recordings } from "./page";
 import type { State, Text } from "./protocol";
 
 async function unpacked(script: Element): Promise<ArrayBuffer> {
@@ -41,6 +41,7 @@ export class Player {
       this.say({ type: "error", message: `The recording cannot be read: ${error}` });
     }
     this.loading = false;
+    if (isIntroduction) [this.at, this.paused, this.rate] = [0, true, 0.1];
     this.tell();
   }
 

@@ -189,7 +189,7 @@ export interface OptionDeclaration extends Texts<"name" | "symbol" | "unit" | "h
 export interface Hello extends Numbers<"protocol" | "history_seconds" | "control_period"> {
   type: "hello";
   title: string;
-  can: string[]; // place, move, add, scenario, real_time, save, ghost
+  can: string[]; // place, move, add, scenario, real_time, save, ghost, introduction
   scalars: string[];
   statuses: string[];
   symptoms: Texts<"name" | "explanation">[];
@@ -215,7 +215,6 @@ export interface State extends Texts<Names>, Numbers<Counts | Ticks> {
   paused: boolean;
   real_time: boolean;
   edited: boolean;
-  introduction?: boolean;
   bounds: [number, number, number, number]; // m, around all that is drawn
   laps: LapRow[];
 }

@@ -1,4 +1,4 @@
-import { all, get } from "./dom";
+import { all, get, say } from "./dom";
 import { methodOf, on, page, scalar } from "./page";
 import type { Hello } from "./protocol";
 
@@ -13,7 +13,7 @@ const words = (name: string) => name.replace(/_/g, " ");
 /** Shows a figure before its unit, with its name; hides both where there is none. */
 function show(value: HTMLElement, text: string | undefined) {
   value.hidden = (value.previousElementSibling as HTMLElement).hidden = text === undefined;
-  value.firstChild!.textContent = text ?? "";
+  say(value.firstChild!, text ?? "");
 }
 
 function showFigures() {
@@ -21,7 +21,7 @@ function showFigures() {
     const value = scalar(each.dataset.scalar!);
     show(each, Number.isFinite(value) ? value.toFixed(Number(each.dataset.digits)) : undefined);
   }
-  get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
+  say(get("lap-number"), `lap ${scalar("lap") + 1}`);
   const ghost = page.frame?.ghostFrame?.scalars;
   const driven = (of?: Float64Array) => scalar("lap", of) + scalar("progress", of); // laps
   const ahead = ghost && page.state ? (driven() - driven(ghost)) * page.state.length : NaN;
@@ -37,11 +37,13 @@ function showLabels({ statuses, symptoms }: Hello) {
   const parts = [methodOf(page.frame)];
   if (status && status !== "ok") parts.push(words(status));
   if (isShown) parts.push(words(symptom.name));
-  label.textContent = parts.join(" · ");
+  say(label, parts.join(" · "));
   label.title = isShown ? symptom.explanation : "";
+  get("why").hidden = !isShown;
+  say(get("why"), label.title);
   label.classList.toggle("blocked", status === "blocked");
   const { ghost_label, ghost } = page.state ?? {};
-  get("ghost-label").textContent = `ghost · ${ghost_label || ghost}`;
+  say(get("ghost-label"), `ghost · ${ghost_label || ghost}`);
 }
 
 for (const what of ["frame", "state", "past"] as const)

@@ -73,8 +73,6 @@ narrow.addEventListener("change", fold);
 fold();
 
 const wanted = new URLSearchParams(location.hash.slice(1)); // scenario in the address, still to be set
-/** Whether nobody has told this page what to show. */
-export const isNew = wanted.size === 0;
 const forget = () => [...wanted.keys()].forEach((key) => wanted.delete(key));
 const changed = () => page.options?.changed ?? [];
 

@@ -1,6 +1,6 @@
 import { click } from "./dom";
 import { tell } from "./page";
-import { themes, type Theme } from "./scene/palette";
+import { css, rampColour, themes, type Rgba, type Theme } from "./scene/palette";
 
 // The dark or the light theme: the one chosen before, else the one that the system prefers.
 
@@ -16,6 +16,8 @@ function stored(): Name | null {
   }
 }
 
+const opaque = ([r, g, b]: Rgba): Rgba => [r, g, b, 1];
+
 let name: Name = stored() ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
 /** The colours of the scene. */
 export let theme: Theme = themes[name];
@@ -23,7 +25,12 @@ export let theme: Theme = themes[name];
 /** Colours the page. */
 export function showTheme() {
   theme = themes[name];
-  document.documentElement.dataset.theme = name;
+  const { dataset, style } = document.documentElement;
+  dataset.theme = name;
+  // Texts have the colours of the scene, too.
+  const colours = Object.entries({ ...theme, candidates: rampColour(theme, 0, 1) });
+  for (const [of, colour] of colours)
+    if (Array.isArray(colour)) style.setProperty(`--scene-${of}`, css(opaque(colour as Rgba)));
   tell("theme", theme);
 }
 

@@ -1,12 +1,12 @@
 import uPlot from "uplot";
 import { send } from "../connection";
-import { click, get } from "../dom";
+import { click, get, say } from "../dom";
 import { on, page, period, scalar, tell } from "../page";
 import { ghostPast, past } from "../past";
 import { fileName } from "../scenario";
 import { download } from "../toast";
 import { axis, Chart, css, fromZero, padded, vertical } from "./plots";
-import { isEstimate, stripsOf, unitOf, type Strip } from "./strips";
+import { stripsOf, unitOf, type Strip } from "./strips";
 
 // Strip charts of the last seconds, the covariance along the plan, a histogram of the planner's times.
 
@@ -127,9 +127,7 @@ function collect() {
         return steps.map((row) => (row && Number.isFinite(row[index]) ? row[index] * scale : null));
       }),
     );
-    // Without tyres that slip there are no estimates, and their charts are hidden.
-    const isKnown = (i: number) => isEstimate(p.strip.lines[i]) && p.columns[i].some((v) => v !== null);
-    p.chart.box.hidden = p.strip.lines.some(isEstimate) && !p.strip.lines.some((_, i) => isKnown(i));
+    p.chart.box.hidden = !p.columns.flat().some((v) => v !== null);
   }
 }
 
@@ -137,7 +135,7 @@ function collect() {
 function draw(now = false) {
   const time = performance.now();
   if (!now && time - drawn < Math.max(100, 6 * took)) return;
-  if (root.offsetParent === null || !page.hello || !page.frame) return;
+  if (page.shown !== "charts" || !isVisible || !page.hello || !page.frame) return;
   drawn = time;
   collect();
   plotted.forEach(drawStrip);
@@ -149,7 +147,11 @@ function draw(now = false) {
 on("drawn", () => draw());
 on("shown", (pane) => pane === "charts" && draw(true));
 on("theme", () => draw(true));
-new ResizeObserver(() => draw(true)).observe(root);
+let isVisible = false;
+new ResizeObserver(([{ contentRect }]) => {
+  isVisible = contentRect.width > 0;
+  draw(true);
+}).observe(root);
 
 function drawStrip({ strip, chart, columns, ghost }: Plotted) {
   const lines = strip.lines.map(({ colour, dash, right }, i) => {
@@ -179,11 +181,11 @@ function drawCovariance(variances: Float32Array | undefined) {
   const step = scalar("prediction_step");
   const x = Array.from({ length: variances.length + 1 }, (_, i) => +(i * step).toFixed(4));
   const y = Array.from(variances, Math.sqrt);
-  const accent = css("--accent");
+  const blue = css("--blue");
   const paths = uPlot.paths.stepped!({ align: 1 });
   covariance.draw("s", [x, [...y, y[y.length - 1]]], {
     scales: { y: { range: fromZero(1e-3) } },
-    series: [{ stroke: accent, fill: accent + "33", width: 1.6, paths }],
+    series: [{ stroke: blue, fill: blue + "33", width: 1.6, paths }],
   });
 }
 
@@ -195,7 +197,7 @@ function showValues() {
     for (const [k, line] of strip.lines.entries()) {
       const v = i < 0 ? null : columns[k][i];
       const of = line.name === "effective_samples" && samples > 0 ? ` of ${samples}` : "";
-      chart.values[k].textContent = `${line.label} ${v == null ? "–" : v.toFixed(line.digits ?? 2)}${of}`;
+      say(chart.values[k], `${line.label} ${v == null ? "–" : v.toFixed(line.digits ?? 2)}${of}`);
     }
 }
 

@@ -1,7 +1,7 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { make } from "../dom";
-import { page } from "../page";
+import { page, redraw } from "../page";
 import type { Line } from "./strips";
 
 const bins = 30; // bars of a histogram
@@ -19,6 +19,7 @@ export class Chart {
   readonly shown: boolean[]; // lines
   plot?: uPlot;
   private made = ""; // as what the plot was made
+  private width = 0; // pixels
 
   constructor(root: HTMLElement, title: string, lines: Pick<Line, "colour" | "dash">[]) {
     this.values = lines.map(() => make("span", { className: "numbers" }));
@@ -42,6 +43,10 @@ export class Chart {
       return button;
     });
     this.box.append(make("h2", {}, title, ...legend), this.holder);
+    new ResizeObserver(([{ contentRect }]) => {
+      this.width = Math.floor(contentRect.width);
+      redraw();
+    }).observe(this.holder);
     root.append(this.box);
   }
 
@@ -50,7 +55,7 @@ export class Chart {
    * the number of lines or `variant` has changed.
    */
   draw(unit: string, data: uPlot.AlignedData, options: Partial<uPlot.Options>, variant = "") {
-    const width = Math.floor(this.holder.clientWidth);
+    const { width } = this;
     if (width < 50) return;
     const made = [width, page.theme!.dark, data.length, variant].join();
     if (this.made === made) return this.plot!.setData(data);

@@ -32,13 +32,13 @@ const strip = (title: string, ...lines: Named[]): Strip => ({
 const known: Strip[] = [
   strip(
     "Steering, rad",
-    ["command_steer", "command", "accent", { digits: 3 }],
+    ["command_steer", "command", "blue", { digits: 3 }],
     ["steer", "wheels", "text", { dash, digits: 3 }],
   ),
-  strip("Speed, m/s", ["command_speed", "command", "accent"], ["speed", "car", "text", { dash }]),
+  strip("Speed, m/s", ["command_speed", "command", "blue"], ["speed", "car", "text", { dash }]),
   strip(
     "Slip angle, rad",
-    ["slip_estimate", "estimate", "accent", { digits: 3 }],
+    ["slip_estimate", "estimate", "blue", { digits: 3 }],
     ["slip", "car", "text", { dash, digits: 3 }],
   ),
   strip("Grip used, % of friction times gravity", [
@@ -49,12 +49,12 @@ const known: Strip[] = [
   ]),
   strip(
     "Friction",
-    ["friction_estimate", "estimate", "accent"],
-    ["friction_relied_on", "relied on", "blue", { dash }],
+    ["friction_estimate", "estimate", "blue"],
+    ["friction_relied_on", "relied on", "text", { dash }],
   ),
   strip(
     "Steering, estimates",
-    ["steering_gain_estimate", "gain", "accent", { digits: 3 }],
+    ["steering_gain_estimate", "gain", "blue", { digits: 3 }],
     ["delay_estimate", "delay, ms", "violet", { dash, right: true, digits: 0, scale: 1000 }],
   ),
   strip(
@@ -63,7 +63,7 @@ const known: Strip[] = [
     ["temperature", "temperature", "warn", { dash, right: true }],
   ),
   strip("Collided candidates, %", ["collided_share", "share", "bad", { digits: 0, scale: 100 }]),
-  strip("Clearance, m", ["clearance", "to wall or obstacle", "accent"]),
+  strip("Clearance, m", ["clearance", "to wall or obstacle", "blue"]),
 ];
 
 /**
@@ -71,11 +71,11 @@ const known: Strip[] = [
  * differ in lightness, too, and some are dashed.
  */
 const looks: [colour: string, dash?: number[]][] = [
-  ["accent"],
-  ["text", dash],
   ["blue"],
-  ["violet", dash],
+  ["text", dash],
   ["warn"],
+  ["violet", dash],
+  ["faint"],
   ["bad", [2, 2]],
 ];
 
@@ -116,6 +116,3 @@ export function stripsOf({ scalars, terms, inputs, states }: Hello): Strip[] {
 export const unitOf = ({ title }: Strip, { label }: Line) =>
   /, (\S+)$/.exec(label)?.[1] ??
   (title.startsWith("Steering, estimates") ? "" : (/, (\S+)/.exec(title)?.[1] ?? ""));
-
-/** Whether a line has no value where tyres do not slip. */
-export const isEstimate = (line: Line) => line.name.endsWith("_estimate") || line.name === "grip_used";

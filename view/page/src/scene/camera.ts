@@ -6,6 +6,7 @@ export class Camera {
   y = 0;
   zoom = 60; // pixels per m
   turn = 0; // rad, of the map on the screen
+  fitting = 60; // pixels per m with which all that is drawn is seen
   follow: Follow = "follow";
   width = 1;
   height = 1;
@@ -48,7 +49,7 @@ export class Camera {
   }
   zoomAt(px: number, py: number, factor: number) {
     const [x, y] = this.toMap(px, py);
-    this.zoom = Math.min(2000, Math.max(0.4, this.zoom * factor));
+    this.zoom = Math.min(2000 * this.fitting, Math.max(this.fitting / 20, this.zoom * factor));
     if (this.follow !== "free") return;
     const [nx, ny] = this.toMap(px, py);
     this.x += x - nx;
@@ -75,6 +76,6 @@ export class Camera {
     this.turn = 0;
     this.x = (x0 + x1) / 2;
     this.y = (y0 + y1) / 2;
-    this.zoom = Math.max(0.4, Math.min(this.freeWidth / (x1 - x0), this.freeHeight / (y1 - y0)));
+    this.fitting = this.zoom = Math.min(this.freeWidth / (x1 - x0), this.freeHeight / (y1 - y0));
   }
 }

@@ -36,7 +36,6 @@ const rows = layers.map(([name, title, text]) => {
   return { name, box, swatch, row: make("label", { title: text, hidden: true }, box, title, swatch) };
 });
 get("layer-list").append(...rows.map(({ row }) => row));
-get<HTMLDetailsElement>("layers").open = innerWidth >= 900;
 
 /** Shows a layer, or hides it. */
 export function show(layer: Layer, isShown: boolean) {
@@ -51,7 +50,9 @@ select.onchange = () => {
   term = select.value;
   const isDense = term === "density";
   for (const id of ["ramp", "scale-range"]) get(id).hidden = isDense;
-  const text = isDense ? "opaque where they are many" : "low to high cost; line width = weight";
+  const text = isDense
+    ? "opaque where they are many"
+    : "low to high cost; line width = weight; red: collides";
   get("scale-text").textContent = text;
   redraw();
 };

@@ -106,12 +106,10 @@ export class Painter {
 }
 
 /** A painter of a whole canvas of the page, sharp on its screen. */
-export function painterOf(canvas: HTMLCanvasElement): Painter {
+export function painterOf(canvas: HTMLCanvasElement, size: { width: number; height: number }): Painter {
   const ratio = Math.min(2, window.devicePixelRatio || 1);
   const pen = canvas.getContext("2d", { alpha: false })!;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) =>
-    Math.max(1, Math.round(side * ratio)),
-  );
+  const [width, height] = [size.width, size.height].map((side) => Math.max(1, Math.round(side * ratio)));
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
   pen.reset();
   return new Painter(pen, ratio);

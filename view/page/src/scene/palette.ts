@@ -1,5 +1,7 @@
-// Colours computed in OKLab (B. Ottosson, 2020), where equal steps look equal. The cost ramp runs from blue
-// to yellow with lightness that only rises, so it reads the same with any kind of colour vision and in grey.
+// Colours by meaning. Those in between are computed in OKLab (B. Ottosson, 2020), where equal steps look equal. The
+// ramp of costs runs from blue to yellow with lightness in one direction, so it reads the same with any kind of colour
+// vision and in grey. No other thing is green but the plan. Pictures and videos have the colours of the light theme
+// (tools/drawing/colour.hpp).
 
 export type Rgba = [number, number, number, number];
 
@@ -22,15 +24,14 @@ function oklch(lightness: number, chroma: number, hue: number): [number, number,
 
 const steps = 256;
 
+/** From the best to the worst: from blue to yellow, and on both grounds from what stands out to what is faint. */
 function ramp(dark: boolean): Float32Array {
   const table = new Float32Array(steps * 3);
+  const [best, worst] = dark ? [0.86, 0.46] : [0.36, 0.8];
   for (let i = 0; i < steps; ++i) {
     const t = i / (steps - 1);
-    // Good candidates are to stand out of the ground, whatever its brightness.
-    const lightness = dark ? 0.9 - 0.5 * t : 0.36 + 0.47 * t;
-    const hue = dark ? 1.85 + 2.75 * t ** 0.9 : 4.65 - 2.85 * t ** 1.1;
-    const chroma = 0.115 + 0.045 * Math.sin(Math.PI * t);
-    table.set(oklch(lightness, chroma, hue), 3 * i);
+    const blue = 0.12 * (1 - 2 * t); // less than 0 is yellow
+    table.set(oklch(best + t * (worst - best), Math.abs(blue), blue > 0 ? 4.4 : 1.6), 3 * i);
   }
   return table;
 }
@@ -43,13 +44,13 @@ const colours = {
   wallEdge: ["#6b7d95", "#3b4858"],
   cost: ["#e2663a33", "#d1491b26"],
   path: ["#7f8ea399", "#6b7a8d99"],
-  scan: ["#8fd3ffd9", "#0069b4cc"],
+  scan: ["#c3cedcb0", "#4a586ab0"],
   collided: ["#ff5a366b", "#c9341066"],
   guide: ["#f4a8fff2", "#a01bb0f2"],
   nominal: ["#ffffffbf", "#20262eb2"],
-  plan: ["#3ff2c8", "#00876c"],
-  spread: ["#3ff2c81c", "#00876c1c"],
-  driven: ["#7b8cffe6", "#4353d8d9"],
+  plan: ["#3fe08a", "#007a3d"],
+  spread: ["#3fe08a1c", "#007a3d1c"],
+  driven: ["#8d9aaae6", "#6b7787e6"],
   car: ["#f3f6fa", "#1d2530"],
   carEdge: ["#0b0e13", "#ffffff"],
   wheel: ["#2b3340", "#66738a"],

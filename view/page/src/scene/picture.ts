@@ -5,11 +5,11 @@ import { theme } from "../theme";
 import type { Camera } from "./camera";
 import { costRange } from "./candidates";
 import { hasData, layers, term, visible, type Layer } from "./layers";
-import { rulerMetres } from "./overlay";
+import { ruler } from "./overlay";
 import { Painter, type Pen } from "./painter";
 import { css, rampColour } from "./palette";
-import { drawScene, size } from "./scene";
-import { camera, ghostCamera, isSideBySide } from "./stage";
+import { drawScene } from "./scene";
+import { camera, ghostCamera, isSideBySide, size } from "./stage";
 
 const margin = 14; // pixels, as all lengths here
 const line = 22;
@@ -63,8 +63,8 @@ function ramp(): Item {
 }
 
 function scaleBar({ zoom }: Camera): Item {
-  const metres = rulerMetres(zoom);
-  const name = words(`${metres} m`);
+  const [metres, text] = ruler(zoom);
+  const name = words(text);
   const draw = (pen: Pen, x: number, y: number) => {
     pen.fillStyle = themed("--text");
     pen.fillRect(x, y - 5, metres * zoom, 2);
@@ -113,7 +113,7 @@ function drawLaneTitle(pen: Pen, text: string, { left, top, middleX }: Camera) {
 
 /** Draws the scene with its names, captions, scale and the meaning of its colours below, as a PNG of twice the size. */
 export async function picture(): Promise<Blob> {
-  const [width, height] = size();
+  const { width, height } = size;
   const time = `${(scalar("tick") * period()).toFixed(2)} s`;
   const title = [...titleParts(), time, counted(scalar("contacts"), "collision")];
   const captions = [...all(".caption:not([hidden])")].map((each) => each.textContent!.trim());

@@ -1,5 +1,4 @@
-import { get } from "../dom";
-import { marks } from "../introduction";
+import { get, say } from "../dom";
 import { drivenOf, on, page } from "../page";
 import { ghostPast, past } from "../past";
 import type { Frame } from "../protocol";
@@ -11,18 +10,14 @@ import { visible, type Layer } from "./layers";
 import { painterOf, type Painter } from "./painter";
 import { preview, selected } from "./pointer";
 import * as shapes from "./shapes";
-import { camera, ghostCamera, isSideBySide, placeCameras } from "./stage";
+import { camera, ghostCamera, isSideBySide, placeCameras, size } from "./stage";
 
 // The scene: all that the controller considers, seen from above.
 
 const canvas = get<HTMLCanvasElement>("scene");
-/** The size of the scene, CSS pixels. */
-export const size = () => [canvas.clientWidth, canvas.clientHeight];
-
 /** Draws on the page, or with the pen of a picture. */
-export function drawScene(painter = painterOf(canvas)) {
-  const [width, height] = size();
-  painter.begin(width, height, page.scene?.grid ? theme.ground : theme.free);
+export function drawScene(painter = painterOf(canvas, size)) {
+  painter.begin(size.width, size.height, page.scene?.grid ? theme.ground : theme.free);
   placeCameras();
   const { frame } = page;
   if (frame?.candidates) scaleCosts(frame.candidates); // both lanes have one scale
@@ -38,7 +33,6 @@ function drawLane(painter: Painter, camera: Camera, frame: Frame | undefined, dr
   painter.look(camera);
   if (page.scene?.grid) draw.drawMap(painter, page.scene.grid);
   if (!frame || !page.hello) return;
-  const isGhost = frame !== page.frame;
   /** Draws a layer if it is to be shown and has data. */
   const show = <Data>(layer: Layer, data: Data | undefined, act: (painter: Painter, data: Data) => void) => {
     if (visible.has(layer) && data !== undefined) act(painter, data);
@@ -65,12 +59,12 @@ function drawLane(painter: Painter, camera: Camera, frame: Frame | undefined, dr
   const probe = page.cursor === undefined ? undefined : past.pose(page.cursor);
   if (probe) shapes.drawOutline(painter, probe, theme.selected);
   shapes.drawDriven(painter, frame, theme.car);
-  for (const mark of marks) if (mark.isGhost === isGhost) shapes.drawCross(painter, mark, 12 / camera.zoom);
+  if (body?.touched) shapes.drawCross(painter, body, 12 / camera.zoom);
 }
 
 on("drawn", () => {
   drawScene();
   const [low, high] = costRange;
-  get("scale-low").textContent = low.toPrecision(3);
-  get("scale-high").textContent = high.toPrecision(3);
+  say(get("scale-low"), low.toPrecision(3));
+  say(get("scale-high"), high.toPrecision(3));
 });

@@ -1,5 +1,5 @@
-import { all, get, press } from "../dom";
-import { on, page, redraw } from "../page";
+import { all, click, get, press } from "../dom";
+import { can, isIntroduction, on, page, redraw } from "../page";
 import { Camera } from "./camera";
 
 // The stage with its cameras: one for the whole stage, or one for the car's lane and one for the ghost's.
@@ -14,11 +14,15 @@ export const isSideBySide = () => isSplit && page.frame?.ghostFrame !== undefine
 const canvas = get<HTMLCanvasElement>("scene");
 const captionRoom = 44; // pixels, where the caption is as wide as the stage
 const margin = 8; // pixels between a panel and what is fitted
-const room = { top: 40, bottom: 56 }; // pixels of a lane that its title and caption cover
-let size = { width: 1, height: 1, covered: camera.covered };
+const room = { top: 40, bottom: 72 }; // pixels of a lane that its title and caption cover
+/** The size of the stage, and the pixels at its edges that panels cover. */
+export let size = { width: 1, height: 1, covered: camera.covered };
+/** Where the stage is narrow, the panels are above and below it. */
+export const narrow = matchMedia("(max-width: 899px)");
 
 /** The pixels at the edges of the stage that panels cover: at its sides if there is room, else at its top. */
 function coveredByPanels(): Camera["covered"] {
+  if (narrow.matches) return { left: 0, right: 0, top: 0, bottom: 0 };
   const layers = get<HTMLDetailsElement>("layers");
   const box = get("stage").getBoundingClientRect();
   const figures = get("readout").getBoundingClientRect();
@@ -38,13 +42,21 @@ function layOut() {
   const { clientWidth: width, clientHeight: height } = get("stage");
   const covered = coveredByPanels();
   const { hidden, offsetTop, offsetHeight } = get("introduction");
-  if (!hidden) covered.top = Math.max(covered.top, offsetTop + offsetHeight);
+  if (!hidden && !narrow.matches) covered.top = Math.max(covered.top, offsetTop + offsetHeight);
   size = { width, height, covered };
   keepFitted(placeCameras);
   redraw();
 }
 const resized = new ResizeObserver(layOut);
 for (const id of ["stage", "layers", "readout", "introduction"]) resized.observe(get(id));
+
+/** Whether two lanes are larger beside one another than one above the other. */
+function isBeside(width: number, height: number) {
+  if (camera.follow !== "free") return width >= 0.7 * height;
+  const [x0, y0, x1, y1] = bounds;
+  const zoom = (w: number, h: number) => Math.min(w / (x1 - x0), h / (y1 - y0));
+  return zoom(width / 2, height) >= zoom(width, height / 2);
+}
 
 /** Puts the cameras to the whole stage, or beside one another, or one above the other on a high stage. */
 export function placeCameras() {
@@ -53,16 +65,17 @@ export function placeCameras() {
     Object.assign(camera, { left: 0, top: 0, ...size });
     return;
   }
-  if (width >= 0.7 * height) {
+  const bottom = narrow.matches ? 0 : room.bottom;
+  if (isBeside(width, height)) {
     const middle = Math.round((covered.left + width - covered.right) / 2);
-    const free = { top: covered.top + room.top, bottom: room.bottom, left: 0, right: 0 };
+    const free = { top: covered.top + room.top, bottom, left: 0, right: 0 };
     const own = { top: 0, height };
     Object.assign(camera, own, { left: 0, width: middle, covered: { ...free, left: covered.left } });
     const second = { left: middle, width: width - middle, covered: { ...free, right: covered.right } };
     Object.assign(ghostCamera, own, second);
   } else {
     const middle = Math.round((covered.top + height) / 2);
-    const free = { left: covered.left, right: covered.right, ...room };
+    const free = { left: covered.left, right: covered.right, top: room.top, bottom };
     const own = { left: 0, width };
     Object.assign(camera, own, { top: 0, height: middle, covered: { ...free, top: covered.top + room.top } });
     Object.assign(ghostCamera, own, { top: middle, height: height - middle, covered: free });
@@ -77,6 +90,8 @@ export function setSplit(on: boolean) {
   press(get("split"), on);
   layOut();
 }
+
+click("split", () => page.frame?.ghostFrame && setSplit(!isSplit));
 
 /** The place of a pointer on the stage, in the lane of the car; `isGhost`: it is in that of the ghost. */
 export function placeOf(e: MouseEvent) {
@@ -115,6 +130,7 @@ export function follow(what: "follow" | "heading") {
 }
 /** Pixels per m with which the surroundings of the driven body are seen: about 16 of its lengths. */
 function drivingZoom() {
+  if (isIntroduction) return camera.room / 6.2; // m, until behind the parked car
   const length = page.hello?.body.length || (bounds[2] - bounds[0]) / 16;
   return camera.room / (15.5 * length);
 }
@@ -133,15 +149,17 @@ export function zoom(factor: number) {
   redraw();
 }
 
+const isStill = matchMedia("(prefers-reduced-motion: reduce)");
 let isBegun = false;
 on("state", (state) => {
   const [x0, y0, x1, y1] = state.bounds;
-  const room = 0.12 * Math.max(x1 - x0, y1 - y0, 0.1);
+  const room = 0.12 * Math.max(x1 - x0, y1 - y0, 1e-9);
   keepFitted(() => (bounds = [x0 - room, y0 - room, x1 + room, y1 + room]));
   if (isBegun) return;
   isBegun = true;
-  if (page.scene?.path) camera.zoom = drivingZoom();
-  else fit();
+  if (state.ghost && can("live")) setSplit(true);
+  fit();
+  if (page.scene?.path) follow(isIntroduction && !isStill.matches ? "heading" : "follow");
 });
 on("drawn", () => {
   // A drag may have changed what the camera follows.

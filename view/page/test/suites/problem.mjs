@@ -60,6 +60,46 @@ export default async function (h) {
     assert.equal(await look.scalar("tick"), 7);
   });
 
+  await h.test("what is drawn has the scale of the problem, from 1 cm to 100 km", async () => {
+    await look.send({ do: "set", key: "problem.goal_x", value: "100000" });
+    await look.until(() => slalom.state.bounds[2] > 1e5);
+    await page.click("[data-follow=fit]");
+    await look.until(() => document.getElementById("ruler-text").textContent.endsWith(" km"));
+    const [x, y] = await page.evaluate(() => slalom.stage.camera.toScreen(1e5, 0));
+    const { width, height } = await page.evaluate(() => slalom.stage.size);
+    assert.ok(x > 0 && x < width && y > 0 && y < height, `the goal is at ${x}, ${y}`);
+    await look.send({ do: "undo" });
+    await look.until(() => slalom.frame.bodies.some((b) => b.kind === 6 && b.x === 8));
+    const text = await page.evaluate(() => {
+      const { camera, ...stage } = slalom.stage;
+      camera.fit(0, 0, 0.01, 0.005);
+      const shown = camera.toScreen(0.01, 0)[0] - camera.toScreen(0, 0)[0];
+      stage.zoom(1.1);
+      return [shown > 300, camera.zoom * 0.01 > shown];
+    });
+    assert.deepEqual(text, [true, true]);
+    await look.until(() => document.getElementById("ruler-text").textContent.endsWith(" mm"));
+    await look.restart();
+    await page.click("[data-follow=fit]");
+  });
+
+  await h.test("a second method and captions are there for a problem, and its goal is dragged", async () => {
+    const two = await h.start("view", "--problem", "differential_drive", "--against", "mppi", "--port", "0");
+    const both = await h.open(two.address);
+    await both.until(() => window.slalom?.frame?.ghostFrame && slalom.scalar("tick") >= 5);
+    await both.seek(3);
+    await both.drawn();
+    const captions = both.page.locator(".caption");
+    const verdicts = await captions.evaluateAll((all) => all.map((e) => e.dataset.verdict));
+    assert.deepEqual(verdicts, ["commits", "averages"]);
+    const goal = await both.page.evaluate(() => slalom.frame.bodies.find((b) => b.kind === 6));
+    assert.deepEqual([goal.x, goal.y], [8, 0]);
+    await both.drag(await both.placeOf(goal), await both.placeOf({ x: 7, y: 1 }));
+    await both.until(() => Math.abs(slalom.frame.bodies.find((b) => b.kind === 6).y - 1) < 0.1);
+    await both.page.close();
+    await two.stop();
+  });
+
   await h.test("method, options and parameters change, and can be reset", async () => {
     await page.selectOption("#method", "mppi");
     await look.until(() => slalom.state.method === "mppi");

@@ -30,7 +30,7 @@ export default async function (h) {
 
   await h.test("saves a picture of twice the size, with its legend", async () => {
     await h.pause();
-    const [width, height] = await page.evaluate(() => slalom.scene.size());
+    const { width, height } = await page.evaluate(() => slalom.stage.size);
     const png = readFileSync(await saved("#save-png"));
     assert.equal(png.subarray(1, 4).toString(), "PNG");
     assert.equal(png.readUInt32BE(16), 2 * width);
