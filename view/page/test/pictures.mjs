@@ -50,12 +50,12 @@ const opponent = () =>
 /** Six pictures of an overtake at equal intervals, in which the car drives to the right. */
 async function drawOvertake() {
   const tile = { width: 460, height: 300 };
-  const every = 22; // control steps
+  const every = 20; // control steps
   await page.evaluate(() => slalom.layers.visible.clear()); // faster, while nobody looks
-  // The overtake is over when the opponent that was ahead is 1.5 m behind.
+  // The overtake is over when the opponent that was ahead is 0.9 m behind.
   let wasAhead = false;
-  for (let last = {}; !(wasAhead && last.apart < 2.5 && last.ahead < -1.5); last = await opponent()) {
-    await h.step(5);
+  for (let last = {}; !(wasAhead && last.apart < 2.5 && last.ahead < -0.9); last = await opponent()) {
+    await h.step(3);
     wasAhead ||= last.apart < 3 && last.ahead > 0.5;
   }
   await page.addStyleTag({ content: ".card, .tag, header { visibility: hidden !important }" });
