@@ -51,12 +51,15 @@ void GridSearch::open_around(const Point& point, double reach) noexcept {
   });
 }
 
-void GridSearch::spread(int from) noexcept {
+void GridSearch::begin(int from) noexcept {
   std::fill(costs_.begin(), costs_.end(), unreached);
   queue_.assign(1, {0, from});
   costs_[from] = 0;
   previous_[from] = -1;
-  while (!queue_.empty()) {
+}
+
+bool GridSearch::advance(int cells) noexcept {
+  for (; cells > 0 && !queue_.empty(); --cells) {
     std::pop_heap(queue_.begin(), queue_.end());
     const Reached here = queue_.back();
     queue_.pop_back();
@@ -77,6 +80,7 @@ void GridSearch::spread(int from) noexcept {
         std::push_heap(queue_.begin(), queue_.end());
       }
   }
+  return queue_.empty();
 }
 
 /// Whether no cell on the straight line between two cells is closed or has a higher price than both of them:

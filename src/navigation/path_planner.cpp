@@ -20,7 +20,7 @@ PathPlanner::PathPlanner(const maps::GridGeometry& geometry, double half_width, 
       geometry_(geometry),
       grid_(geometry.rows, geometry.columns, geometry.resolution, most_points),
       most_points_(most_points),
-      is_kept_(grid_.size()) {}
+      marks_(grid_.size()) {}
 
 bool PathPlanner::knows(const Costmap& costmap, const maps::Point& point) const noexcept {
   const maps::GridGeometry& geometry = costmap.geometry();
@@ -33,40 +33,63 @@ bool PathPlanner::has_room(const Costmap& costmap, const maps::Point& point) con
   return costmap.distance(point.x, point.y) >= half_width_;
 }
 
-void PathPlanner::read(const Costmap& costmap, std::span<const maps::Pose> kept,
-                       std::span<const maps::ClosedDisc> closed) noexcept {
+bool PathPlanner::begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept,
+                        std::span<const maps::ClosedDisc> closed) noexcept {
   geometry_ = costmap.geometry();
   grid_.set_corner(corner_of(geometry_));
-  std::fill(is_kept_.begin(), is_kept_.end(), std::uint8_t{0});
+  std::fill(marks_.begin(), marks_.end(), Mark::none);
   for (const maps::Pose& pose : kept)
     grid_.visit_around({pose.x, pose.y}, kept_reach * half_width_,
-                       [&](std::size_t cell) { is_kept_[cell] = 1; });
-  // One cell more than `has_room` asks for, since corners are rounded.
-  const double needed = half_width_ + geometry_.resolution;
-  grid_.set_prices([&](const maps::Point& at) { return costmap.distance(at.x, at.y) - needed; },
-                   nearby * half_width_);
-  const GridView<1> own = costmap.prices();
-  const std::span<float> prices = grid_.prices();
-  for (std::size_t cell = 0; cell < prices.size(); ++cell) {
-    if (!(prices[cell] > 0)) continue;
-    const maps::Point at = grid_.centre_of(static_cast<int>(cell));
-    prices[cell] += look_up(own, static_cast<float>(at.x), static_cast<float>(at.y));
-    if (!kept.empty() && !is_kept_[cell]) prices[cell] *= other_price;
-  }
-  for (const maps::ClosedDisc& disc : closed) grid_.close(disc);
+                       [&](std::size_t cell) { marks_[cell] = kept_way; });
+  for (const maps::ClosedDisc& disc : closed)
+    grid_.visit_around(disc.middle, disc.radius, [&](std::size_t cell) { marks_[cell] = closed_place; });
+  elsewhere_ = kept.empty() ? 1 : other_price;
+  start_ = start;
+  priced_ = 0;
+  is_searching_ = grid_.cell_at(start) >= 0;
+  return is_searching_;
 }
 
-bool PathPlanner::search_from(const maps::Point& start) noexcept {
-  const int from = grid_.cell_at(start);
-  if (from < 0) return false;
-  // From within an obstacle, as in a zone that was switched on, as far as the nearest free place.
+bool PathPlanner::advance(const Costmap& costmap, int cells) noexcept {
+  if (priced_ < grid_.size()) {
+    const int end = priced_ + std::min(cells, grid_.size() - priced_);
+    price(costmap, priced_, end);
+    cells -= end - priced_;
+    priced_ = end;
+    if (priced_ < grid_.size()) return false;
+    open_start();
+    grid_.begin(grid_.cell_at(start_));
+  }
+  is_searching_ = !grid_.advance(cells);
+  return !is_searching_;
+}
+
+/// Sets the prices of the cells from `first` to `end`.
+void PathPlanner::price(const Costmap& costmap, int first, int end) noexcept {
+  // One cell more than `has_room` asks for, since corners are rounded.
+  const double needed = half_width_ + geometry_.resolution;
+  const GridView<1> own = costmap.prices();
+  const std::span<float> prices = grid_.prices();
+  for (int cell = first; cell < end; ++cell) {
+    const auto index = static_cast<std::size_t>(cell);
+    const maps::Point at = grid_.centre_of(cell);
+    float& price = prices[index];
+    price = maps::GridSearch::price_of(costmap.distance(at.x, at.y) - needed, nearby * half_width_);
+    if (marks_[index] == closed_place) price = 0;
+    if (!(price > 0)) continue;
+    price += look_up(own, static_cast<float>(at.x), static_cast<float>(at.y));
+    if (marks_[index] == none) price *= elsewhere_;
+  }
+}
+
+/// Opens the cells at the start. From within an obstacle, as in a zone that was switched on, they reach as
+/// far as the nearest free place.
+void PathPlanner::open_start() noexcept {
   double reach = nearby * half_width_;
   for (bool found = false; !found && reach < geometry_.length_x() + geometry_.length_y();
        reach *= found ? 1 : 1.5)
-    grid_.visit_around(start, reach, [&](std::size_t cell) { found = found || grid_.prices()[cell] > 0; });
-  grid_.open_around(start, reach);
-  grid_.spread(from);
-  return true;
+    grid_.visit_around(start_, reach, [&](std::size_t cell) { found = found || grid_.prices()[cell] > 0; });
+  grid_.open_around(start_, reach);
 }
 
 double PathPlanner::cost_to(const maps::Point& point) const noexcept {
@@ -114,10 +137,10 @@ std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footp
       static_cast<double>(geometry.rows) * geometry.columns;  // a way enters each once at most
   const double most_points = cells * (geometry.resolution / PathPlanner::spacing + 1);
   PathPlanner planner(geometry, footprint.half_width(), saturate_cast<std::size_t>(most_points) + 1);
-  planner.read(costmap, {}, {});
   std::vector<maps::Pose> path;
-  if (!planner.search_from({start.x, start.y}) || !std::isfinite(planner.cost_to({goal.x, goal.y})))
-    return path;
+  if (!planner.begin(costmap, {start.x, start.y})) return path;
+  planner.advance(costmap);
+  if (!std::isfinite(planner.cost_to({goal.x, goal.y}))) return path;
   for (const maps::Point& point : planner.path_to({goal.x, goal.y})) path.push_back({point.x, point.y, 0});
   // The last points are those of cells: straight to the goal, the path has no kink there.
   std::size_t kept = path.size();

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double longest_path = 2.1e5;  // steps of a path, which an update takes anew where it is blocked
 constexpr double search_period = 0.1;   // s between searches while there is no way
+constexpr int cells_of_update = 60000;  // cells that an update searches; the next goes on
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
 constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place
@@ -111,6 +112,7 @@ void Way::set_path(std::span<const maps::Pose> path) {
   const bool goes_on =
       !guide_.empty() && distance(position(guide_.goal()), position(path.back())) <= min_rejoin;
   if (!goes_on) {
+    planner_.cancel();
     chosen_.clear();
     closed_.forget_dead_ends();
     without_way_ = since_search_ = 0;
@@ -143,6 +145,7 @@ void Way::clear() noexcept {
   given_.clear();
   chosen_.clear();
   closed_.forget_dead_ends();
+  planner_.cancel();
   detour_left_ = infinity;
   without_way_ = since_search_ = since_meeting_ = 0;
   recovery_.reset();
@@ -192,10 +195,11 @@ bool Way::can_rejoin(const Costmap& costmap, std::size_t point) const noexcept {
 
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
 /// of the path. To points off the costmap it goes straight on from the edge. Returns false and keeps the path
-/// if there is none that costs less than `most` (m).
+/// if there is none that costs less than `most` (m), or while a search over a large costmap goes on.
 bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept {
-  planner_.read(costmap, chosen_, closed_.all());
-  if (!planner_.search_from(position(pose))) return false;
+  if (!planner_.is_searching() && !planner_.begin(costmap, position(pose), chosen_, closed_.all()))
+    return false;
+  if (!planner_.advance(costmap, cells_of_update)) return false;
   const std::span<const maps::Pose> path = guide_.points();
   double least = most;
   std::size_t best = path.size();
@@ -239,9 +243,9 @@ bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t c
 void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
                         double elapsed) noexcept {
   since_meeting_ += elapsed;
-  if (since_meeting_ < search_period) return;
+  if (!planner_.is_searching() && since_meeting_ < search_period) return;
   const auto place = others.meeting(guide_.points().subspan(guide_.nearest()), guide_.step());
-  if (!place) return;
+  if (!place) return planner_.cancel();
   since_meeting_ = 0;
   closed_.begin_meeting(*place);
   const std::size_t closed = first_closed(costmap);
@@ -261,9 +265,11 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
     return true;
   }
   since_search_ += elapsed;
-  if (without_way_ == 0 || since_search_ >= search_period) {
-    since_search_ = 0;
-    if (find_way(pose, costmap, closed, infinity)) {
+  if (planner_.is_searching() || without_way_ == 0 || since_search_ >= search_period) {
+    if (!planner_.is_searching()) since_search_ = 0;
+    const bool found = find_way(pose, costmap, closed, infinity);
+    if (!planner_.is_searching()) since_search_ = -since_search_;  // rests for as long as the search took
+    if (found) {
       without_way_ = 0;
       return true;
     }
@@ -272,7 +278,7 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
     without_way_ = 0;
     return true;
   }
-  without_way_ += std::max(elapsed, least_period);
+  if (!planner_.is_searching() || without_way_ > 0) without_way_ += std::max(elapsed, least_period);
   return without_way_ < options_.patience;
 }
 

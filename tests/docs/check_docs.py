@@ -1,7 +1,7 @@
 """Checks the documentation: its links resolve, its excerpts stand in their files, its code
-compiles and runs, its patches apply, its commands and their options exist.
+compiles and runs, its commands and their options exist. The stage first-change of script/check-all applies its patches.
 
-usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | patches ROOT | shell ROOT PROGRAM | site FOLDER
+usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | shell ROOT PROGRAM | site FOLDER
 """
 
 import json
@@ -136,17 +136,6 @@ def check_python(root):
     return errors
 
 
-def check_patches(root):
-    errors = []
-    for page in pages(root):
-        for line, text in blocks(page, "diff"):
-            tried = subprocess.run(["git", "apply", "--check", "-"], cwd=root, input=text + "\n", text=True, capture_output=True)
-            print(f"{page.relative_to(root)}:{line}: a patch")
-            if tried.returncode:
-                errors.append(f"{page}:{line}: the patch does not apply\n{tried.stderr}")
-    return errors
-
-
 def check_shell(root, program):
     """Commands of the program exist and have the options that the page gives them; scripts exist in the tree."""
     errors, help_of = [], {}
@@ -199,8 +188,7 @@ def check_site(folder):
     return sorted(set(errors))
 
 
-CHECKS = {"links": check_links, "cpp": check_cpp, "python": check_python, "patches": check_patches,
-          "shell": check_shell, "site": check_site}
+CHECKS = {"links": check_links, "cpp": check_cpp, "python": check_python, "shell": check_shell, "site": check_site}
 
 
 def main(what, root, *rest):

@@ -131,6 +131,21 @@ TEST(Navigator, IsBlockedByAWallThatIsLongerThanTheCostmapShows) {
   EXPECT_LT(drive.pose.x, 4.5 - 0.35);
 }
 
+TEST(Navigator, ASearchOverALargeCostmapTakesSeveralUpdates) {
+  CheckedDrive drive;
+  drive.grid = free_grid(0, 0, 40, 40);  // 640,000 cells
+  drive.costmap = Costmap(drive.grid.width, drive.grid.height, drive.grid.resolution);
+  drive.block(20, 0, 20.3, 38);
+  drive.restart_fast();
+  drive.start({16, 19, 0}, {{16, 19, 0}, {24, 19, 0}});
+  int updates = 0;
+  while (updates < 100 && drive.step().status == NavigationStatus::following) ++updates;
+  EXPECT_EQ(drive.step().status, NavigationStatus::detour);
+  EXPECT_GT(updates, 10);
+  EXPECT_LT(updates, 40);
+  EXPECT_FALSE(drive.collided);
+}
+
 TEST(Navigator, WithoutDetoursItReportsNone) {
   NavigatorOptions options;
   options.find_detours = false;

@@ -71,8 +71,8 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   ASSERT_GT(crossing(chosen), 4) << "a little nearer";
   PathPlanner planner(costmap.geometry(), body.half_width());
   const auto crossed = [&](std::span<const maps::Pose> kept, std::span<const maps::ClosedDisc> closed) {
-    planner.read(costmap, kept, closed);
-    EXPECT_TRUE(planner.search_from({1, 2.8}));
+    EXPECT_TRUE(planner.begin(costmap, {1, 2.8}, kept, closed));
+    EXPECT_TRUE(planner.advance(costmap));
     for (const maps::Point& point : planner.path_to({7, 2.8}))
       if (point.x > 4) return point.y;
     return std::nan("");
@@ -81,6 +81,22 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   EXPECT_GT(crossed(chosen, {}), 4);
   const maps::ClosedDisc dead_end[] = {{{4, 4.5}, PathPlanner::dead_end_radius}};
   EXPECT_LT(crossed(chosen, dead_end), 2);
+}
+
+TEST(PathPlanner, FindsTheSameInSlices) {
+  const Costmap costmap = costmap_of(two_doors());
+  PathPlanner whole(costmap.geometry(), body.half_width()), sliced = whole;
+  whole.begin(costmap, {1, 2.8});
+  whole.advance(costmap);
+  sliced.begin(costmap, {1, 2.8});
+  int slices = 1;
+  while (!sliced.advance(costmap, 1000)) ++slices;
+  const int cells = costmap.geometry().rows * costmap.geometry().columns;
+  EXPECT_GT(slices, cells / 1000);
+  EXPECT_LE(slices, 3 * cells / 1000) << "each cell is priced and reached, some twice";
+  EXPECT_FALSE(sliced.is_searching());
+  for (const maps::Point goal : {maps::Point{7, 2.8}, {6, 1}, {0.5, 5}})
+    EXPECT_EQ(sliced.cost_to(goal), whole.cost_to(goal));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace slalom::evaluation {
 
 /// Describes a figure of a lap. Tables, CSV and JSON files and Python call it by this name.
 struct Figure {
-  const char* name;
+  const char* name;         ///< name in tables and files
   const char* unit;         ///< unit; empty for numbers without one
   const char* help;         ///< a few words on its meaning
   bool wall_clock = false;  ///< depends on the machine; all other figures repeat exactly

@@ -27,7 +27,7 @@ struct ExperimentResult {
   Interval time_ci;                                     ///< bootstrap over finished laps; see fewest_laps
   /// Wall-clock times, ms: means over the laps of each lap's mean, median and 99th percentile, and the
   /// longest.
-  double solve_mean = 0, solve_p50 = 0, solve_p99 = 0, solve_max = 0;
+  double solve_mean = 0, solve_p50 = 0, solve_p99 = 0, solve_max = 0;  ///< mean, median, 99 %, longest
   /// Sums over laps; errors are root mean squares over all detections, `update_p99` (ms) the mean over the
   /// laps. None without `world.tracking`.
   std::optional<TrackingFigures> tracking;
@@ -38,14 +38,14 @@ struct ExperimentResult {
 /// The laps of two experiments, a and b. With the same seeds lap k of both has the same obstacles: the laps
 /// are paired.
 struct Comparison {
-  bool paired = true;
+  bool paired = true;              ///< whether the same seeds are compared
   int laps = 0;                    ///< pairs, or laps of both
   double ms_difference = 0;        ///< mean MS of a - b; NaN without laps
   std::optional<double> ms_p = 1;  ///< none where MS is not tested
   double time_difference = 0;      ///< s, mean time of a - b, of pairs that both finish, or of finished laps
-  double time_p = 1;
+  double time_p = 1;               ///< p value of the times
   int only_a_succeeds = 0, only_b_succeeds = 0;  ///< pairs in which only one of them succeeds
-  double success_p = 1, collisions_p = 1;
+  double success_p = 1, collisions_p = 1;        ///< p value of the success, p value of the collisions
 };
 
 /// Compares laps of `a` and `b`, the numbers of whose obstacles are given for all laps together. Paired laps,
@@ -56,7 +56,7 @@ Comparison compare_laps(const std::vector<const LapRow*>& a, std::int64_t obstac
 
 /// A comparison with the indices of its experiments.
 struct PairedComparison : Comparison {
-  int a = 0, b = 0;
+  int a = 0, b = 0;  ///< index of the first, index of the second
 };
 
 /// The laps of an experiment, in their order.

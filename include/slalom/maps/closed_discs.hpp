@@ -18,8 +18,8 @@ struct ClosedDisc {
 /// Places that count as closed although a map shows room: dead ends, and the place of a meeting.
 class ClosedDiscs {
  public:
-  bool has_dead_ends() const noexcept { return dead_ends_ > 0; }
-  void forget_dead_ends() noexcept { dead_ends_ = 0; }
+  bool has_dead_ends() const noexcept { return dead_ends_ > 0; }  ///< whether one counts
+  void forget_dead_ends() noexcept { dead_ends_ = 0; }            ///< opens all
   /// Adds a dead end; the last four count.
   void add_dead_end(const ClosedDisc& place) noexcept {
     if (dead_ends_ == max_dead_ends) {
@@ -33,9 +33,11 @@ class ClosedDiscs {
     places_[dead_ends_] = place;
     meetings_ = 1;
   }
-  void end_meeting() noexcept { meetings_ = 0; }
+  void end_meeting() noexcept { meetings_ = 0; }  ///< opens the place
 
+  /// All closed places.
   std::span<const ClosedDisc> all() const noexcept { return {places_.data(), dead_ends_ + meetings_}; }
+  /// Whether a point (m) is in one of them.
   bool contain(const Point& point) const noexcept {
     const auto places = all();
     return std::any_of(places.begin(), places.end(),

@@ -25,16 +25,17 @@ class GridSearch {
 
   /// The prices of the cells for driving 1 m, to be set before `spread`; not above 0: closed.
   std::span<float> prices() noexcept { return prices_; }
-  /// Sets the prices for a body whose room (m) in the middle of a cell is `room(point)`: 1 where it is
-  /// `cautious` (m) or more, up to 5 where it is less. Where it is below 0, the cell is closed.
+  /// Sets the prices for a body whose room (m) in the middle of a cell is `room(point)`.
   template <class Room>
   void set_prices(Room&& room, double cautious) noexcept {
-    for (int cell = 0; cell < size(); ++cell) {
-      const double here = room(centre_of(cell));
-      const double nearness = std::clamp(1 - here / cautious, 0.0, 1.0);
-      prices_[static_cast<std::size_t>(cell)] =
-          here < 0 ? 0.0F : 1 + (dearest - 1) * static_cast<float>(nearness);
-    }
+    for (int cell = 0; cell < size(); ++cell)
+      prices_[static_cast<std::size_t>(cell)] = price_of(room(centre_of(cell)), cautious);
+  }
+  /// The price where a body has so much room (m): 1 if it is `cautious` (m) or more, up to 5 if it is less.
+  /// If it is below 0, the cell is closed.
+  static float price_of(double room, double cautious) noexcept {
+    const double nearness = std::clamp(1 - room / cautious, 0.0, 1.0);
+    return room < 0 ? 0.0F : 1 + (dearest - 1) * static_cast<float>(nearness);
   }
   /// Closes the cells in a place.
   void close(const ClosedDisc& place) noexcept;
@@ -56,7 +57,14 @@ class GridSearch {
       }
   }
   /// Computes the costs of all cells that can be reached from one, which may be closed itself.
-  void spread(int from) noexcept;
+  void spread(int from) noexcept {
+    begin(from);
+    advance(std::numeric_limits<int>::max());
+  }
+  /// Begins what `spread` does.
+  void begin(int from) noexcept;
+  /// Goes on from at most so many cells. Returns whether the costs of all cells are known.
+  bool advance(int cells) noexcept;
   /// The cost of reaching a cell; infinite where it cannot be reached.
   float cost(int cell) const noexcept { return costs_[static_cast<std::size_t>(cell)]; }
   bool reached(int cell) const noexcept;  ///< whether the last search reached it

@@ -29,15 +29,18 @@ struct LegOptions {
 /// Follows the legs of a path: decides where a leg ends and the next one begins, and drives along one.
 class LegFollower {
  public:
+  /// The measured motion of the vehicle.
   struct Rates {
     double speed = 0;  ///< m/s, whatever its direction
     double turn = 0;   ///< rad/s
   };
+  /// The motion that it asks for.
   struct Command {
     double curvature = 0;  ///< 1/m
     double speed = 0;      ///< m/s, negative in reverse
   };
 
+  /// Follows no leg yet.
   explicit LegFollower(const LegOptions& options) : options_(options) {}
 
   /// Begins the present leg of the path. Of a turn on the spot, `turn` (rad) is to turn.

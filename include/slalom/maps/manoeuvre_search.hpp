@@ -31,7 +31,7 @@ struct ManoeuvreOptions {
 
 /// A pose at which a way may end.
 struct ManoeuvreGoal {
-  Pose pose;
+  Pose pose;         ///< m, rad, relative to the start
   double price = 0;  ///< m, of what is then left to drive
 };
 
@@ -47,6 +47,7 @@ class ManoeuvreSearch {
   static constexpr std::size_t max_steps = 256;   ///< most arcs of a way
   static constexpr std::size_t max_poses = 2048;  ///< most poses of it
 
+  /// Allocates all that it needs.
   explicit ManoeuvreSearch(const ManoeuvreOptions& options);
 
   /// Searches a way from the pose (0, 0, 0) to one of the goals. All poses are relative to the start. Beyond
@@ -59,7 +60,7 @@ class ManoeuvreSearch {
   std::span<const Pose> poses() const noexcept { return poses_; }
   /// The goal at which it ends.
   std::size_t goal() const noexcept { return goal_; }
-  const ManoeuvreOptions& options() const noexcept { return options_; }
+  const ManoeuvreOptions& options() const noexcept { return options_; }  ///< those of the constructor
 
  private:
   /// A drive with wheels held, or a turn on the spot.

@@ -49,24 +49,27 @@ class Recovery {
   };
   /// The next state of a vehicle that stands.
   struct StandingLimit {
-    double time = 0;  ///< s of standing in a state
-    DriveState next = DriveState::following;
+    double time = 0;                          ///< s of standing in a state
+    DriveState next = DriveState::following;  ///< the state after it
   };
 
+  /// Begins in the state `following`.
   explicit Recovery(const RecoveryLengths& lengths) : lengths_(lengths), distance_(lengths.shortest) {}
 
   /// Advances by one control period (s).
   DriveState update(const Seen& seen, double period) noexcept;
   /// Begins to watch anew from this place (m), for instance on another way: nothing counts as standing.
   void watch_from(double arc) noexcept;
+  /// The vehicle drives a manoeuvre until `end_manoeuvre`.
   void begin_manoeuvre() noexcept { enter(DriveState::manoeuvring); }
   /// The vehicle drives on after a manoeuvre to this place (m).
   void end_manoeuvre(double arc) noexcept;
-  void reset() noexcept { *this = Recovery(lengths_); }
+  void reset() noexcept { *this = Recovery(lengths_); }  ///< begins anew
 
-  DriveState state() const noexcept { return state_; }
+  DriveState state() const noexcept { return state_; }  ///< the present state
   /// Whether it began to do something else in the last update: to reverse, or to try another way.
   bool begins() const noexcept { return begins_; }
+  /// Whether it reverses.
   bool reverses() const noexcept { return state_ == DriveState::reversing; }
   /// Whether it is not yet past the place where it crawled or stood.
   bool leaving() const noexcept { return leaving_; }
@@ -78,7 +81,7 @@ class Recovery {
   double margin_share() const noexcept { return confined_ ? 0.2 : 1; }
   /// How long it stands in a state, and what it does then.
   StandingLimit standing_limit(DriveState state) const noexcept;
-  const RecoveryLengths& lengths() const noexcept { return lengths_; }
+  const RecoveryLengths& lengths() const noexcept { return lengths_; }  ///< those of the constructor
 
  private:
   void enter(DriveState state) noexcept;

@@ -22,14 +22,18 @@ class PathPlanner {
   /// Whether there is room for the body there, where the path goes straight on.
   bool has_room(const Costmap& costmap, const maps::Point& point) const noexcept;
 
-  /// Takes the cells of a costmap, which must have the size given, for the next search. `kept` is a path
-  /// that was followed before: cells further than 1.6 half widths from it cost 1.3 times as much, so that the
-  /// search prefers the way that was chosen. No way leads through the `closed` discs.
-  void read(const Costmap& costmap, std::span<const maps::Pose> kept,
-            std::span<const maps::ClosedDisc> closed) noexcept;
-  /// Searches from a position. Returns false if it is off the costmap. Cells within 1.2 half widths count as
-  /// free, or those up to the nearest free place.
-  bool search_from(const maps::Point& start) noexcept;
+  /// Begins a search from a position over a costmap, which must have the size given. Returns false if it is
+  /// off the costmap. `kept` is a path that was followed before: cells further than 1.6 half widths from it
+  /// cost 1.3 times as much, so that the search prefers the way that was chosen. No way leads through the
+  /// `closed` discs. Cells within 1.2 half widths of the start count as free, or those up to the nearest free
+  /// place.
+  bool begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept = {},
+             std::span<const maps::ClosedDisc> closed = {}) noexcept;
+  /// Goes on with the search, and looks at no more than so many cells, each of which counts twice. Returns
+  /// whether it has ended: then all costs are known.
+  bool advance(const Costmap& costmap, int cells = std::numeric_limits<int>::max()) noexcept;
+  bool is_searching() const noexcept { return is_searching_; }  ///< whether a search has begun and not ended
+  void cancel() noexcept { is_searching_ = false; }             ///< ends a search without a result
   /// The cost of a way to a position, m of free space; infinite if there is none.
   double cost_to(const maps::Point& point) const noexcept;
   /// A way, and its end if it is followed by a straight line off the costmap.
@@ -45,11 +49,19 @@ class PathPlanner {
   std::span<const maps::Point> path_to(const maps::Point& point) noexcept;
 
  private:
+  enum Mark : std::uint8_t { none, kept_way, closed_place };
+  void price(const Costmap& costmap, int first, int end) noexcept;
+  void open_start() noexcept;
+
   double half_width_;
   maps::GridGeometry geometry_;
   maps::GridSearch grid_;
   std::size_t most_points_;
-  std::vector<std::uint8_t> is_kept_;  ///< whether each cell is kept
+  std::vector<Mark> marks_;  ///< [cell]
+  float elsewhere_ = 1;      ///< factor of prices off the way that was kept
+  maps::Point start_;        ///< m
+  int priced_ = 0;           ///< cells whose prices are known
+  bool is_searching_ = false;
 };
 
 /// A path to a goal: points at most 0.05 m apart, each with the direction of the path, and the goal. Empty if

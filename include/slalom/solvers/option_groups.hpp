@@ -34,7 +34,9 @@ template <class Options, class Visit>
 void visit_sampling_options(Options& o, Visit&& visit) {
   visit(o.horizon,
         {"horizon", "steps", "inputs of a control sequence; the rollout has one state more", 1, 10000, "T"});
-  visit(o.samples, {"samples", "", "control sequences drawn in a solve", 1, 4194304, "K"});
+  visit(o.samples,
+        {"samples", "", "control sequences drawn in a solve; of reverse_mppi and sv_mpc in an iteration", 1,
+         4194304, "K"});
   if constexpr (requires { o.weighting; }) {
     visit(
         o.temperature,

@@ -16,6 +16,7 @@ class PredictionErrors {
  public:
   static constexpr int kept = 8;  ///< predictions whose errors are kept
 
+  /// Watches states with this number of scalars.
   explicit PredictionErrors(int scalars = 0);
 
   /// Compares a state with the one that was predicted for it, both [scalar].

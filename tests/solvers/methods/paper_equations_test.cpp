@@ -188,52 +188,38 @@ TEST(PaperEquations, GuidesTakeAnEighthOfTheRollouts) {
 /// Equation (13) for S = 1/2 a (v - c)^2: exp(-S / lambda) has the variance lambda / a, and q* of equation
 /// (5) has 1 / (a / lambda + 1 / Sigma). As printed, the square root of that is the "variance".
 TEST(PaperEquations, FitRecoversTheVarianceOfAGaussian) {
-  const auto steep = evaluator_of([](double v) { return 0.5 * 3 * (v - 1.5) * (v - 1.5); });
-  const auto flat = evaluator_of([](double v) { return 0.5 * 0.3 * (v - 1.5) * (v - 1.5); });
-  const auto fitted = [&](auto change, const BatchEvaluator* evaluator = nullptr) {
+  const auto fitted = [](double a, double sigma, auto change) {
+    const testing::FunctionEvaluator evaluator(1, [a](const SequenceBatch& batch, int k) {
+      const double distance = static_cast<double>(batch.data(0)[k]) - 1.5;
+      return std::pair(0.5 * a * distance * distance, false);
+    });
     SvgMppiOptions options = printed();
-    options.guides.variance = 0.5;
+    options.guides.variance = sigma;
     options.guides.gradient_samples = 500;
     options.guides.iterations = 12;
-    change(options);
-    return static_cast<double>(
-        make_solver(options, 1)->solve(evaluator ? *evaluator : steep, {}).variances[0]);
+    change(options.published, options.guides);
+    return static_cast<double>(make_solver(options, 1)->solve(evaluator, {}).variances[0]);
+  };
+  const auto as_printed = [](auto& fit, auto&) { fit.fit_target = FitTarget::optimal_density; };
+  const auto state_cost = [](auto& fit, auto&) {
+    fit.fit_target = FitTarget::state_cost;
+    fit.fit_temperature = 0.7;
   };
   const double variance = 0.7 / 3, optimal = 1 / (1 / variance + 1 / 0.5);
-  EXPECT_NEAR(fitted([](SvgMppiOptions& o) {
-                o.published.fit_target = FitTarget::state_cost;
-                o.published.fit_temperature = 0.7;
-              }),
-              variance, 0.01 * variance);
-  const auto printed_target = [](SvgMppiOptions& o) { o.published.fit_target = FitTarget::optimal_density; };
-  EXPECT_NEAR(fitted(printed_target), optimal, 0.01 * optimal);
-  EXPECT_NEAR(fitted([&](SvgMppiOptions& o) {
-                printed_target(o);
-                o.published.fit_standard_deviation = true;
-              }),
-              std::sqrt(optimal), 0.01 * std::sqrt(optimal));
-  EXPECT_GT(fitted(printed_target, &flat), 1.5 * optimal) << "where q* hardly changes, the variance is large";
+  EXPECT_NEAR(fitted(3, 0.5, state_cost), variance, 0.01 * variance);
+  EXPECT_NEAR(fitted(3, 0.5, as_printed), optimal, 0.01 * optimal);
+  EXPECT_NEAR(fitted(3, 0.5, [](auto& fit, auto&) { fit.fit_standard_deviation = true; }), std::sqrt(optimal),
+              0.005);
+  EXPECT_EQ(fitted(3, 0.5, [](auto&, auto& guides) { guides.iterations = 2; }), 100) << "two points";
+  EXPECT_EQ(fitted(3, 0.5, [](auto&, auto& guides) { guides.step = 1e-12; }), 100)
+      << "a guide that does not move";
+  EXPECT_GT(fitted(0.3, 0.5, as_printed), 1.5 * optimal) << "where q* hardly changes, the variance is large";
   // With the fit as the next Sigma, as (5) and (13) ask for, it shrinks in every solve: no Sigma > 0 agrees.
   double sigma = 0.5;
   for (int n = 1; n < 4; ++n) {
-    sigma = fitted([&](SvgMppiOptions& o) {
-      printed_target(o);
-      o.guides.variance = sigma;
-    });
+    sigma = fitted(3, sigma, as_printed);
     EXPECT_NEAR(1 / sigma, 1 / 0.5 + n / variance, 0.1) << n;
   }
-  EXPECT_EQ(fitted([&](SvgMppiOptions& o) {
-              printed_target(o);
-              o.guides.iterations = 2;
-            }),
-            100)
-      << "two points do not determine a parabola";
-  EXPECT_EQ(fitted([&](SvgMppiOptions& o) {
-              printed_target(o);
-              o.guides.step = 1e-12;
-            }),
-            100)
-      << "a guide that does not move determines nothing";
 }
 
 }  // namespace
