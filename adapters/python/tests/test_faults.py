@@ -24,9 +24,8 @@ def test_callables_cannot_write_what_they_are_lent(part, argument):
 
 @pytest.mark.parametrize("call", [slalom.Mppi, slalom.signed_distance, lambda text: setattr(linear(), "dt", text)])
 def test_messages_do_not_repeat_long_values(call):
-    with pytest.raises(TypeError, match=r"(?s)incompatible.* \.\.\.$") as caught:
+    with pytest.raises(TypeError, match=r"(?s)^(?=.{,1000}$).*incompatible.* \.\.\.$"):
         call("a" * 5000)
-    assert len(str(caught.value)) < 1000
 
 
 def test_dynamics_may_return_their_own_buffer():
