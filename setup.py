@@ -34,6 +34,7 @@ class CMakeBuild(build_ext):
             pass
         generator = ["-G", "Ninja"] if shutil.which("ninja") else []
         cmake = os.environ.get("CMAKE", "cmake")
+        (build / "CMakeCache.txt").unlink(missing_ok=True)  # of another isolated environment, which is gone with its programs
         subprocess.run([cmake, "-S", ROOT, "-B", build, *generator, *(f"-D{k}={v}" for k, v in settings.items()),
                         *shlex.split(os.environ.get("CMAKE_ARGS", ""))], check=True)
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))

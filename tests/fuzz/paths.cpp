@@ -105,10 +105,11 @@ const Target path_target(
     },
     20);
 
-/// A ring road, a hall or one with points, of any resolution and place.
+/// A ring road, a hall or one with points, of any resolution and place; small, since a raceline takes 1 to 3
+/// ms for each of its points.
 maps::OccupancyGrid any_map(Adversary& adversary) {
-  const int size = 8 + adversary.below(72), kind = adversary.below(3);
-  maps::OccupancyGrid map = testing::room(size, size, adversary.within(0.05, 0.3));
+  const int size = 8 + adversary.below(24), kind = adversary.below(3);
+  maps::OccupancyGrid map = testing::room(size, size, adversary.within(0.05, 0.15));
   if (adversary.once_in(8)) map.resolution = adversary.any(0.01, 1);
   map.origin.x = map.origin.y = -0.5 * size * map.resolution;
   if (adversary.once_in(8))
@@ -124,7 +125,7 @@ maps::OccupancyGrid any_map(Adversary& adversary) {
 
 const Target map_line_target(
     "map_line", 2048,
-    []() -> Seeds { return random_bytes(40, 200, "\x40\0\x80\0\1\1\1\0\x28\0\x32\x2f\1\0\0\0\0\1"sv); },
+    []() -> Seeds { return random_bytes(40, 200, "\x17\0\xff\xff\1\1\1\0\x28\0\x12\x02\1\0\0\0\0\1"sv); },
     [](std::string_view bytes) {
       Adversary adversary(bytes);
       const maps::OccupancyGrid map = any_map(adversary);

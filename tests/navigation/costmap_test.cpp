@@ -123,6 +123,10 @@ TEST(Costmap, SeesWhatABodyTouchesBetweenTwoPoses) {
   EXPECT_FALSE(costmap.collides(body, before) || costmap.collides(body, behind));
   EXPECT_TRUE(costmap.collides(body, before, behind));
   EXPECT_FALSE(costmap.collides(body, beside, far));
+  // A corner of the body cuts that of the cell on a way that is shorter than a cell.
+  const Pose below{1.686, 1.211, 0}, above{1.721, 1.246, 0};
+  EXPECT_FALSE(costmap.collides(body, below) || costmap.collides(body, above));
+  EXPECT_TRUE(costmap.collides(body, below, above));
   // A corner sweeps over the cell while the body turns, past half a turn too.
   const Pose turning{1.65, 1.02, 0.5}, turned{1.65, 1.02, -0.5};
   const Footprint narrow = Footprint::rectangle(0.36, 0.2, 0.1);

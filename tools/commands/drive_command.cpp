@@ -154,8 +154,8 @@ class DriveJob {
   void say(const LapResult& lap) const {
     const auto& times = lap.solve_ms;
     std::fprintf(words_,
-                 "lap %d: %s, %.2f s, %d steps, %d collision%s, cost %.3f (state %.3f, collision %.3f), mean "
-                 "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
+                 "lap %d: %s, %.2f s, %d steps, %d collision%s, cost %.3f\n"
+                 "  state cost %.3f, collision cost %.3f; mean %.2f m/s; solve %.2f ms (p99 %.2f)\n",
                  last_number(), end_name(lap), lap.time, lap.steps, lap.collisions,
                  lap.collisions == 1 ? "" : "s", lap.mean_sequence_cost(), lap.state_cost, lap.collision_cost,
                  lap.mean_speed, times.empty() ? 0.0 : evaluation::percentile(times, 0.5),
@@ -177,10 +177,9 @@ class DriveJob {
   void say_estimates(const evaluation::EstimationRecord& record) const {
     const vehicle::ParameterEstimate& last = record.last;
     std::fprintf(words_,
-                 "  friction %.3f +- %.3f, plans rely on %.3f; steering gain %.3f +- %.3f, offset %.4f rad, "
-                 "delay %.3f +- %.3f s; "
-                 "confidence %.2f\n  error of yaw rate %.3f rad/s, slip %.4f rad, speed %.3f m/s (root mean "
-                 "square)\n",
+                 "  friction %.3f +- %.3f, plans rely on %.3f; steering gain %.3f +- %.3f,\n"
+                 "  offset %.4f rad, delay %.3f +- %.3f s; confidence %.2f\n"
+                 "  rms errors: yaw rate %.3f rad/s, slip %.4f rad, speed %.3f m/s\n",
                  last.friction, last.friction_deviation, last.cautious_friction, last.steering_gain,
                  last.steering_gain_deviation, last.steering_offset, last.delay, last.delay_deviation,
                  last.confidence, root_mean_square(record.yaw_rate_error),

@@ -96,8 +96,7 @@ int navigate(const NavigateArguments& arguments) {
     drive_all(arguments, seed, all);
     write_results(arguments, all, i + 1 == arguments.seeds);
   }
-  std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
-  words << markdown_table(all) << std::flush;
+  print(all, arguments.json == "-" ? stderr : stdout);
   if (!arguments.pictures.empty()) {
     std::filesystem::create_directories(arguments.pictures);
     for (const RoomScenario* scenario : scenarios) draw(all, *scenario, arguments.pictures);

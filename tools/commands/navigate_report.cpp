@@ -4,6 +4,7 @@
 #include "slalom/evaluation/statistics.hpp"
 #include "tools/command_line/words.hpp"
 #include "tools/drawing/map_picture.hpp"
+#include "tools/terminal/text_table.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -77,35 +78,51 @@ std::string mean_text(const std::vector<double>& values, int digits = 1) {
          text_of(interval.high, digits) + "]";
 }
 
-/// A row of a table: scenario, driver, "n of m (low to high %)" with the 95 % Wilson interval, collisions,
-/// and the means of the figures.
-std::string markdown_row(const std::string& scenario, const std::string& driver, const Drives& drives,
-                         std::span<const Figure> shown) {
+using Cells = std::vector<std::string>;
+
+/// "n of m (low to high %)" with the 95 % Wilson interval, collisions, and the means of the figures.
+Cells cells_of(const Drives& drives, std::span<const Figure> shown) {
   const int successes = count_of(drives, success_of);
   const Interval rate = evaluation::wilson_interval(successes, static_cast<std::int64_t>(drives.size()));
-  std::string row = "| " + scenario + " | " + driver + " | " + std::to_string(successes) + " of " +
-                    std::to_string(drives.size()) + " (" + text_of(100 * rate.low, 0) + " to " +
-                    text_of(100 * rate.high, 0) + " %) | " + std::to_string(count_of(drives, collision_of));
+  Cells cells{std::to_string(successes) + " of " + std::to_string(drives.size()) + " (" +
+                  text_of(100 * rate.low, 0) + " to " + text_of(100 * rate.high, 0) + " %)",
+              std::to_string(count_of(drives, collision_of))};
   for (const Figure& figure : shown)
-    row += " | " + mean_text(values_of(drives, figure.value), std::max(figure.digits - 1, 1));
-  return row + " |\n";
+    cells.push_back(mean_text(values_of(drives, figure.value), std::max(figure.digits - 1, 1)));
+  return cells;
 }
 
 /// The means of the first driver minus those of another, drive by drive.
-std::string difference_row(const std::string& driver, const Drives& first, const Drives& other,
-                           std::span<const Figure> shown) {
+Cells differences(const Drives& first, const Drives& other, std::span<const Figure> shown) {
   const auto difference = [&](double (*value)(const RoomDrive&), int digits) {
     std::vector<double> values;
     for (std::size_t i = 0; i < std::min(first.size(), other.size()); ++i)
       values.push_back(value(*first[i]) - value(*other[i]));
-    return " | " + mean_text(values, digits);
+    return mean_text(values, digits);
   };
-  std::string row = "| all | " + driver + difference(success_of, 3) + difference(collision_of, 3);
-  for (const Figure& figure : shown) row += difference(figure.value, figure.digits);
+  Cells cells{difference(success_of, 3), difference(collision_of, 3)};
+  for (const Figure& figure : shown) cells.push_back(difference(figure.value, figure.digits));
+  return cells;
+}
+
+std::string markdown_row(const std::string& scenario, const std::string& driver, const Cells& cells) {
+  std::string row = "| " + scenario + " | " + driver;
+  for (const std::string& cell : cells) row += " | " + cell;
   return row + " |\n";
 }
 
-constexpr int moment_interval = 3;  // s
+/// The drives of each driver in all scenarios, in the order of the drivers.
+std::vector<std::pair<std::string, Drives>> by_driver(const std::vector<RoomSeries>& all) {
+  std::vector<std::pair<std::string, Drives>> drivers;
+  for (const RoomSeries& series : all) {
+    auto found = std::find_if(drivers.begin(), drivers.end(),
+                              [&](const auto& each) { return each.first == series.driver; });
+    if (found == drivers.end()) found = drivers.insert(drivers.end(), {series.driver, {}});
+    for (const RoomDrive* drive : drives_of(series)) found->second.push_back(drive);
+  }
+  return drivers;
+}
+
 constexpr Colour person_fill = {0.93, 0.75, 0.25, 0.55}, person_rim = {0.55, 0.40, 0.05, 1};
 
 std::vector<maps::Point> outline(const maps::Pose& pose, const RoomScenario& scenario) {
@@ -123,18 +140,23 @@ std::vector<maps::Point> circle(const maps::Point& middle, double radius) {
   return points;
 }
 
-/// Draws robot and people of a drive, every moment_interval.
-void draw_moments(MapPicture& picture, const RoomDrive& drive, const RoomScenario& scenario,
-                  const Colour& colour) {
-  const auto periods = static_cast<std::size_t>(std::lround(moment_interval / evaluation::room_period));
-  for (std::size_t k = 0; k < drive.people.size(); ++k)
-    picture.line(drive.people[k], person_rim, 2, false, true);
-  if (drive.people.empty()) return;
-  for (std::size_t i = 0; i < drive.trace.size(); i += periods) {
-    picture.line(outline(drive.trace[i], scenario), colour, 1.5, true);
-    for (std::size_t k = 0; k < drive.people.size(); ++k)
-      picture.polygon(circle(drive.people[k][i], scenario.walkers[k].radius), person_fill, person_rim);
+/// Draws the ways of the people of a drive, and robot and people at one moment: when somebody is nearest to
+/// it.
+void draw_people(MapPicture& picture, const RoomDrive& drive, const RoomScenario& scenario,
+                 const Colour& colour) {
+  std::size_t moment = 0;
+  double nearest = INFINITY;
+  for (const std::vector<maps::Point>& way : drive.people) {
+    picture.line(way, person_rim, 2, false, true);
+    for (std::size_t i = 0; i < std::min(way.size(), drive.trace.size()); ++i) {
+      const double distance = std::hypot(way[i].x - drive.trace[i].x, way[i].y - drive.trace[i].y);
+      if (distance < nearest) nearest = distance, moment = i;
+    }
   }
+  if (drive.people.empty()) return;
+  picture.polygon(outline(drive.trace[moment], scenario), colour, white);
+  for (std::size_t k = 0; k < drive.people.size(); ++k)
+    picture.polygon(circle(drive.people[k][moment], scenario.walkers[k].radius), person_fill, person_rim);
 }
 
 }  // namespace
@@ -183,21 +205,58 @@ std::string markdown_table(const std::vector<RoomSeries>& all) {
   text += " |\n|---|---|---|---";
   for (std::size_t i = 0; i < shown.size(); ++i) text += "|---";
   text += "|\n";
-  std::vector<std::pair<std::string, Drives>> drivers;
-  for (const RoomSeries& series : all) {
-    const Drives drives = drives_of(series);
+  for (const RoomSeries& series : all)
     if (series.scenario->optimal_time == 0)  // the 300 worlds of BARN have one row together
-      text += markdown_row("`" + series.scenario->name + "`", "`" + series.driver + "`", drives, shown);
-    auto found = std::find_if(drivers.begin(), drivers.end(),
-                              [&](const auto& each) { return each.first == series.driver; });
-    if (found == drivers.end()) found = drivers.insert(drivers.end(), {series.driver, {}});
-    found->second.insert(found->second.end(), drives.begin(), drives.end());
-  }
-  for (const auto& [name, drives] : drivers) text += markdown_row("all", "`" + name + "`", drives, shown);
+      text += markdown_row("`" + series.scenario->name + "`", "`" + series.driver + "`",
+                           cells_of(drives_of(series), shown));
+  const auto drivers = by_driver(all);
+  for (const auto& [name, drives] : drivers)
+    text += markdown_row("all", "`" + name + "`", cells_of(drives, shown));
   for (std::size_t i = 1; i < drivers.size(); ++i)
-    text += difference_row("`" + drivers[0].first + "` minus `" + drivers[i].first + "`", drivers[0].second,
-                           drivers[i].second, shown);
+    text += markdown_row("all", "`" + drivers[0].first + "` minus `" + drivers[i].first + "`",
+                         differences(drivers[0].second, drivers[i].second, shown));
   return text;
+}
+
+void print(const std::vector<RoomSeries>& all, std::FILE* out) {
+  const std::span<const Figure> shown = figures_of(all);
+  const auto drivers = by_driver(all);
+  std::vector<std::pair<std::string, Cells>> columns;
+  std::string sentence;
+  for (const auto& [name, drives] : drivers) {
+    columns.emplace_back(name, cells_of(drives, shown));
+    const Cells& cells = columns.back().second;
+    const std::string rate = cells[0].substr(0, cells[0].find(" ("));
+    sentence += sentence.empty() ? name + " succeeds in " + rate + " drives (" + cells[1] + " collisions)"
+                                 : ",\n" + name + " in " + rate + " (" + cells[1] + ")";
+  }
+  std::fprintf(out, "%s\n", sentence.c_str());
+  for (std::size_t i = 1; i < drivers.size(); ++i)
+    columns.emplace_back(drivers[0].first + " - " + drivers[i].first,
+                         differences(drivers[0].second, drivers[i].second, shown));
+  TextTable scenarios({"<scenario", "<driver", "<success", "collisions", "time, s"});
+  for (const RoomSeries& series : all)
+    if (series.scenario->optimal_time == 0 && all.size() > drivers.size()) {
+      const Cells cells = cells_of(drives_of(series), shown.first(1));
+      scenarios.add({series.scenario->name, series.driver, cells[0], cells[1], cells[2]});
+    }
+  if (!scenarios.empty()) std::fprintf(out, "\n"), scenarios.print(out);
+  // As many drivers beside one another as there is room for.
+  const auto room =
+      static_cast<std::size_t>(std::clamp((std::min(terminal_columns(out), 100) - 30) / 25, 1, 2));
+  for (std::size_t from = 0; from < columns.size(); from += room) {
+    const std::size_t to = std::min(from + room, columns.size());
+    std::vector<std::string> heads{"<"};
+    for (std::size_t k = from; k < to; ++k) heads.push_back(columns[k].first);
+    TextTable table(heads);
+    for (std::size_t row = 0; row < shown.size() + 2; ++row) {
+      std::vector<std::string> cells{row == 0 ? "success" : row == 1 ? "collisions" : shown[row - 2].heading};
+      for (std::size_t k = from; k < to; ++k) cells.push_back(columns[k].second[row]);
+      table.add(cells);
+    }
+    std::fprintf(out, "\n");
+    table.print(out);
+  }
 }
 
 void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, const std::string& folder) {
@@ -217,7 +276,7 @@ void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, cons
     ++index;
     key.emplace_back(series.driver, colour);
     for (const RoomDrive& drive : series.drives) {
-      if (index == 1 && &drive == &series.drives.front()) draw_moments(picture, drive, scenario, colour);
+      if (index == 1 && &drive == &series.drives.front()) draw_people(picture, drive, scenario, colour);
       std::vector<maps::Point> points;
       for (const maps::Pose& pose : drive.trace) points.push_back({pose.x, pose.y});
       picture.line(points, colour, 3, false);
@@ -225,8 +284,7 @@ void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, cons
       if (index == 1) picture.arrow(drive.goal, 20, {0.13, 0.16, 0.22, 1});
     }
   }
-  if (!scenario.walkers.empty())
-    key.emplace_back("people, every " + std::to_string(moment_interval) + " s", person_rim);
+  if (!scenario.walkers.empty()) key.emplace_back("people, when one is nearest to the robot", person_rim);
   picture.arrow(scenario.start, 20, {0.13, 0.16, 0.22, 1});
   picture.key(scenario.name, scenario.summary, key);
   picture.save(std::filesystem::path(folder) / (scenario.name + ".png"));

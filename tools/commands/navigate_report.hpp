@@ -22,8 +22,11 @@ nlohmann::ordered_json summary_of(const RoomSeries& series);
 /// from the first one on the same scenarios and seeds.
 std::string markdown_table(const std::vector<RoomSeries>& all);
 
+/// Prints how often each driver succeeds, and the figures, in at most 100 columns.
+void print(const std::vector<RoomSeries>& all, std::FILE* out);
+
 /// Writes the picture of a scenario, NAME.png, to this folder: the ways that all drivers took, and of the
-/// first drive where robot and people were every 3 s. Throws IoError if it cannot be written.
+/// first drive robot and people when one of them was nearest to it. Throws IoError if it cannot be written.
 void draw(const std::vector<RoomSeries>& all, const evaluation::RoomScenario& scenario,
           const std::string& folder);
 

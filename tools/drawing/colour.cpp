@@ -31,10 +31,4 @@ Colour scale_colour(std::span<const Colour> stops, double value) {
   return mixed(stops[i], stops[i + 1], at - static_cast<double>(i));
 }
 
-Colour speed_colour(double value) {
-  static constexpr Colour stops[] = {{0.16, 0.22, 0.62}, {0.08, 0.47, 0.76}, {0.05, 0.64, 0.55},
-                                     {0.55, 0.74, 0.20}, {0.96, 0.66, 0.11}, {0.86, 0.19, 0.18}};
-  return scale_colour(stops, value);
-}
-
 }  // namespace slalom::tools

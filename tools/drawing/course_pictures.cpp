@@ -12,8 +12,6 @@ constexpr Colour line_colour{0.62, 0.66, 0.73, 0.9};  // centre lines and paths
 constexpr Colour corridor_side{0.16, 0.52, 0.36, 0.7};
 constexpr Colour nearest{0.80, 0.13, 0.18, 1};
 constexpr Colour tightest{0.42, 0.20, 0.62, 1};
-constexpr Colour obstacle_fill{0.32, 0.36, 0.44, 1};
-constexpr Colour hit_fill{0.80, 0.13, 0.23, 1};
 constexpr int picture_side = 1400;  // pixels
 
 template <class Points>
@@ -63,11 +61,11 @@ void draw_lap(const maps::OccupancyGrid& map, const evaluation::LapSetup& setup,
   const sim::CarParameters car;
   for (std::size_t i = 0; i < lap.obstacles.size(); ++i) {
     const auto corners = sim::corners({lap.obstacles[i], car.length, car.width});
-    picture.polygon({corners.begin(), corners.end()}, was_hit(i + 1) ? hit_fill : obstacle_fill, white);
+    picture.polygon({corners.begin(), corners.end()}, was_hit(i + 1) ? hit_colour : obstacle_colour, white);
   }
   picture.arrow(setup.start(), 20, ink);
   for (const auto& collision : lap.first_collisions)
-    picture.cross({collision.pose.x, collision.pose.y}, 14, hit_fill);
+    picture.cross({collision.pose.x, collision.pose.y}, 14, hit_colour);
 
   const std::string facts = formatted(
       "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collision%s \xC2\xB7 cost %.2f \xC2\xB7 %zu "

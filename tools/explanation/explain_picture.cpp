@@ -9,22 +9,13 @@ namespace {
 constexpr Colour frame{0.78, 0.81, 0.86, 1}, disc_fill{0.36, 0.39, 0.45, 1},
     disc_shade{0.36, 0.39, 0.45, 0.13}, bad{0.80, 0.24, 0.20, 0.09}, bad_key{0.80, 0.24, 0.20, 0.45},
     ours{0.12, 0.42, 0.78, 1}, ours_light{0.12, 0.42, 0.78, 0.16}, optimum{0.90, 0.58, 0.10, 1},
-    optimum_light{0.96, 0.72, 0.26, 0.30}, guide{0.55, 0.16, 0.66, 1}, good_verdict{0.05, 0.48, 0.30, 1},
-    bad_verdict{0.75, 0.16, 0.14, 1};
+    optimum_light{0.96, 0.72, 0.26, 0.30}, guide = guide_colour, good_verdict{0.05, 0.48, 0.30, 1},
+                                           bad_verdict{0.75, 0.16, 0.14, 1};
 constexpr double margin = 22, header = 112, caption = 46, space_width = 330, space_height = 250, gap = 8,
                  density_width = 104, axis_left = 34, axis_below = 34, reach = 1.5;
 constexpr double cell_width = axis_left + space_width + gap + density_width,
                  cell_height = caption + space_height + axis_below;
 constexpr int drawn_samples = 100;
-
-/// The colour of a sample, from low cost (deep green) over yellow to high cost (pale).
-Colour cost_colour(double share, double opacity) {
-  static constexpr Colour stops[] = {
-      {0.02, 0.36, 0.36}, {0.12, 0.62, 0.44}, {0.68, 0.80, 0.36}, {0.93, 0.88, 0.58}};
-  Colour colour = scale_colour(stops, share);
-  colour.opacity = opacity;
-  return colour;
-}
 
 /// The plots of a method.
 struct Cell {

@@ -16,20 +16,6 @@ constexpr int scene = height - band;                 // pixels
 constexpr double nearest = 150, following = 45;      // pixels for a metre: at most, and behind a car
 constexpr double most_pixels = 2.4e7;                // image of the map
 
-constexpr Colour plan_colour{0.00, 0.53, 0.42}, guide_colour{0.63, 0.11, 0.69},
-    nominal_colour{0.13, 0.15, 0.18, 0.7}, driven_colour{0.26, 0.33, 0.85, 0.85},
-    obstacle_fill{0.85, 0.52, 0.09}, obstacle_rim{0.36, 0.21, 0.00}, opponent_fill{0.07, 0.45, 0.72},
-    hit{0.79, 0.20, 0.06}, path_colour{0.42, 0.48, 0.55, 0.6};
-
-/// The colour of a sample, from low cost (blue) to high cost (yellow).
-Colour cost_colour(double share, double opacity) {
-  static constexpr Colour stops[] = {{0.13, 0.22, 0.47}, {0.00, 0.37, 0.61}, {0.00, 0.53, 0.62},
-                                     {0.00, 0.67, 0.52}, {0.48, 0.75, 0.39}, {0.83, 0.80, 0.43}};
-  Colour colour = scale_colour(stops, share);
-  colour.opacity = opacity;
-  return colour;
-}
-
 /// A world of a drive with its history.
 struct Lane {
   std::vector<maps::Point> driven;
@@ -94,7 +80,7 @@ class LanePainter {
       const double share = std::sqrt(std::max(0.0f, each.weight) / heaviest);
       const double cost = high > low ? std::clamp((each.cost - low) / (high - low), 0.0f, 1.0f) : 0;
       Colour colour = cost_colour(cost, 0.55 - 0.25 * cost + 0.45 * share);
-      if (each.collided) (colour = hit).opacity = 0.3 + 0.3 * share;
+      if (each.collided) (colour = hit_colour).opacity = 0.3 + 0.3 * share;
       line(each.points, {.colour = colour, .width = 1 + 2 * share});
     }
   }
@@ -102,10 +88,10 @@ class LanePainter {
   void draw_body(const RecordedBody& body) {
     const bool is_car = body.kind == 0 || body.kind == 4;
     const Colour fill = body.kind == 0   ? ink
-                        : body.kind == 4 ? opponent_fill
-                        : body.collided  ? hit
-                                         : obstacle_fill;
-    const Colour rim = body.collided ? hit : is_car ? white : obstacle_rim;
+                        : body.kind == 4 ? opponent_colour
+                        : body.collided  ? hit_colour
+                                         : obstacle_colour;
+    const Colour rim = body.collided ? hit_colour : is_car ? white : obstacle_rim;
     const auto& [pose, length, wide] = body.box;
     if (body.kind == 3) {
       const auto [x, y] = pixel({pose.x, pose.y});
@@ -128,7 +114,7 @@ class LanePainter {
   void draw_cross(const maps::Pose& at) {
     const auto [x, y] = pixel({at.x, at.y});
     constexpr double arm = 10;
-    for (const auto& [colour, wide] : {std::pair(white, 7.0), std::pair(hit, 4.0)})
+    for (const auto& [colour, wide] : {std::pair(white, 7.0), std::pair(hit_colour, 4.0)})
       for (const double side : {arm, -arm}) pen_.line(x - arm, y - side, x + arm, y + side, colour, wide);
   }
 
@@ -200,7 +186,7 @@ class Film {
     const std::string title = formatted("%s: %d collision%s", step.method.c_str(), step.collisions,
                                         step.collisions == 1 ? "" : "s");
     pen.box(left + 10, 10, pen.text_width(title, 17, true) + 20, 30, white, rule, 1, 5);
-    pen.text(left + 20, 31, 17, title, step.collisions > 0 ? hit : ink, 0, true);
+    pen.text(left + 20, 31, 17, title, step.collisions > 0 ? hit_colour : ink, 0, true);
     pen.unclip();
     if (index > 0) pen.rectangle(left - 1, 0, 2, scene, ink);
   }
@@ -233,12 +219,12 @@ class Film {
     const auto any_body = [&](auto is_one) {
       return any([&](const auto& step) { return std::ranges::any_of(step.bodies, is_one); });
     };
-    entry("samples that collide", hit);
+    entry("samples that collide", hit_colour);
     if (any([](const auto& step) { return !step.guides.empty(); })) entry("guides", guide_colour);
     entry("driven", driven_colour);
     if (any_body([](const auto& body) { return body.kind > 0 && body.kind < 4; }))
-      entry("obstacle", obstacle_fill);
-    if (any_body([](const auto& body) { return body.kind == 4; })) entry("opponent", opponent_fill);
+      entry("obstacle", obstacle_colour);
+    if (any_body([](const auto& body) { return body.kind == 4; })) entry("opponent", opponent_colour);
   }
 
   const RecordedDrive& drive_;

@@ -12,6 +12,7 @@ import importlib.util
 
 from . import _slalom, display, plot
 display.add_methods(_slalom)
+display.install(_slalom)
 from ._slalom import *  # noqa: E402,F401,F403
 from ._slalom import __version__  # noqa: E402
 from .closed_loop import Run, run  # noqa: E402
@@ -48,7 +49,6 @@ def __dir__() -> list[str]:
     return sorted([*__all__, "compile", "gpu", "plot", "study", "tune"])
 
 
-display.install(_slalom)
 from . import gpu  # noqa: E402  the signatures of its classes are those of the compiled ones
 for _module in filter(None, (_slalom, _driving)):
     display.set_pickles(_module)

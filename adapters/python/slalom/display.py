@@ -42,6 +42,7 @@ def install(solvers: ModuleType) -> None:
                                                for name in inspect.signature(solvers.Problem).parameters}),
         solvers.RiskEvaluator: lambda risk: ((risk.problem, risk.randomize), risk.options),
         solvers.CompiledProblem: lambda problem: ((problem.file,), problem.parameters)}
+    _add_signatures(solvers, solvers)
     for cls in [each for each in vars(solvers).values() if isinstance(each, type)]:
         _add_signatures(solvers, cls)
         if issubclass(cls, solvers.Controller):
@@ -50,6 +51,7 @@ def install(solvers: ModuleType) -> None:
         elif issubclass(cls, solvers.AnyProblem) and cls is not solvers.AnyProblem:
             _constructed(cls, arguments.get(cls, lambda problem: ((), changed(problem))))
     setattr(solvers.Plan, "__repr__", _plan_text)
+    setattr(solvers.Field, "__repr__", lambda field: f"<slalom.Field {field.shape[0]} x {field.shape[1]} of {field.resolution} m>")
     setattr(solvers.Plan, "_repr_png_", lambda plan: plot._png(plot.plan, plan))
 
 
@@ -94,19 +96,24 @@ def _refuse_attribute(controller: Any, name: str, value: Any) -> None:
     object.__setattr__(controller, name, value)
 
 
-def _add_signatures(solvers: ModuleType, cls: type) -> None:
-    """Wraps the compiled methods of a class in functions whose signatures Python can tell."""
+def _add_signatures(solvers: ModuleType, cls: Any) -> None:
+    """Wraps the compiled functions of a class or module in those whose signatures Python can tell."""
     for name, method in list(vars(cls).items()):
         function = getattr(method, "__func__", method)
         first = re.match(r"\w+\((.*)\) -> ", getattr(function, "__doc__", None) or "")
-        if first and (name == "__init__" or not name.startswith("_")) and not isinstance(method, staticmethod):
+        if isinstance(method, property) and method.fset:
+            setattr(cls, name, method.setter(_with_signature(method.fset, [])))
+        elif first and (name == "__init__" or not name.startswith("_")) and not isinstance(method, (staticmethod, type)):
             setattr(cls, name, _with_signature(function, _parameters(solvers, cls, first[1])))
 
 
 def _with_signature(function: Callable[..., Any], parameters: list[inspect.Parameter]) -> Callable[..., Any]:
     @functools.wraps(function)
     def method(*arguments: Any, **named: Any) -> Any:
-        return function(*arguments, **named)
+        try:
+            return function(*arguments, **named)
+        except TypeError as error:  # that of pybind11 ends with all values, however long
+            raise error if len(str(error)) < 1000 else TypeError(f"{str(error)[:990]} ...")
 
     setattr(method, "__signature__", inspect.Signature(parameters))
     return method
@@ -116,7 +123,7 @@ def _parameters(solvers: ModuleType, cls: type, text: str) -> list[inspect.Param
     """The parameters in the first line of a compiled function's docstring; for `**kwargs`, the options of the class."""
     found: list[inspect.Parameter] = []
     kind: Any = inspect.Parameter.POSITIONAL_OR_KEYWORD
-    for part in re.split(r", (?=\w+: |\*)", text):
+    for part in filter(None, re.split(r", (?=\w+: |\*)", text)):
         if part.startswith("*"):
             kind = inspect.Parameter.KEYWORD_ONLY
             if part.startswith("**"):

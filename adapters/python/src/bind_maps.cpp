@@ -157,12 +157,7 @@ void bind_field(py::module_& module) {
       .def("value_and_gradient", &look_up<true>, "x"_a, "y"_a,
            "A tuple: the value at positions of the map frame, and its derivatives by x and y.")
       .def("relative_to", &Field::relative_to, "x"_a, "y"_a,
-           "The same field for positions relative to a point of the map frame, m.")
-      .def("__repr__", [](const Field& f) {
-        const FieldGeometry& g = f.geometry();
-        return "<slalom.Field " + std::to_string(g.height) + " x " + std::to_string(g.width) + " of " +
-               py::str(py::float_(g.resolution)).cast<std::string>() + " m>";
-      });
+           "The same field for positions relative to a point of the map frame, m.");
   const auto read = reader(field);
   read("shape", "rows and columns of samples",
        [](const Field& f) { return py::make_tuple(f.geometry().height, f.geometry().width); });

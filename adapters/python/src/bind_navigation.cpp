@@ -191,9 +191,8 @@ void bind_navigator(py::module_& module) {
           "pose"_a, "velocity"_a, "costmap"_a, "elapsed"_a, "others"_a = std::vector<Prediction>{},
           "The command for the next control period, `elapsed` (s) after the last update. `velocity` is that "
           "of the robot: forward, left (m/s), turn (rad/s). `others`: PredictedObstacle of what moves, which "
-          "the "
-          "costmap should not show. Returns status, command (as velocity), remaining "
-          "(m of path), delay (s), plan [n, 3] and path [n, 3].")
+          "the costmap should not show. Returns status, command (as velocity), remaining (m of path), delay "
+          "(s), plan [n, 3] and path [n, 3].")
       .def("set_cost", &PythonNavigator::set_term, "function"_a,
            "Adds a term of your own to the cost of plans: function(x, y, yaw, forward, left, turn, step) "
            "takes arrays [n] of the states of rollouts at a step, and returns their costs per second [n]. "

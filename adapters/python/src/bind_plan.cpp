@@ -107,8 +107,7 @@ void bind_plan(py::module_& module) {
   read("symptom",
        "a likely reason for poor plans that stays for 20 solves, of which a SymptomWarning tells once: "
        "'none', 'few_samples', 'equal_costs', 'samples_diverge', 'small_variance', 'saturated_inputs', "
-       "'noisy_plan' or "
-       "'no_progress'",
+       "'noisy_plan' or 'no_progress'",
        [](const Plan& p) { return std::string(name(p.result().symptom())); });
   read("times", "wall-clock time (s) of each stage", &times);
   read("status",

@@ -124,11 +124,8 @@ def test_a_network_as_a_problem_is_that_of_callables(activation):
         away = x - np.float32([1, 0])
         return away[:, 0] ** 2 + np.float32(0.1) * away[:, 1] ** 2 + np.float32(0.01) * u[:, 0] ** 2
 
-    def terminal_cost(x):
-        return 2 * np.sum((x - np.float32([1, 0])) ** 2, axis=1)
-
-    callables = slalom.Problem(lambda x, u: mlp(np.concatenate([x, u], axis=1)), cost, terminal_cost, states=2,
-                               inputs=1, dt=0.1, input_min=-2, input_max=2)
+    callables = slalom.Problem(lambda x, u: mlp(np.concatenate([x, u], axis=1)), cost, lambda x: 2 * np.sum((x - np.float32([1, 0])) ** 2, 1),
+                               states=2, inputs=1, dt=0.1, input_min=-2, input_max=2)
     compiled = slalom.MlpProblem(mlp, **PARTS)
     plans = [slalom.Mppi(p, horizon=12, samples=200).solve([0.2, -0.3]) for p in (compiled, callables)]
     assert np.allclose(plans[0].costs, plans[1].costs, rtol=1e-4)

@@ -119,10 +119,7 @@ def test_callables_get_whole_batches_without_copies():
 
 
 def test_collisions_of_callables_are_reported():
-    def cost(x, u):
-        return x[:, 0] ** 2, u[:, 0] > 0
-
-    plan = slalom.Mppi(linear(cost=cost), horizon=3, samples=200).solve([0, 0])
+    plan = slalom.Mppi(linear(cost=lambda x, u: (x[:, 0] ** 2, u[:, 0] > 0)), horizon=3, samples=200).solve([0, 0])
     assert 0.7 < plan.collided_share < 0.95
     plan = slalom.Mppi(linear(cost=lambda x, u: (x[:, 0], x[:, 0] < 1)), horizon=3).solve([0, 0])
     assert plan.status == "all_collided" and plan.collided

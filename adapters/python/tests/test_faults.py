@@ -22,6 +22,12 @@ def test_callables_cannot_write_what_they_are_lent(part, argument):
             slalom.Mppi(linear(**{part: writes}), horizon=4, samples=samples).solve([0, 0])
 
 
+@pytest.mark.parametrize("call", [slalom.Mppi, slalom.signed_distance, lambda text: setattr(linear(), "dt", text)])
+def test_messages_do_not_repeat_long_values(call):
+    with pytest.raises(TypeError, match=r"(?s)^(?=.{,1000}$).*incompatible.* \.\.\.$"):
+        call("a" * 5000)
+
+
 def test_dynamics_may_return_their_own_buffer():
     buffer = np.zeros((1000, 2), np.float32)
     problem = linear(dynamics=lambda x, u: np.add(dynamics(x, u), 0, out=buffer) if len(x) == 1000 else dynamics(x, u))
@@ -124,8 +130,9 @@ def test_objects_that_were_never_constructed_raise():
         for name in [name for name, member in vars(cls).items() if isinstance(member, property) and member.fset]:
             with pytest.raises((TypeError, ValueError)):
                 setattr(empty, name, 1)
-    with pytest.raises((TypeError, RuntimeError)):
-        slalom.solve_batch([slalom.Mppi.__new__(slalom.Mppi)], [[0, 0]])
+    for call in (lambda: slalom.solve_batch([slalom.Mppi.__new__(slalom.Mppi)], [[0, 0]]), lambda: repr(slalom.Field.__new__(slalom.Field))):
+        with pytest.raises((TypeError, RuntimeError)):
+            call()
 
 
 def test_a_command_is_the_first_input_of_a_plan_a_step_later():

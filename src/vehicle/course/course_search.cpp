@@ -27,9 +27,9 @@ std::vector<std::string> course_names(const std::vector<fs::path>& roots) {
 fs::path find_course(const std::string& name_or_folder, const std::vector<fs::path>& roots) {
   if (name_or_folder.empty())
     throw IoError("course", 0, "is empty; must be a folder or the name of a course");
-  if (fs::is_directory(name_or_folder)) return name_or_folder;
+  if (std::error_code none; fs::is_directory(name_or_folder, none)) return name_or_folder;
   for (const auto& root : roots)
-    if (fs::is_directory(root / name_or_folder)) return root / name_or_folder;
+    if (std::error_code none; fs::is_directory(root / name_or_folder, none)) return root / name_or_folder;
   throw IoError(
       name_or_folder, 0,
       "is neither a folder nor the name of a course (known: " + detail::listed(course_names(roots), "none") +

@@ -8,6 +8,20 @@ function signed(value: number, digits: number) {
   const amount = Math.abs(value).toFixed(digits);
   return (value >= 0 || Number(amount) === 0 ? "+" : "−") + amount;
 }
+/** Meanings of the statuses with which a body does not just drive on. */
+const reasons: Record<string, string> = {
+  all_collided: "Every sample collides.",
+  detour: "The path is blocked; this is the way around.",
+  braking: "The plan soon meets an obstacle, so the robot brakes.",
+  blocked: "Every plan collides, so it stands.",
+  goal_occupied: "Something is on the goal, so the robot stands before it.",
+  stuck: "It got no further, so it stands for a while and tries again.",
+  commands_ignored: "The robot does not move although it is told to.",
+  goal_reached: "It stands at the goal.",
+  no_path: "There is no path, or the robot is off its map.",
+  fallback_plan: "The solution collides, so another plan is driven.",
+  off_course: "The car is too far from its line, so it brakes.",
+};
 const words = (name: string) => name.replace(/_/g, " ");
 
 /** Shows a figure before its unit, with its name; hides both where there is none. */
@@ -38,8 +52,8 @@ function showLabels({ statuses, symptoms }: Hello) {
   if (status && status !== "ok") parts.push(words(status));
   if (isShown) parts.push(words(symptom.name));
   say(label, parts.join(" · "));
-  label.title = isShown ? symptom.explanation : "";
-  get("why").hidden = !isShown;
+  label.title = [reasons[status], isShown && symptom.explanation].filter(Boolean).join(" ");
+  get("why").hidden = !label.title;
   say(get("why"), label.title);
   label.classList.toggle("blocked", status === "blocked");
   const { ghost_label, ghost } = page.state ?? {};

@@ -33,11 +33,32 @@ const rowsOf = (m) => [m.slice(0, 3), m.slice(3, 6), m.slice(6)];
 const clipped = (v) => v.map((each) => Math.min(1, Math.max(0, each)));
 const oklab = (rgb) => product(toOklab, product(toLms, rgb).map(Math.cbrt));
 
-/** Pairs of layers that are drawn alike and that somebody cannot tell apart, in one line each. */
-export async function similarColours() {
+async function palette() {
   const source = readFileSync(new URL("../src/scene/palette.ts", import.meta.url), "utf8");
   const { code } = await transform(source, { loader: "ts" });
-  const { themes } = await import("data:text/javascript," + encodeURIComponent(code));
+  return import("data:text/javascript," + encodeURIComponent(code));
+}
+
+/** Colours of pictures and videos, by name, and those of the page for the same. */
+export async function coloursByMeaning() {
+  const source = readFileSync(new URL("../../../tools/drawing/colour.hpp", import.meta.url), "utf8");
+  const { themes, rampColour } = await palette();
+  const hex = (rgb) => rgb.slice(0, 3).reduce((sum, v) => 256 * sum + Math.round(255 * v), 0);
+  const named = [...source.matchAll(/(\w+)_colour = hex\((0x\w+)/g)].map(([, name, rgb]) => [
+    name,
+    Number(rgb),
+  ]);
+  const stops = /quantity_stops\[\] = {(.*?)};/s.exec(source)[1].match(/0x\w+/g).map(Number);
+  const own = named.map(([name]) => [name, hex(themes.light[name === "hit" ? "collided" : name])]);
+  return [
+    [...named, stops],
+    [...own, stops.map((_, i) => hex(rampColour(themes.light, i / (stops.length - 1), 1)))],
+  ];
+}
+
+/** Pairs of layers that are drawn alike and that somebody cannot tell apart, in one line each. */
+export async function similarColours() {
+  const { themes } = await palette();
   const found = [];
   for (const [name, theme] of Object.entries(themes))
     for (const [vision, matrix] of Object.entries(simulations)) {

@@ -28,15 +28,12 @@ if (!isIntroduction) {
   await h.pause();
 }
 
-/** The step of the introduction in which mppi averages and svg_mppi commits. */
+/** The part of the introduction in which mppi averages and svg_mppi commits. */
 async function drawIntroduction() {
-  const says = (step) => h.says("introduction-text", `${step} of 6. `);
-  await says(1);
-  for (let step = 2; step <= 5; ++step) {
-    await page.click("#introduction-next");
-    await says(step);
+  for (let part = 1; part <= 4; ++part) {
+    await h.says("introduction-text", `${part} of 5. `);
+    if (part < 4) await page.keyboard.press("n");
   }
-  await h.isPaused();
   await h.drawn();
   return page.screenshot();
 }
@@ -53,12 +50,12 @@ const opponent = () =>
 /** Six pictures of an overtake at equal intervals, in which the car drives to the right. */
 async function drawOvertake() {
   const tile = { width: 460, height: 300 };
-  const every = 22; // control steps
+  const every = 20; // control steps
   await page.evaluate(() => slalom.layers.visible.clear()); // faster, while nobody looks
-  // The overtake is over when the opponent that was ahead is 1.5 m behind.
+  // The overtake is over when the opponent that was ahead is 0.9 m behind.
   let wasAhead = false;
-  for (let last = {}; !(wasAhead && last.apart < 2.5 && last.ahead < -1.5); last = await opponent()) {
-    await h.step(5);
+  for (let last = {}; !(wasAhead && last.apart < 2.5 && last.ahead < -0.9); last = await opponent()) {
+    await h.step(3);
     wasAhead ||= last.apart < 3 && last.ahead > 0.5;
   }
   await page.addStyleTag({ content: ".card, .tag, header { visibility: hidden !important }" });

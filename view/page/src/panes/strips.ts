@@ -14,7 +14,6 @@ export interface Line {
 export interface Strip {
   title: string;
   lines: Line[];
-  isCost: boolean;
 }
 
 const dash = [5, 3];
@@ -24,7 +23,6 @@ type Named = [name: string, label: string, colour: string, look?: Partial<Line>]
 /** Names its lines as "label: scalar in colour". */
 const strip = (title: string, ...lines: Named[]): Strip => ({
   title,
-  isCost: title.startsWith("Cost"),
   lines: lines.map(([name, label, colour, look]) => ({ name, label, colour: `--${colour}`, ...look })),
 });
 

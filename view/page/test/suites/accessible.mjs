@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { similarColours } from "../colour_vision.mjs";
+import { coloursByMeaning, similarColours } from "../colour_vision.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
 
@@ -97,5 +97,8 @@ export default async function (h) {
 
   await h.test("the colours of layers differ for every kind of colour vision", async () => {
     assert.deepEqual(await similarColours(), []);
+    const [pictures, page] = await coloursByMeaning();
+    assert.equal(pictures.length, 9);
+    assert.deepEqual(pictures, page, "pictures, videos and page have the same colours");
   });
 }

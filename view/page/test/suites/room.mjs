@@ -17,8 +17,10 @@ export default async function (h) {
     assert.deepEqual([state.lines, state.grid], [1, "pallet-on-path"]);
     assert.ok(state.candidates > 50, state.candidates);
     await look.send({ do: "rate", rate: 0 });
-    await look.until(() => slalom.hello.statuses[slalom.scalar("status")] === "detour");
-    await look.says("label", "detour");
+    const why = "The path is blocked; this is the way around.";
+    await look.until((text) => document.getElementById("why").textContent === text, why);
+    await look.pause();
+    assert.match(await page.textContent("#label"), /detour/);
   });
 
   await h.test("its goal is dragged while the drive is paused, and the path leads there", async () => {
