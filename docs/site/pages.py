@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Copies the pages and pictures of the repository to a folder for MkDocs: README.md becomes the first page, with the
-demonstration in the browser if there is one; links to headers lead to the reference, and those to notebooks to their pages.
+introduction and the demonstration in the browser if there are; links to headers lead to the reference, and those to notebooks to their pages.
 
 usage: pages.py TO SITE
 """
@@ -11,6 +11,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+INTRODUCTION = """<iframe class="demo" src="introduction.html" title="Two methods before a parked car" loading="lazy"></iframe>
+
+"""
 DEMO = """<iframe class="demo" src="demo/index.html" title="A robot among discs, in the live view" loading="lazy"></iframe>
 
 `svg_mppi` drives a robot among discs, and your browser solves each step. Drag a disc or the robot, also while the drive is
@@ -41,8 +44,9 @@ def page(path, reference, site):
     fenced = re.split(r"(^```.*?^```$)", path.read_text(), flags=re.S | re.M)
     fenced[::2] = [re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link, part) for part in fenced[::2]]
     text = "".join(fenced)
-    if path == Path("README.md") and (site / "demo").exists():
-        text = re.sub(r"^!\[.*\)$", lambda _: DEMO, text, count=1, flags=re.M)
+    shown = INTRODUCTION * (site / "introduction.html").exists() + DEMO * (site / "demo").exists()
+    if path == Path("README.md") and shown:
+        text = re.sub(r"^!\[.*\)$", lambda _: shown, text, count=1, flags=re.M)
     return text
 
 

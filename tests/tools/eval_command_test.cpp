@@ -135,6 +135,7 @@ TEST_F(EvalCommand, WritesASummary) {
   EXPECT_LT(html.find("Paired comparison"), html.find("<table")) << "begins with the result";
   EXPECT_LT(html.find("<table"), html.find("<img"));
   EXPECT_FALSE(contains(html, "authors' laps")) << "only terms that are used are explained";
+  expect_says(html, {"<p>oa: "});  // who is better, in a sentence
   expect_says(said, {"one/report.html"});
   EXPECT_TRUE(fs::exists(folder_ / "one/figures/methods.svg"));
 }

@@ -269,25 +269,13 @@ TEST_F(ViewSession, LoadsOnlyListedCourses) {
   EXPECT_EQ(state["seed"], "9");
 }
 
-SessionOptions with_ghost() {
-  SessionOptions options = session_options();
-  options.scenario = {
-      .course = "stag", .method = "svg_mppi", .config = "default", .seed = 77, .obstacles = 1};
-  options.against = "mppi";
-  return options;
-}
-
-class TwoControllers : public ViewSession {
- protected:
-  TwoControllers() : ViewSession(with_ghost()) {}
-};
-
 /// The frame of the ghost within a frame.
 std::string_view ghost_of(const std::string& frame) {
   return FrameReader(frame).block(Block::ghost_frame);
 }
 
-TEST_F(TwoControllers, FramesHoldWhatBothControllersConsider) {
+TEST_F(ViewSession, FramesHoldWhatBothControllersConsider) {
+  tell({{"do", "ghost"}, {"method", "mppi"}});
   const std::string both = step_to(3);
   const std::string_view ghost = ghost_of(both);
   ASSERT_FALSE(ghost.empty());
@@ -297,8 +285,8 @@ TEST_F(TwoControllers, FramesHoldWhatBothControllersConsider) {
   const FrameReader reader(ghost);
   for (const Block block : {Block::scan, Block::candidates, Block::nominal, Block::plan, Block::bodies})
     EXPECT_FALSE(reader.block(block).empty()) << static_cast<int>(block);
-  // The car, then the parked car; both worlds have the same.
-  EXPECT_EQ(PayloadReader(reader.block(Block::bodies)).get<std::uint32_t>(), 2u);
+  // The car, then the parked cars; both worlds have the same.
+  EXPECT_EQ(PayloadReader(reader.block(Block::bodies)).get<std::uint32_t>(), 3u);
   EXPECT_EQ(reader.block(Block::bodies).substr(4 + 24),
             FrameReader(both).block(Block::bodies).substr(4 + 24));
   tell({{"do", "ghost"}, {"method", ""}});

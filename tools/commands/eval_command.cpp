@@ -6,6 +6,7 @@
 
 #include "json/json.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/evaluation/comparison.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/report/report.hpp"
@@ -60,11 +61,17 @@ int eval(const EvalArguments& arguments) {
       if (row == chart.rows.end()) row = chart.rows.insert(row, {e.label()});
       (e.scenario == "pt" ? row->tracking : row->obstacles) = &r;
     }
+    std::vector<std::string> sentences;
+    for (const auto& c : evaluated.against_reference()) {
+      const auto result = [&](int of) { return evaluated.results[static_cast<std::size_t>(of)]; };
+      const auto &a = evaluated.experiment(c.a), &b = evaluated.experiment(c.b);
+      sentences.push_back(a.scenario + ": " + verdict({a.label(), b.label()}, {result(c.a), result(c.b)}, c));
+    }
     const Report report{
         "Methods compared",
         evaluated,
         {},
-        {},
+        sentences,
         {{"Paired comparison", pairs_table(evaluated)}, {"Methods", results_table(evaluated)}},
         {chart}};
     write_report(report, arguments.evaluation.out);

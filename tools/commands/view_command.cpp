@@ -64,8 +64,10 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
   return options;
 }
 
-/// Returns the page of the introduction: a recording of its first 1.75 s.
-std::string introduction_page() {
+/// Returns the page of the introduction, which is made once: a recording of its first 1.75 s.
+const std::string& introduction_page() {
+  static std::string page;
+  if (!page.empty()) return page;
   ViewArguments arguments;
   set_introduction(arguments);
   view::Server nobody({}, {});
@@ -73,7 +75,7 @@ std::string introduction_page() {
   auto subject = options.load(options.scenario);
   view::StoredDrive drive = view::Session(std::move(subject), nobody, std::move(options)).record(70);
   drive.ticks.erase(drive.ticks.begin(), drive.ticks.begin() + 34);  // nothing is near yet
-  std::string page = view::replay_page(drive, true);
+  page = view::replay_page(drive, true);
   return page.insert(page.find("<meta"), "<meta name=\"introduction\" />");
 }
 
@@ -81,11 +83,8 @@ int view(const ViewArguments& arguments, bool begins_with_introduction) {
   view::ServerOptions address = server_options(arguments.host, arguments.port, arguments.token);
   if (!arguments.room.empty() || !arguments.problem.empty()) address.framed_by = view::notebooks;
   const std::string html = "text/html; charset=utf-8";
-  view::Server server(
-      address,
-      {{"/", {html, view::page_html(), view::page_gzip()}},
-       {"/introduction",
-        {.type = html, .body = {}, .later = std::async(std::launch::deferred, introduction_page).share()}}});
+  view::Server server(address, {{"/", {html, view::page_html(), view::page_gzip()}},
+                                {"/introduction", {.type = html, .body = {}, .later = introduction_page}}});
   view::SessionOptions options{.against = arguments.against, .introduction = true};
   std::unique_ptr<view::Subject> subject;
   if (!arguments.room.empty()) {

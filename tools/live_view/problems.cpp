@@ -22,8 +22,6 @@ constexpr double down = std::numbers::pi;
 struct Solving {
   std::string method;
   std::uint64_t seed;
-  int horizon;
-  PerInput low, high;
 };
 
 Shape goal(double x, double y, double radius) {
@@ -31,26 +29,27 @@ Shape goal(double x, double y, double radius) {
 }
 
 template <class P>
-std::unique_ptr<view::SolverSubject> subject(P problem, const Solving& solving, view::Drawing<P> drawing) {
+std::unique_ptr<view::SolverSubject> subject(P problem, const Solving& solving, int horizon,
+                                             const PerInput& low, const PerInput& high,
+                                             view::Drawing<P> drawing) {
   SolverOptions options = solver_options(solving.method);
-  *options.find<int>("horizon") = solving.horizon;
-  *options.find<PerInput>("input_min") = solving.low;
-  *options.find<PerInput>("input_max") = solving.high;
+  *options.find<int>("horizon") = horizon;
+  *options.find<PerInput>("input_min") = low;
+  *options.find<PerInput>("input_max") = high;
   *options.find<std::uint64_t>("seed") = solving.seed;
   if (int* samples = options.find<int>("samples")) *samples = 1024;
   return std::make_unique<view::detail::ControllerSubject<P>>(Controller<P>(problem, options),
                                                               std::move(drawing));
 }
 
-std::unique_ptr<view::SolverSubject> pendulum(Solving solving) {
+std::unique_ptr<view::SolverSubject> pendulum(const Solving& solving) {
   using State = Pendulum::State<double>;
   const auto tip = [](const State& x) { return maps::Pose{std::sin(x.angle), std::cos(x.angle), 0}; };
   const auto rod = [tip](const State& x) {
     return std::vector<view::Line>{view::Line{{0, 0}, {tip(x).x, tip(x).y}}};
   };
   const auto upright = [](const Pendulum&) { return std::vector{goal(0, 1, 0.06)}; };
-  solving.horizon = 60, solving.low = -5, solving.high = 5;
-  return subject(Pendulum{}, solving,
+  return subject(Pendulum{}, solving, 60, -5, 5,
                  {.start = {down, 0},
                   .pose = tip,
                   .figure = rod,
@@ -60,7 +59,7 @@ std::unique_ptr<view::SolverSubject> pendulum(Solving solving) {
                   .title = "pendulum"});
 }
 
-std::unique_ptr<view::SolverSubject> cart_pole(Solving solving) {
+std::unique_ptr<view::SolverSubject> cart_pole(const Solving& solving) {
   using State = CartPole::State<double>;
   const auto tip = [](const State& x) {
     return maps::Pose{x.position + std::sin(x.angle), std::cos(x.angle), 0};
@@ -74,8 +73,7 @@ std::unique_ptr<view::SolverSubject> cart_pole(Solving solving) {
     return std::vector<Shape>{view::box({-p.track - 0.3, 0, 0}, 0.1, 0.4),
                               view::box({p.track + 0.3, 0, 0}, 0.1, 0.4), goal(0, 1, 0.06)};
   };
-  solving.horizon = 75, solving.low = -15, solving.high = 15;
-  return subject(CartPole{}, solving,
+  return subject(CartPole{}, solving, 75, -15, 15,
                  {.start = {0, 0, down, 0},
                   .pose = tip,
                   .figure = figure,
@@ -85,12 +83,11 @@ std::unique_ptr<view::SolverSubject> cart_pole(Solving solving) {
                   .title = "cart_pole"});
 }
 
-std::unique_ptr<view::SolverSubject> differential_drive(Solving solving) {
-  solving.horizon = 25, solving.low = {0, -2}, solving.high = {1.5, 2};
-  return subject(DifferentialDrive{}, solving, view::drawing_among_discs());
+std::unique_ptr<view::SolverSubject> differential_drive(const Solving& solving) {
+  return subject(DifferentialDrive{}, solving, 25, {0, -2}, {1.5, 2}, view::drawing_among_discs());
 }
 
-std::unique_ptr<view::SolverSubject> quadrotor(Solving solving) {
+std::unique_ptr<view::SolverSubject> quadrotor(const Solving& solving) {
   using State = Quadrotor::State<double>;
   const auto wall = [](const Quadrotor& p) {
     const double middle = 0.5 * (p.wall_from + p.wall_to), thick = p.wall_to - p.wall_from;
@@ -103,8 +100,7 @@ std::unique_ptr<view::SolverSubject> quadrotor(Solving solving) {
     const double c = 0.25 * std::cos(x.tilt), s = 0.25 * std::sin(x.tilt);
     return std::vector<view::Line>{view::Line{{x.x - c, x.z + s}, {x.x + c, x.z - s}}};
   };
-  solving.horizon = 40, solving.low = {-9, -20}, solving.high = {9, 20};
-  return subject(Quadrotor{}, solving,
+  return subject(Quadrotor{}, solving, 40, {-9, -20}, {9, 20},
                  {.x = &State::x,
                   .y = &State::z,
                   .figure = rotors,
@@ -115,7 +111,7 @@ std::unique_ptr<view::SolverSubject> quadrotor(Solving solving) {
 }
 
 /// The arm from above.
-std::unique_ptr<view::SolverSubject> arm(Solving solving) {
+std::unique_ptr<view::SolverSubject> arm(const Solving& solving) {
   using State = Arm::State<double>;
   const auto hand = [](const State& x) {
     const auto at = Arm{}.posture(x).hand;
@@ -139,8 +135,7 @@ std::unique_ptr<view::SolverSubject> arm(Solving solving) {
     angles.push_back("angle " + std::to_string(i) + ", rad");
     speeds.push_back("speed " + std::to_string(i) + ", rad/s");
   }
-  solving.horizon = 20, solving.low = -1.5, solving.high = 1.5;
-  return subject(Arm{}, solving,
+  return subject(Arm{}, solving, 20, -1.5, 1.5,
                  {.start = start,
                   .pose = hand,
                   .figure = links,
@@ -158,7 +153,7 @@ std::unique_ptr<view::SolverSubject> problem_subject(const std::string& name, co
   constexpr std::array make{pendulum, cart_pole, differential_drive, quadrotor, arm};
   std::string all;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (name == names[i]) return make[i]({method, seed, 0, 0, 0});
+    if (name == names[i]) return make[i]({method, seed});
     all += std::string(i ? ", " : "") + names[i];
   }
   throw std::invalid_argument("--problem: '" + name + "' must be one of " + all);

@@ -15,17 +15,17 @@ using namespace evaluation;
 /// The style sheet: for screens of any width, in light and dark colours, and for paper.
 constexpr const char* style = R"(
 :root{color-scheme:light dark;--faint:#5a6478;--rule:#e3e7ee;--paper:#fff;--ground:#f3f5f9}
-@media(prefers-color-scheme:dark){:root{--faint:#a3adbd;--rule:#303846;--paper:#171c24;--ground:#0e1218}}
+@media(prefers-color-scheme:dark){:root{--faint:#a3adbd;--rule:#303846;--paper:#171c24;--ground:#0e1218}img{filter:invert(.91) hue-rotate(180deg)}}
 body{margin:0;background:var(--ground);font:15px/1.55 system-ui,sans-serif}
 main{max-width:1320px;margin:0 auto;padding:20px 14px 60px}
 p{max-width:92ch}
 .faint,th{color:var(--faint)}
-section{background:var(--paper);border:1px solid var(--rule);border-radius:12px;padding:16px 20px;margin-top:20px}
+section{background:var(--paper);border:1px solid var(--rule);border-radius:12px;padding:16px 20px;margin-top:20px;overflow-x:auto}
 .scroll{overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
 th,td{text-align:right;padding:6px 10px;border-bottom:1px solid var(--rule);vertical-align:top;white-space:nowrap}
 .words{text-align:left;white-space:normal}
-img{max-width:100%;display:block;margin:14px auto;background:#fff;border-radius:8px;padding:6px}
+img{max-width:100%;min-width:720px;display:block;margin:14px auto;background:#fff;border-radius:8px;padding:6px}
 pre{overflow-x:auto;font-size:12.5px}
 @media print{section{break-inside:avoid;border:0}}
 )";

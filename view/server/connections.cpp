@@ -143,7 +143,7 @@ void HttpConnection::answer() {
     if (packed) response_.set(http::field::content_encoding, "gzip");
     // The page declares its policy in its head, but browsers take this part of it from the header alone.
     response_.set("Content-Security-Policy", "frame-ancestors " + all_.options.framed_by);
-    body = resource.later.valid() ? resource.later.get() : packed ? resource.gzip : resource.body;
+    body = resource.later ? resource.later() : packed ? resource.gzip : resource.body;
   } else {
     ++all_.refused;
     response_.set(http::field::content_type, "text/plain; charset=utf-8");

@@ -2,7 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
-#include <future>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -41,7 +41,7 @@ struct Resource {
   std::string type;    ///< Content-Type
   std::string body;    ///< content
   std::string gzip{};  ///< the body compressed with gzip, for clients that ask for it; empty: none
-  std::shared_future<std::string> later{};  ///< the body, where the first request is to make it
+  std::function<const std::string&()> later{};  ///< returns the body, where the first request is to make it
 };
 
 /// A message to clients; shared, so that one copy serves all.

@@ -1,5 +1,5 @@
 import { make } from "./dom";
-import { drivenOf, methodOf, scalar } from "./page";
+import { drivenOf, methodOf, page, scalar } from "./page";
 import type { Body, Frame } from "./protocol";
 
 /** On which side of an obstacle something passes: left, right, or into it. */
@@ -56,7 +56,9 @@ function inTheWay(from: Body, { bodies, plan = [], scalars }: Frame) {
       const at = offset(plan, from, obstacle);
       if (at === undefined) return [];
       const isPassed = distance(from, end) > distance(from, obstacle); // else it ends before
-      const isIn = isPassed && Math.abs(at) < halfWidth(obstacle, from) + from.width / 2;
+      // A car knows only what its scanner sees; other problems know themselves.
+      const isWithin = Math.abs(at) < halfWidth(obstacle, from) + from.width / 2;
+      const isIn = page.hello!.lidar && isPassed && isWithin;
       const isHit = hit && distance(hit, obstacle) < diagonal(obstacle) + 1.2 * diagonal(from);
       return { obstacle, at, isIn: isIn || isHit };
     });

@@ -10,11 +10,7 @@ function signed(value: number, digits: number) {
 }
 /** Meanings of the statuses with which a body does not just drive on. */
 const reasons: Record<string, string> = {
-  deadline: "The solve stopped at its deadline, with the best plan until then.",
   all_collided: "Every sample collides.",
-  degenerate: "No sample has a usable weight.",
-  solver_degenerate: "No sample has a usable weight.",
-  non_finite_state: "The state is not finite, so the last plan goes on.",
   detour: "The path is blocked; this is the way around.",
   braking: "The plan soon meets an obstacle, so the robot brakes.",
   blocked: "Every plan collides, so it stands.",
