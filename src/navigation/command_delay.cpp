@@ -13,7 +13,8 @@ CommandDelay::CommandDelay(const BaseOptions& base) noexcept
 
 void CommandDelay::clear() noexcept {
   count_ = 0;
-  decided_ = {};
+  decided_ = likely_ = {};
+  axes_.fill({});
   errors_.fill(0);
   motion_ = 0;
   if (estimates_) longest_ = 0;
@@ -23,7 +24,20 @@ void CommandDelay::pass(const Velocity& measured, double elapsed) noexcept {
   next_ = (next_ + 1) % entries_.size();
   count_ = std::min(count_ + 1, entries_.size());
   entries_[next_] = {decided_, elapsed};
+  const double kept = std::exp(-elapsed / steady_after);
+  likely_ = {axes_[0].likely(decided_.forward, measured.forward, kept),
+             axes_[1].likely(decided_.left, measured.left, kept),
+             axes_[2].likely(decided_.turn, measured.turn, kept)};
+  if (count_ == 1) likely_ = measured;  // it follows from no decision yet
   if (estimates_) estimate(measured, elapsed);
+}
+
+/// The share of the difference that counts is that of its squared mean in its mean square.
+double CommandDelay::Differences::likely(double decided, double measured, double kept) noexcept {
+  const double difference = measured - decided;
+  mean = std::lerp(difference, mean, kept);
+  square = std::lerp(difference * difference, square, kept);
+  return square > 0 ? std::lerp(decided, measured, mean * mean / square) : measured;
 }
 
 maps::Pose CommandDelay::predict(maps::Pose pose) const noexcept {

@@ -18,6 +18,9 @@ class CommandDelay {
 
   /// The last decision was in force for so long (s), and now the robot has this velocity.
   void pass(const Velocity& measured, double elapsed) noexcept;
+  /// The velocity between the last decision and the measured one: the nearer to the measured one, the
+  /// steadier the differences of both have been. Noise in the measured velocity does not reach the plans.
+  const Velocity& likely() const noexcept { return likely_; }
   /// The pose at which the next decision takes effect.
   maps::Pose predict(maps::Pose pose) const noexcept;
   /// Takes a decision, and returns what to send now.
@@ -31,20 +34,27 @@ class CommandDelay {
   const Entry& entry(std::size_t age) const noexcept;
   Velocity before(double age) const noexcept;
 
+  /// The differences of an axis from the decisions.
+  struct Differences {
+    double mean = 0, square = 0;
+    double likely(double decided, double measured, double kept) noexcept;
+  };
   void estimate(const Velocity& measured, double elapsed) noexcept;
   double difference(const Velocity& a, const Velocity& b) const noexcept;
 
-  static constexpr double delay_step = 0.05;   ///< s between the delays that are compared
-  static constexpr double memory = 10;         ///< s
-  static constexpr double clear_share = 0.5;   ///< largest share of the error without a delay
-  static constexpr double least_error = 0.01;  ///< s, of a squared share of the limits
+  static constexpr double delay_step = 0.05;    ///< s between the delays that are compared
+  static constexpr double memory = 10;          ///< s
+  static constexpr double steady_after = 0.25;  ///< s
+  static constexpr double clear_share = 0.5;    ///< largest share of the error without a delay
+  static constexpr double least_error = 0.01;   ///< s, of a squared share of the limits
 
   double forward_, left_, turn_, longest_;
   bool estimates_ = false;
   double per_speed_ = 1, per_turn_ = 1;
   std::array<double, 21> errors_{};  ///< s, of each delay that is compared
   double motion_ = 0;                ///< s
-  Velocity decided_;
+  Velocity decided_, likely_;
+  std::array<Differences, 3> axes_{};
   std::array<Entry, 512> entries_{};
   std::size_t next_ = 0, count_ = 0;
 };

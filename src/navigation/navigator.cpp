@@ -199,7 +199,7 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
   delay_.pass(told, elapsed);
   const bool delayed = delay_.longest() > 0;
   const maps::Pose pose = delayed ? delay_.predict(now) : now;
-  const Velocity velocity = delayed ? delay_.decided() : told;
+  const Velocity velocity = delayed ? delay_.decided() : delay_.likely();
   way_.advance(pose, velocity, costmap, elapsed);
   others_.update(others, {pose.x, pose.y});
   if (way_.ends_at(pose)) {
