@@ -89,6 +89,19 @@ bool set_option(Options& options, std::string_view name, std::string_view text) 
   return found;
 }
 
+/// Options of another type, with the values of those options that have the same name and type in `from`.
+template <class To, class From>
+To shared_options(const From& from, To to = {}) {
+  visit_options(to, [&](auto& field, const Declaration& declaration) {
+    visit_options(from, [&](const auto& value, const Declaration& other) {
+      if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>,
+                                   std::remove_cvref_t<decltype(value)>>)
+        if (std::string_view(other.name) == declaration.name) field = value;
+    });
+  });
+  return to;
+}
+
 /// The name among `names` that `name` was most likely meant to be; empty if none is near.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names);
 

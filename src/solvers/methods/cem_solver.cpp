@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/core/option_access.hpp"
 #include "slalom/solvers/cem_options.hpp"
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/icem_options.hpp"
@@ -218,21 +219,7 @@ std::unique_ptr<Solver> make_solver(const CemOptions& options, int inputs, std::
 
 std::unique_ptr<Solver> make_solver(const IcemOptions& o, int inputs, std::shared_ptr<ThreadPool> pool) {
   validate_options(o, IcemOptions::method, inputs);
-  const CemOptions options{.horizon = o.horizon,
-                           .samples = o.samples,
-                           .variance = o.variance,
-                           .input_min = o.input_min,
-                           .input_max = o.input_max,
-                           .iterations = o.iterations,
-                           .elite_share = o.elite_share,
-                           .smoothing = o.smoothing,
-                           .variance_min = o.variance_min,
-                           .send_best = o.send_best,
-                           .noise = o.noise,
-                           .zero_mean_share = o.zero_mean_share,
-                           .shift_warm_start = o.shift_warm_start,
-                           .seed = o.seed,
-                           .threads = o.threads};
+  const auto options = shared_options<CemOptions>(o);
   const Memory memory{o.kept_elite_share, o.sample_decay, true};
   return std::make_unique<CemSolver>(IcemOptions::method, detail::with_variances(options, inputs), memory,
                                      inputs, std::move(pool));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/option_access.hpp"
 #include "slalom/solvers/default_variances.hpp"
 #include "slalom/solvers/dial_mpc_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
@@ -114,19 +115,9 @@ std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
 
 std::unique_ptr<Solver> make_solver(const DialMpcOptions& o, int inputs, std::shared_ptr<ThreadPool> pool) {
   validate_options(o, DialMpcOptions::method, inputs);
-  const MppiOptions options{.horizon = o.horizon,
-                            .samples = std::max(o.samples / o.iterations, 1),
-                            .temperature = o.temperature,
-                            .variance = o.variance,
-                            .input_min = o.input_min,
-                            .input_max = o.input_max,
-                            .noise = o.noise,
-                            .weighting = o.weighting,
-                            .control_cost_discount = 1,  // no control term
-                            .zero_mean_share = o.zero_mean_share,
-                            .shift_warm_start = o.shift_warm_start,
-                            .seed = o.seed,
-                            .threads = o.threads};
+  auto options = shared_options<MppiOptions>(o);
+  options.samples = std::max(o.samples / o.iterations, 1);
+  options.control_cost_discount = 1;  // no control term
   const Annealing annealing{o.iterations, o.first_iterations, o.iteration_decay, o.horizon_decay};
   return std::make_unique<MppiSolver>(DialMpcOptions::method, detail::with_variances(options, inputs),
                                       annealing, inputs, std::move(pool));
