@@ -110,7 +110,7 @@ const Target path_target(
 maps::OccupancyGrid any_map(Adversary& adversary) {
   const int size = 8 + adversary.below(24), kind = adversary.below(3);
   maps::OccupancyGrid map = testing::room(size, size, adversary.within(0.05, 0.15));
-  if (adversary.once_in(8)) map.resolution = adversary.any(0.01, 1);
+  if (adversary.once_in(8)) map.resolution = adversary.any(0.01, 0.2);
   map.origin.x = map.origin.y = -0.5 * size * map.resolution;
   if (adversary.once_in(8))
     map.origin = {adversary.any(-10, 10), adversary.any(-10, 10), adversary.any(-4, 4)};

@@ -1,18 +1,17 @@
-// `slalom navigate`: a table, results in JSON, a picture; bad options are refused.
+// `slalom navigate`: results in JSON, a picture; bad options are refused.
 #include "slalom/solvers/registry.hpp"
 #include "tools/program_test.hpp"
 
 namespace slalom::tools {
 namespace {
 
-using testing::content;
 using testing::expect_says;
 
 class NavigateCommand : public testing::ProgramTest {};
 
 TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
-  const std::string said = succeed(
-      "navigate --scenario no-way --seeds 2 --jobs 2 --json out.json --table out.md --pictures pictures");
+  const std::string said =
+      succeed("navigate --scenario no-way --seeds 2 --jobs 2 --json out.json --pictures pictures");
   const auto results = result("out.json");
   ASSERT_EQ(results["results"].size(), 2u);
   for (const auto& row : results["results"]) {
@@ -23,13 +22,11 @@ TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
   }
   EXPECT_EQ(results["results"][1]["driver"], "mppi");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures/no-way.png"));
-  const std::string table = content(folder_ / "out.md");
-  expect_says(said, {"svg_mppi succeeds in 2 of 2 drives (0 collisions),\nmppi in 2 of 2 (0)\n",
-                     "svg_mppi - mppi", "from its heading, rad"});
+  expect_says(said,
+              {"svg_mppi succeeds in 2 of 2 drives (0 collisions),\nmppi in 2 of 2 (0)\n",
+               "2 of 2 (34 to 100 %)", "svg_mppi - mppi", "0.000 [0.000, 0.000]", "from its heading, rad"});
   for (std::size_t begin = 0, end = 0; (end = said.find('\n', begin)) != std::string::npos; begin = end + 1)
     EXPECT_LE(end - begin, 100u) << said.substr(begin, end - begin);
-  expect_says(table, {"| `no-way` | `svg_mppi` | 2 of 2 (34 to 100 %) | 0 |",
-                      "| all | `svg_mppi` minus `mppi` | 0.000 [0.000, 0.000] |"});
 }
 
 TEST_F(NavigateCommand, DrivesWithEveryMethod) {
@@ -52,8 +49,8 @@ TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
                  {"--methods", "'dwa'", "must be one of mppi, svg_mppi"});
   expect_refused("navigate --scenario no-way --methods mppi,svg_mppi,mppi",
                  {"--methods", "mppi", "is given twice"});
-  expect_refused("navigate --scenario no-way --table /no/such/folder/out.md",
-                 {"out.md", "cannot be written"});
+  expect_refused("navigate --scenario no-way --json /no/such/folder/out.json",
+                 {"out.json", "cannot be written"});
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Options that name a file to be written; `file` is positional.
-constexpr const char* outputs[] = {"--json", "--record", "--plot", "--table", "file"};
+constexpr const char* outputs[] = {"--json", "--record", "--plot", "file"};
 
 /// A canonical path, equal for equal files; empty for devices and pipes, which can be named more than once.
 std::string canonical_path(const std::string& file) {

@@ -17,7 +17,7 @@ using evaluation::RoomDriver;
 using evaluation::RoomScenario;
 
 struct NavigateArguments {
-  std::string scenario = "rooms", json, table, pictures, barn;
+  std::string scenario = "rooms", json, pictures, barn;
   int barn_step = 1;
   std::vector<std::string> methods{"svg_mppi", "mppi"}, set;
   int seeds = 5, jobs = 1;
@@ -51,7 +51,6 @@ void check_methods(const std::vector<std::string>& methods) {
 
 /// Writes the results so far to the files, and at the end to standard output where that is wanted.
 void write_results(const NavigateArguments& arguments, const std::vector<RoomSeries>& all, bool is_last) {
-  if (!arguments.table.empty()) write_file(arguments.table, markdown_table(all));
   if (arguments.json.empty() || (arguments.json == "-" && !is_last)) return;
   Json rows = Json::array();
   for (const RoomSeries& series : all) rows.push_back(summary_of(series));
@@ -127,8 +126,6 @@ void declare_navigate(Subcommand& command) {
                  "key=value: an option of the navigator or its method; can be repeated");
   command.option("--jobs", arguments->jobs, "Number of drives that run in parallel", {1, 1024});
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
-  command.option("--table", arguments->table,
-                 "Write a table in Markdown with 95 % intervals to this file, after each seed");
   command.json(arguments->json, "the results");
   std::string names;
   const auto add = [&](const char* kind, std::span<const RoomScenario> scenarios) {

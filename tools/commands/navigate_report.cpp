@@ -105,12 +105,6 @@ Cells differences(const Drives& first, const Drives& other, std::span<const Figu
   return cells;
 }
 
-std::string markdown_row(const std::string& scenario, const std::string& driver, const Cells& cells) {
-  std::string row = "| " + scenario + " | " + driver;
-  for (const std::string& cell : cells) row += " | " + cell;
-  return row + " |\n";
-}
-
 /// The drives of each driver in all scenarios, in the order of the drivers.
 std::vector<std::pair<std::string, Drives>> by_driver(const std::vector<RoomSeries>& all) {
   std::vector<std::pair<std::string, Drives>> drivers;
@@ -196,26 +190,6 @@ Json summary_of(const RoomSeries& series) {
   summary["update_max_ms"] = 1e3 * slowest;
   summary["by_seed"] = by_seed;
   return summary;
-}
-
-std::string markdown_table(const std::vector<RoomSeries>& all) {
-  const std::span<const Figure> shown = figures_of(all);
-  std::string text = "| scenario | driver | success | collisions";
-  for (const Figure& figure : shown) text += std::string(" | ") + figure.heading;
-  text += " |\n|---|---|---|---";
-  for (std::size_t i = 0; i < shown.size(); ++i) text += "|---";
-  text += "|\n";
-  for (const RoomSeries& series : all)
-    if (series.scenario->optimal_time == 0)  // the 300 worlds of BARN have one row together
-      text += markdown_row("`" + series.scenario->name + "`", "`" + series.driver + "`",
-                           cells_of(drives_of(series), shown));
-  const auto drivers = by_driver(all);
-  for (const auto& [name, drives] : drivers)
-    text += markdown_row("all", "`" + name + "`", cells_of(drives, shown));
-  for (std::size_t i = 1; i < drivers.size(); ++i)
-    text += markdown_row("all", "`" + drivers[0].first + "` minus `" + drivers[i].first + "`",
-                         differences(drivers[0].second, drivers[i].second, shown));
-  return text;
 }
 
 void print(const std::vector<RoomSeries>& all, std::FILE* out) {

@@ -18,11 +18,8 @@ bool collided(const evaluation::RoomDrive& drive);
 
 /// Means, intervals and every drive.
 nlohmann::ordered_json summary_of(const RoomSeries& series);
-/// A table in Markdown: each series, the sums of each driver over all scenarios, and how the others differ
-/// from the first one on the same scenarios and seeds.
-std::string markdown_table(const std::vector<RoomSeries>& all);
-
-/// Prints how often each driver succeeds, and the figures, in at most 100 columns.
+/// Prints how often each driver succeeds, the figures, and how the others differ from the first driver on the
+/// same scenarios and seeds, in at most 100 columns.
 void print(const std::vector<RoomSeries>& all, std::FILE* out);
 
 /// Writes the picture of a scenario, NAME.png, to this folder: the ways that all drivers took, and of the

@@ -9,7 +9,7 @@ namespace {
 
 /// Throws std::invalid_argument unless the solver takes proposals of this shape, or there are none.
 void check_proposals(const Solver& solver, const Numbers& proposals) {
-  if (proposals.size() == 0) return;
+  if (proposals.ndim() == 1 && proposals.size() == 0) return;
   if (!solver.takes_proposals())
     throw std::invalid_argument("proposals: the method " + std::string(solver.name()) +
                                 " does not accept proposals");

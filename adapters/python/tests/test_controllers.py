@@ -57,7 +57,7 @@ def test_every_option_is_a_keyword_with_its_default():
     *((lambda method=method, wrong=wrong: method(linear(), horizon=10).solve([0, 0], proposals=wrong), ValueError, text)
       for method, wrong, text in (
           (slalom.Mppi, np.zeros((9, 1)), r"proposals: have the shape \(9, 1\), must have \(sequences, 10, 1\) or "),
-          (slalom.Mppi, np.zeros(10), r"proposals: have the shape \(10,\), must have"),
+          (slalom.Mppi, np.zeros(10), r"have the shape \(10,\), must have"), (slalom.Mppi, np.zeros((3, 0, 1)), r"shape \(3, 0, 1\), must"),
           (slalom.Mppi, np.full((10, 1), np.nan), "proposals: must be finite"),
           (slalom.SvMpc, np.zeros((10, 1)), "proposals: the method sv_mpc does not accept proposals"))),
     *((lambda theirs=theirs: slalom.Mppi(linear(), **{theirs: 1}), TypeError, f"'{theirs}'; did you mean '{ours}'")

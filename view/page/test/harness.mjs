@@ -110,7 +110,7 @@ export class Tab {
   async step(ticks) {
     const tick = await this.scalar("tick");
     await this.send({ do: "step", ticks });
-    const isThere = (t) => slalom.scalar("tick") === t && slalom.state.newest === t;
+    const isThere = (t) => slalom.scalar("tick") === t && slalom.state.tick === t;
     await this.until(isThere, tick + ticks);
   }
 
