@@ -160,6 +160,17 @@ TEST(Navigator, WithoutDetoursItReportsNone) {
   EXPECT_FALSE(drive.collided);
 }
 
+TEST(Navigator, BrakesWhereEveryPlanMeetsAnObstacle) {
+  CheckedDrive drive;
+  drive.navigator->set_path(straight);
+  drive.drive(2);
+  EXPECT_EQ(drive.step().status, NavigationStatus::following);
+  const double front = drive.pose.x + 0.35, speed = drive.velocity.forward;
+  drive.block(front + 0.06, -2, front + 0.5, 2);  // at once
+  EXPECT_EQ(drive.step().status, NavigationStatus::braking);
+  EXPECT_NEAR(drive.velocity.forward, speed - period * drive.options.base.max_acceleration, 1e-6);
+}
+
 TEST(Navigator, NoiseOfTheVelocityDoesNotShakeTheRobot) {
   Drive drive(BaseKind::differential);
   drive.restart_fast();
