@@ -265,7 +265,7 @@ TEST_F(CommandLine, ATokenMustFitIntoAnAddress) {
 }
 
 TEST_F(CommandLine, AProblemThatIsNotACarHasNoScenario) {
-  for (const char* option : {"--against mppi", "--course fox", "--set mppi.samples=9"})
+  for (const char* option : {"--course fox", "--set mppi.samples=9"})
     refuses(std::string("view --problem pendulum --port 0 ") + option, {"--problem: has only --method"}, 2);
 }
 

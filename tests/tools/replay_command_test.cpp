@@ -42,7 +42,7 @@ TEST_F(ExportCommand, FilmsASpanOfARecording) {
     ASSERT_EQ(all.size(), 10 * picture) << name;
     const std::string_view first = std::string_view(all).substr(0, picture);
     EXPECT_NE(first, std::string_view(all).substr(9 * picture)) << "the car drives";
-    EXPECT_GT(count(first, 0, 135, 107), 100) << name << ": the plan";
+    EXPECT_GT(count(first, 0, 122, 61), 100) << name << ": the plan";
     EXPECT_GT(count(first, 255, 255, 255), 10000) << name << ": the road";
     std::filesystem::remove(folder_ / "all.raw");
   }

@@ -98,7 +98,7 @@ def test_a_signal_ends_a_long_call(call):
     course = slalom.Course("wren")
     world = slalom.World(course)
     world.reset(0, [course.start])
-    slow = slalom.Cem(slalom.Quadrotor(), horizon=500, samples=20000, iterations=1000)
+    slow = slalom.Cem(slalom.Quadrotor(), horizon=500, samples=4_000_000, iterations=1000)
     state = [0.0] * slow.problem.states
     run = {"step": lambda: world.step([(0, 0)], steps=10**9),
            "drive_lap": lambda: slalom.drive_lap(course, "mppi", options={"samples": 64, "world.rounds": 100}),
