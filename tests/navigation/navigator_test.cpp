@@ -171,28 +171,6 @@ TEST(Navigator, BrakesWhereEveryPlanMeetsAnObstacle) {
   EXPECT_NEAR(drive.velocity.forward, speed - period * drive.options.base.max_acceleration, 1e-6);
 }
 
-TEST(Navigator, NoiseOfTheVelocityDoesNotShakeTheRobot) {
-  Drive drive(BaseKind::differential);
-  drive.restart_fast();
-  drive.start({1, 3, 0}, {{1, 3, 0}, {9, 3, 0}});
-  RandomStream random({4, 0});
-  double shaking = 0;
-  int last_turn = 0, turns = 0;
-  NavigationStatus status = NavigationStatus::following;
-  for (double time = 0; time < 30 && status != NavigationStatus::goal_reached; time += drive_period) {
-    const Velocity driven = drive.velocity;
-    drive.velocity = {driven.forward + 0.15 * random.normal(), 0, driven.turn + 0.15 * random.normal()};
-    status = drive.step();
-    shaking = std::max(shaking, std::abs(drive.command.forward - driven.forward));
-    const int turn = drive.command.turn > 0.05 ? 1 : drive.command.turn < -0.05 ? -1 : 0;
-    turns += turn != 0 && last_turn != 0 && turn != last_turn;
-    if (turn != 0) last_turn = turn;
-  }
-  EXPECT_EQ(status, NavigationStatus::goal_reached);
-  EXPECT_LT(shaking, 0.2) << "m/s in an update; 0.34 if plans begin at the measured velocity";
-  EXPECT_LT(turns, 15) << "24 then";
-}
-
 TEST(Navigator, StandsWhereItCannotDrive) {
   CheckedDrive drive;
   EXPECT_EQ(drive.step().status, NavigationStatus::no_path);
