@@ -32,12 +32,14 @@ void CommandDelay::pass(const Velocity& measured, double elapsed) noexcept {
   if (estimates_) estimate(measured, elapsed);
 }
 
-/// The share of the difference that counts is that of its squared mean in its mean square.
+/// The share of the difference that counts is that of its squared mean in its mean square. A velocity that is
+/// measured again to the bit has no noise.
 double CommandDelay::Differences::likely(double decided, double measured, double kept) noexcept {
   const double difference = measured - decided;
   mean = std::lerp(difference, mean, kept);
   square = std::lerp(difference * difference, square, kept);
-  return square > 0 ? std::lerp(decided, measured, mean * mean / square) : measured;
+  const bool repeats = std::exchange(last, measured) == measured;
+  return square > 0 && !repeats ? std::lerp(decided, measured, mean * mean / square) : measured;
 }
 
 maps::Pose CommandDelay::predict(maps::Pose pose) const noexcept {

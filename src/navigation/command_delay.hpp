@@ -36,7 +36,7 @@ class CommandDelay {
 
   /// The differences of an axis from the decisions.
   struct Differences {
-    double mean = 0, square = 0;
+    double mean = 0, square = 0, last = 0;
     double likely(double decided, double measured, double kept) noexcept;
   };
   void estimate(const Velocity& measured, double elapsed) noexcept;

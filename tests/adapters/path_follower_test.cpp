@@ -283,7 +283,7 @@ TEST(PathFollower, PlansFromItsLastCommandInOpenLoop) {
     }
     return speed;
   };
-  EXPECT_LE(speed_after("false", 20), 2.5 * period + 1e-3);
+  EXPECT_LE(speed_after("false", 10), 2.5 * period + 1e-6);
   EXPECT_GT(speed_after("true", 10), 0.3);
 }
 
