@@ -82,7 +82,7 @@ ReferenceWorkload::ReferenceWorkload()
   const maps::ReferencePoint first = reference_course().front();
   robot_ = {first.x + 0.1, first.y, first.yaw + 0.05};
   start_ = {robot_.x, robot_.y, robot_.yaw, first.speed, 0.05};
-  field_.update({robot_.x, robot_.y});
+  field_.update(robot_);
   cost_map_.update(reference_scan(robot_).view());
   clearance_map_.add(cost_map_.points());
 }

@@ -102,8 +102,7 @@ bool ends_with_path(const LapSetup& setup) noexcept {
 double LapSetup::length() const {
   const sim::LapPath& path = *environment->track->lap_path();
   if (!ends_with_path(*this)) return settings.rounds * path.length();
-  const maps::Pose from = start();
-  const double arc = path.project({from.x, from.y}).arc, end = environment->course.length;
+  const double arc = path.project(start()).arc, end = environment->course.length;
   // Beyond the end of an open path lies the way back to its beginning, where the first point itself may
   // project.
   return end - (arc > end ? 0 : arc) - finish_tolerance;
@@ -188,7 +187,7 @@ std::vector<maps::Pose> place_opponents(const LapSetup& setup, const std::vector
   const sim::LapPath& path = *setup.environment->track->lap_path();
   const LapSettings& settings = setup.settings;
   const maps::Pose start = setup.start();
-  const double begin = path.project({start.x, start.y}).arc;
+  const double begin = path.project(start).arc;
   const double min_distance = 1.0, step = 0.25;  // m
   std::vector<maps::Pose> poses;
   for (int i = 1; i <= settings.opponents; ++i) {

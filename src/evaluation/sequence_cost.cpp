@@ -89,10 +89,10 @@ struct SequenceCostMeter::Implementation {
     if (from.x >= low.x && from.y >= low.y && to.x <= high.x && to.y <= high.y) return;
     low = {std::min(low.x, from.x - margin), std::min(low.y, from.y - margin)};
     high = {std::max(high.x, to.x + margin), std::max(high.y, to.y + margin)};
-    field.update({robot.x, robot.y}, low, high);
+    field.update(robot, low, high);
   }
   void make_field_everywhere() noexcept {
-    if (!everywhere) field.update({robot.x, robot.y});
+    if (!everywhere) field.update(robot);
     everywhere = true;
   }
   bool covers(std::span<const PredictedState> sequence) const noexcept {
@@ -155,7 +155,7 @@ void SequenceCostMeter::observe(const maps::LaserScanView& scan, const maps::Pos
   m.low = {robot.x - about_the_car, robot.y - about_the_car};
   m.high = {robot.x + about_the_car, robot.y + about_the_car};
   m.everywhere = false;
-  m.field.update({robot.x, robot.y}, m.low, m.high);
+  m.field.update(robot, m.low, m.high);
   m.problem.set_maps({m.field.view(), m.obstacles, robot});
 }
 

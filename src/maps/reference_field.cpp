@@ -1,6 +1,7 @@
 #include "slalom/maps/reference_field.hpp"
 
 #include "maps/validation.hpp"
+#include "slalom/maps/place_on_path.hpp"
 #include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::maps {
@@ -50,13 +51,15 @@ ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const Refer
   cells_.fill({static_cast<float>(options.outside.distance), static_cast<float>(options.outside.yaw),
                static_cast<float>(options.outside.speed), 1});
   update({path[0].x, path[0].y});
+  reset();
 }
 
-bool ReferenceField::begin(const Point& robot) noexcept {
-  if (!std::isfinite(robot.x) || !std::isfinite(robot.y)) return false;
+bool ReferenceField::begin(const Pose& robot) noexcept {
+  if (!std::isfinite(robot.x + robot.y + robot.yaw)) return false;
   geometry_.center_x = robot.x;
   geometry_.center_y = robot.y;
-  nearest_ = nearest_point(robot);
+  nearest_ = place_of(robot);
+  is_placed_ = true;
   choose_window();
   make_sites();
   for (int column = 0; column < geometry_.columns; ++column) column_y_[column] = geometry_.cell_y(column);
@@ -72,7 +75,7 @@ void ReferenceField::make_cells(int row_begin, int row_end, int column_begin, in
   }
 }
 
-bool ReferenceField::update(const Point& robot, double reach, double seconds) noexcept {
+bool ReferenceField::update(const Pose& robot, double reach, double seconds) noexcept {
   if (!begin(robot)) return false;
   reach_ = reach;
   if (seconds > 0) {
@@ -88,7 +91,7 @@ bool ReferenceField::update(const Point& robot, double reach, double seconds) no
   return true;
 }
 
-bool ReferenceField::update(const Point& robot, const Point& low, const Point& high) noexcept {
+bool ReferenceField::update(const Pose& robot, const Point& low, const Point& high) noexcept {
   if (!begin(robot)) return false;
   reach_ = 0;
   // Rows and columns run against x and y. One more on each side covers rounding.
@@ -122,6 +125,7 @@ bool ReferenceField::set_path(std::span<const ReferencePoint> path) noexcept {
     path_x_[i] = path[i].x;
     path_y_[i] = path[i].y;
   }
+  reset();
   return true;
 }
 
@@ -131,18 +135,14 @@ ReferenceCell ReferenceField::at(double x, double y) const noexcept {
   return {cell[0], cell[1], cell[2], cell[3]};
 }
 
-int ReferenceField::nearest_point(const Point& robot) const noexcept {
-  double best = std::numeric_limits<double>::infinity();
-  std::size_t index = 0;
-  for (std::size_t i = 0; i < path_x_.size(); ++i) {
+int ReferenceField::place_of(const Pose& robot) const noexcept {
+  const auto squared_to = [&](std::size_t i) {
     const double dx = path_x_[i] - robot.x, dy = path_y_[i] - robot.y;
-    const double squared = dx * dx + dy * dy;
-    if (squared < best) {
-      best = squared;
-      index = i;
-    }
-  }
-  return static_cast<int>(index);
+    return dx * dx + dy * dy;
+  };
+  const auto turned = [&](std::size_t i) { return robot.yaw - path_[i].yaw; };
+  return static_cast<int>(place_on_path(path_.size(), squared_to, turned,
+                                        is_placed_ ? static_cast<std::size_t>(nearest_) : path_.size()));
 }
 
 void ReferenceField::choose_window() noexcept {

@@ -1,6 +1,7 @@
 #include "tracking/course_line.hpp"
 
 #include "slalom/core/numbers/count.hpp"
+#include "slalom/maps/place_on_path.hpp"
 
 namespace slalom::tracking {
 namespace {
@@ -69,24 +70,21 @@ CourseLine::Point CourseLine::at(double arc) const noexcept {
           mix(a.curvature, b.curvature), mix(a.speed, b.speed)};
 }
 
-CourseLine::Place CourseLine::project(const maps::Point& position) const noexcept {
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < points_.size(); ++k) {
-    const double dx = position.x - points_[k].x, dy = position.y - points_[k].y;
-    const double squared = dx * dx + dy * dy;
-    if (squared >= least) continue;
-    least = squared;
-    nearest = k;
-  }
+CourseLine::Place CourseLine::project(const maps::Pose& car) const noexcept {
+  const auto squared_to = [&](std::size_t k) {
+    const double dx = car.x - points_[k].x, dy = car.y - points_[k].y;
+    return dx * dx + dy * dy;
+  };
+  const auto turned = [&](std::size_t k) { return car.yaw - points_[k].yaw; };
+  const std::size_t nearest = maps::place_on_path(points_.size(), squared_to, turned, points_.size());
   const Point& point = points_[nearest];
   const double c = std::cos(point.yaw), s = std::sin(point.yaw);
-  const double dx = position.x - point.x, dy = position.y - point.y;
+  const double dx = car.x - point.x, dy = car.y - point.y;
   const double along = std::clamp(dx * c + dy * s, -step_, step_);
   double arc = nearest * step_ + along;
   arc = closed_ ? arc - std::floor(arc / length_) * length_ : std::clamp(arc, 0.0, length_);
   const Point there = at(arc);
-  return {arc, (position.y - there.y) * std::cos(there.yaw) - (position.x - there.x) * std::sin(there.yaw)};
+  return {arc, (car.y - there.y) * std::cos(there.yaw) - (car.x - there.x) * std::sin(there.yaw)};
 }
 
 double CourseLine::between(double from, double to) const noexcept {

@@ -35,8 +35,8 @@ class CourseLine {
     double arc = 0;     ///< m
     double offset = 0;  ///< m, to the left
   };
-  /// The nearest place. Arc lengths of a closed course are within its length.
-  Place project(const maps::Point& position) const noexcept;
+  /// The place of a car (see maps::place_on_path). Arc lengths of a closed course are within its length.
+  Place project(const maps::Pose& car) const noexcept;
 
   /// The way from one arc length to another, m; the shorter one of a closed course.
   double between(double from, double to) const noexcept;

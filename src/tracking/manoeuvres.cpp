@@ -17,7 +17,7 @@ Motion motion_of(const TrackedObject& object, const CourseLine& course,
                  const PredictorOptions& options) noexcept {
   Motion motion{.pose = object.pose, .speed = object.speed, .yaw_rate = object.yaw_rate};
   if (course.empty()) return motion;
-  const CourseLine::Place place = course.project({object.pose.x, object.pose.y});
+  const CourseLine::Place place = course.project(object.pose);
   const double across = maps::wrap_angle(object.pose.yaw - course.at(place.arc).yaw);
   if (std::abs(place.offset) > options.max_offset || std::abs(across) > max_across) return motion;
   motion.on_course = true;

@@ -94,7 +94,7 @@ TEST(GoldenMaps, ReferenceMaps) {
   for (const auto& [id, robot] : robot_positions(folder / "maps.json")) {
     if (!std::filesystem::exists(folder / (id + "_distance.csv"))) continue;
     const auto expected = slalom::testing::load_reference_map(folder, id, robot.x, robot.y);
-    ASSERT_TRUE(field.update(robot));
+    ASSERT_TRUE(field.update({robot.x, robot.y}));
     ASSERT_EQ(expected.geometry.rows, field.geometry().rows);
     ASSERT_EQ(expected.geometry.columns, field.geometry().columns);
     // The ring is compared too: -1 and `rows` are cells of it.

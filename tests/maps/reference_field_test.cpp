@@ -219,6 +219,35 @@ TEST(ReferenceField, TheViewLooksUpTheSameCells) {
   }
 }
 
+/// Drives round an eight whose parts cross at 97 degrees, 0.3 m beside it, and turns to the other part by up
+/// to 0.4 rad. The place follows the part that the robot is on, from any first place.
+TEST(ReferenceField, KeepsToItsPartWhereThePathCrossesItself) {
+  std::vector<ReferencePoint> path;
+  for (int i = 0; i < 400; ++i) {
+    const double t = 2 * M_PI * i / 400, dx = std::cos(t), dy = 0.88 * std::cos(2 * t);
+    path.push_back({10 * std::sin(t), 4.4 * std::sin(2 * t), std::atan2(dy, dx), 1});
+  }
+  ReferenceField driven(path);
+  for (int i = 0; i < 400; ++i) {
+    const ReferencePoint& at = path[static_cast<std::size_t>(i)];
+    for (const double side : {0.3, -0.3}) {
+      const Pose robot{at.x - side * std::sin(at.yaw), at.y + side * std::cos(at.yaw), at.yaw + side / 0.75};
+      ReferenceField placed(path);
+      for (ReferenceField* field : {&driven, &placed}) {
+        ASSERT_TRUE(field->update(robot, 0.1));
+        EXPECT_LE(std::abs(std::remainder(field->nearest() - i, 400)), 3) << i << ' ' << side;
+      }
+    }
+  }
+  // Across the path, the place is that of before.
+  ASSERT_TRUE(driven.update({0, 0, path[200].yaw}));
+  ASSERT_TRUE(driven.update({0, 0, path[0].yaw + 0.3}));
+  EXPECT_EQ(driven.nearest(), 200);
+  driven.reset();
+  ASSERT_TRUE(driven.update({0, 0, path[0].yaw + 0.3}));
+  EXPECT_EQ(driven.nearest(), 0);
+}
+
 TEST(ReferenceField, RejectsInvalidPaths) {
   EXPECT_THROW(ReferenceField(circle(2, 1)), std::invalid_argument);
   EXPECT_THROW(ReferenceField({}), std::invalid_argument);

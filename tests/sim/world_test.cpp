@@ -272,5 +272,21 @@ TEST(Track, RejectsInvalidMaps) {
   EXPECT_THROW(LapPath({{1, 1}, {1, 1}, {1, 1}}), std::invalid_argument);
 }
 
+TEST(LapPath, PlacesACarOnThePartThatItDrivesAlong) {
+  std::vector<maps::Point> eight;
+  for (int i = 0; i < 200; ++i) {
+    const double t = 2 * M_PI * i / 200;
+    eight.push_back({10 * std::sin(t), 4 * std::sin(2 * t)});
+  }
+  const LapPath path(eight);
+  for (const double begin : {0.0, 0.5 * path.length()})
+    for (const double aside : {-0.3, 0.0, 0.3}) {
+      const maps::Pose on = path.at(begin + 0.1);
+      const maps::Point at = maps::transform(on, {0, aside});
+      const double arc = path.project({at.x, at.y, on.yaw - aside}).arc;
+      EXPECT_NEAR(std::remainder(arc - begin - 0.1, path.length()), 0, 0.1) << begin << ' ' << aside;
+    }
+}
+
 }  // namespace
 }  // namespace slalom::sim::world_test

@@ -76,7 +76,7 @@ TEST(CourseLine, ProjectsWhatItPlaces) {
   for (const double arc : {0.0, 3.3, 20.0, 37.6}) {
     for (const double offset : {-1.0, 0.0, 0.7}) {
       const maps::Pose pose = beside(arc, offset);
-      const CourseLine::Place place = course.project({pose.x, pose.y});
+      const CourseLine::Place place = course.project(pose);
       EXPECT_NEAR(course.between(arc, place.arc), 0, 0.02) << arc << " " << offset;
       EXPECT_NEAR(place.offset, offset, 0.01);
       EXPECT_NEAR(maps::wrap_angle(course.at(arc).yaw - pose.yaw), 0, 0.01);

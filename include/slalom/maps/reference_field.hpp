@@ -48,8 +48,8 @@ void visit_options(Options& options, Visit&& visit) {
 
 /// A map centred on the robot, parallel to the map frame, that holds for every cell the distance to the
 /// nearest of a window of the path's points, with that point's yaw and speed; with set_curvatures, to the
-/// nearest place of the line. The window begins at the point nearest to the robot (of the whole path) and
-/// wraps at the path's end. Each update computes the map again, because its cells move with the robot.
+/// nearest place of the line. The window begins at the robot's place (see place_on_path) and wraps at the
+/// path's end. Each update computes the map again, because its cells move with the robot.
 ///
 /// The nearest points are exact in double arithmetic: along a row of cells the squared distances are
 /// parabolas of which the lower envelope is built (as for the distance transform). After construction nothing
@@ -59,15 +59,18 @@ class ReferenceField {
   /// Throws std::invalid_argument where the path or the options break a rule.
   explicit ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options = {});
 
-  /// Computes the map around a position (m). With a finite `reach` only the cells within it (m, along each
+  /// Computes the map around a robot. With a finite `reach` only the cells within it (m, along each
   /// axis) are computed; the others keep their values and must not be looked up. A rollout reaches at most
   /// its duration times its largest speed. With `seconds` the reach is at least 1 m more than the distance
-  /// driven in that time at the largest speed in the map. Returns false and changes nothing if the position
-  /// is not finite.
-  bool update(const Point& robot, double reach = std::numeric_limits<double>::infinity(),
+  /// driven in that time at the largest speed in the map. Returns false and changes nothing if the pose is
+  /// not finite.
+  bool update(const Pose& robot, double reach = std::numeric_limits<double>::infinity(),
               double seconds = 0) noexcept;
   /// Computes only the cells of the box from `low` to `high` (m, map frame).
-  bool update(const Point& robot, const Point& low, const Point& high) noexcept;
+  bool update(const Pose& robot, const Point& low, const Point& high) noexcept;
+
+  /// Forgets where the robot was.
+  void reset() noexcept { is_placed_ = false; }
 
   /// Changes the speeds (m/s, one for each point of the path) from the next update on; no other number of
   /// them has an effect.
@@ -100,7 +103,7 @@ class ReferenceField {
   /// the look-ups of rollouts; until the next update.
   GridView<4> view() const noexcept { return cells_.view(geometry_); }
 
-  /// Index of the path's point nearest to the robot at the last update.
+  /// Index of the path's point at which the robot was at the last update.
   int nearest() const noexcept { return nearest_; }
 
   /// How far the last update made the map, m along each axis; 0 after one with a box.
@@ -131,9 +134,9 @@ class ReferenceField {
     const Site* site = nullptr;
   };
 
-  bool begin(const Point& robot) noexcept;
+  bool begin(const Pose& robot) noexcept;
   void make_cells(int row_begin, int row_end, int column_begin, int column_end) noexcept;
-  int nearest_point(const Point& robot) const noexcept;
+  int place_of(const Pose& robot) const noexcept;
   void choose_window() noexcept;
   void make_sites() noexcept;
   int build_envelope(double x) noexcept;
@@ -151,6 +154,7 @@ class ReferenceField {
   std::vector<double> column_y_;   ///< m, of the columns' cells
   double reach_ = 0;
   int nearest_ = 0;
+  bool is_placed_ = false;  ///< whether `nearest_` is where the robot was
   std::vector<int> window_;
   std::size_t window_size_ = 0;
   std::vector<Site> sites_;

@@ -28,6 +28,9 @@ class LapPath {
   };
 
   Place project(const maps::Point& point) const noexcept;  ///< the nearest place of the whole path
+  /// The place of a car: the nearest one, or of several, where the path crosses itself, the one whose
+  /// direction is the car's (see maps::place_on_path).
+  Place project(const maps::Pose& pose) const noexcept;
 
   /// The nearest place among the segments within `reach` (m) of arc either way of segment `near`,
   /// which must be less than size().
@@ -48,18 +51,16 @@ class LapPath {
 class LapTimer {
  public:
   /// Starts at the first point of the path, at time 0.
-  explicit LapTimer(const LapPath& path) { reset(path, path.points().front(), 0); }
+  explicit LapTimer(const LapPath& path) { reset(path, path.at(0), 0); }
 
-  /// Starts at a position and time (s).
-  void reset(const LapPath& path, const maps::Point& position, double time) noexcept;
+  /// Starts at a pose and time (s).
+  void reset(const LapPath& path, const maps::Pose& pose, double time) noexcept;
 
   /// Counts a step. Call it after each one, with the position and the time (s) reached.
   void update(const LapPath& path, const maps::Point& position, double time) noexcept;
 
   /// The car was moved elsewhere: progress continues from there, and the distance between does not count.
-  void relocate(const LapPath& path, const maps::Point& position) noexcept {
-    place_ = path.project(position);
-  }
+  void relocate(const LapPath& path, const maps::Pose& pose) noexcept { place_ = path.project(pose); }
 
   int laps() const noexcept { return laps_; }             ///< whole laps driven
   double progress() const noexcept { return progress_; }  ///< m since the start, backwards counts down

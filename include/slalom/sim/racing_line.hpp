@@ -39,8 +39,8 @@ class RacingLine {
   double length() const noexcept { return path_.length(); }  ///< m, once round the path
   /// The line at an arc length (m, any number of turns), linear between samples.
   Point at(double arc) const noexcept;
-  /// The nearest place of the whole path.
-  LapPath::Place project(const maps::Point& point) const noexcept { return path_.project(point); }
+  /// The place of a car on the whole path.
+  LapPath::Place project(const maps::Pose& pose) const noexcept { return path_.project(pose); }
   /// The nearest place of the path within `reach` (m) along it of the place `near`.
   LapPath::Place project_near(const maps::Point& point, const LapPath::Place& near,
                               double reach) const noexcept {

@@ -19,8 +19,7 @@ constexpr double pushed_time = 1;  // s; a contact this long before a wall is re
 
 /// m, the arc length of the finish line.
 double line_of(const GridRace& race) {
-  const maps::Pose start = race.lap(0).start();
-  return race.environment->track->lap_path()->project({start.x, start.y}).arc;
+  return race.environment->track->lap_path()->project(race.lap(0).start()).arc;
 }
 
 /// Judges the race of the cars of a drive: laps, contacts, overtakes, and cars that leave the track. Cars are

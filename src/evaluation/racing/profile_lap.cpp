@@ -23,7 +23,7 @@ ProfilePoint between(const ProfilePoint& a, const ProfilePoint& b, double distan
 
 /// The profile of a course from a start to the distance `length`, which is once round a closed course.
 std::vector<ProfilePoint> points_from(const vehicle::Course& course, const sim::LapPath& path,
-                                      const maps::Point& start, double length) {
+                                      const maps::Pose& start, double length) {
   const vehicle::PathGeometry geometry = vehicle::path_geometry(path.points(), course.closed);
   const std::size_t count = path.size();
   const sim::LapPath::Place place = path.project(start);
@@ -71,7 +71,7 @@ RacingLap profile_lap(const LapSetup& setup, bool standing, double grip) {
   const Environment& environment = *setup.environment;
   const double length = setup.length();
   const maps::Pose start = setup.start();
-  auto points = points_from(environment.course, *environment.track->lap_path(), {start.x, start.y}, length);
+  auto points = points_from(environment.course, *environment.track->lap_path(), start, length);
   if (standing) start_from_rest(points, grip);
   RacingLap lap;
   lap.standing = standing;

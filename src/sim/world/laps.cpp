@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "slalom/core/options.hpp"
+#include "slalom/maps/place_on_path.hpp"
 
 namespace slalom::sim {
 
@@ -40,6 +41,17 @@ LapPath::Place LapPath::project(const maps::Point& p) const noexcept {
   return best;
 }
 
+LapPath::Place LapPath::project(const maps::Pose& pose) const noexcept {
+  const maps::Point here{pose.x, pose.y};
+  const std::size_t count = points_.size();
+  const auto squared_to = [&](std::size_t i) { return std::pow(place(here, i).distance, 2); };
+  const auto turned = [&](std::size_t i) {
+    const maps::Point &a = points_[i], &b = points_[i + 1 == count ? 0 : i + 1];
+    return pose.yaw - std::atan2(b.y - a.y, b.x - a.x);
+  };
+  return place(here, maps::place_on_path(count, squared_to, turned, count));
+}
+
 LapPath::Place LapPath::project_near(const maps::Point& p, std::size_t near, double reach) const noexcept {
   const std::size_t count = points_.size();
   Place best = place(p, near);
@@ -64,8 +76,8 @@ maps::Pose LapPath::at(double arc) const noexcept {
   return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), std::atan2(b.y - a.y, b.x - a.x)};
 }
 
-void LapTimer::reset(const LapPath& path, const maps::Point& position, double time) noexcept {
-  place_ = path.project(position);
+void LapTimer::reset(const LapPath& path, const maps::Pose& pose, double time) noexcept {
+  place_ = path.project(pose);
   progress_ = 0;
   time_ = lap_start_ = time;
   last_lap_time_ = 0;

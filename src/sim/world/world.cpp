@@ -78,7 +78,7 @@ void World::place(std::size_t index, const maps::Pose& start, double heading) {
   car.zone.reset({start.x, start.y}, heading);
   if (const LapPath* path = track_->lap_path()) {
     if (!car.timer) car.timer.emplace(*path);
-    car.timer->reset(*path, {start.x, start.y}, 0);
+    car.timer->reset(*path, start, 0);
   }
   car.gym_noise = NumpyRandom(12345);
   car.ranges.assign(lidar_.padded_beams(), static_cast<float>(options_.lidar.range_max));
@@ -154,7 +154,7 @@ void World::set_state(std::size_t car, const CarState& state) {
   cars_.at(car).plant.set_state(state);
   cars_[car].before = state;
   boxes_[car].pose = state.pose();
-  if (cars_[car].timer) cars_[car].timer->relocate(*track_->lap_path(), {state.x, state.y});
+  if (cars_[car].timer) cars_[car].timer->relocate(*track_->lap_path(), {state.x, state.y, state.yaw});
 }
 
 void World::take_away(std::size_t car) {

@@ -38,7 +38,7 @@ class Detour {
   /// The path of the last search that found one; the speeds of a 1/10-scale car are at most 1.5 m/s.
   std::span<const maps::ReferencePoint> path() const noexcept { return path_; }
   /// Computes the field of the path around a position (m).
-  void update_field(const maps::Point& position) noexcept { field_.update(position); }
+  void update_field(const maps::Pose& pose) noexcept { field_.update(pose); }
   /// The field of the path, as of the last `update_field`.
   const maps::ReferenceField& field() const noexcept { return field_; }
 

@@ -49,7 +49,7 @@ class DynamicPlanner final : public PlannerBase {
     // Maps: the path and the obstacles around it, as far as the car can get and stop.
     const maps::Pose scan_pose = pose_of_scan(odometry);
     const double fastest = std::max(std::abs(odometry.speed), 1.0);
-    field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), time_in_view());
+    field_.update(start.pose, 1 + fastest * horizon_time(), time_in_view());
     obstacles_.charge_time_behind(field_, origin_, start.pose);
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     conditions_.top_speed = top_speed_;
@@ -138,7 +138,7 @@ class DynamicPlanner final : public PlannerBase {
     conditions_.margin_share = std::min(conditions_.margin_share, recovery_.margin_share());
     on_detour_ = recovery_.retries() && detour_.search(obstacles_.clearance_map(), odometry.pose, nearest);
     if (on_detour_) {
-      detour_.update_field({start.x, start.y});
+      detour_.update_field(start);
       conditions_.urgency = Urgency::detour;
     } else {
       const bool passes = (recovery_.leaving() || seen_.obstacle < PathInSight::all) && !recovery_.reverses();

@@ -41,7 +41,7 @@ class KinematicPlanner final : public PlannerBase {
       for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] = std::min(path_speeds_[i], top_speed_);
       field_.set_speeds(speeds_);
     }
-    field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), jumps ? horizon_time() : 0);
+    field_.update(start.pose, 1 + fastest * horizon_time(), jumps ? horizon_time() : 0);
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     if (must_stop(here)) return stop(PlannerStatus::off_course);
     begin_rollouts(odometry.pose, start, here.speed);

@@ -204,6 +204,7 @@ void PlannerBase::reset(std::uint64_t seed) noexcept {
   forget();
   choice_.reset();
   solver_->reset(seed);
+  field_.reset();
   obstacles_.reset();
   rollouts_.reset();
   output_ = {};
