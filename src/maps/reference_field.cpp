@@ -1,7 +1,6 @@
 #include "slalom/maps/reference_field.hpp"
 
 #include "maps/validation.hpp"
-#include "slalom/maps/place_on_path.hpp"
 #include "slalom/maps/pose_limits.hpp"
 
 namespace slalom::maps {

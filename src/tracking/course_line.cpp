@@ -1,7 +1,7 @@
 #include "tracking/course_line.hpp"
 
 #include "slalom/core/numbers/count.hpp"
-#include "slalom/maps/place_on_path.hpp"
+#include "slalom/maps/reference_path.hpp"
 
 namespace slalom::tracking {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "slalom/core/options.hpp"
-#include "slalom/maps/place_on_path.hpp"
+#include "slalom/maps/reference_path.hpp"
 
 namespace slalom::sim {
 
