@@ -148,7 +148,10 @@ class Drive {
     const sim::World& world = car_.world();
     const double length = world.track().lap_path()->length();
     const auto arc = [&](std::size_t car) {
-      return world.track().lap_path()->project(maps::Point{world.state(car).x, world.state(car).y}).arc;
+      return world.track()
+          .lap_path()
+          ->project({world.state(car).x, world.state(car).y, world.state(car).yaw})
+          .arc;
     };
     return std::remainder(arc(1) - arc(0), length);
   }

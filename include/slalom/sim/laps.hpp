@@ -27,7 +27,6 @@ class LapPath {
     double distance = 0;      ///< m
   };
 
-  Place project(const maps::Point& point) const noexcept;  ///< the nearest place of the whole path
   /// The place of a car: the nearest one, or of several, where the path crosses itself, the one whose
   /// direction is the car's (see maps::place_on_path).
   Place project(const maps::Pose& pose) const noexcept;

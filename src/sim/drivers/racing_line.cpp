@@ -39,12 +39,12 @@ std::vector<maps::Point> resampled(const LapPath& path) {
   return points;
 }
 
-/// The profile of the path where a point is.
-double speed_at(std::span<const PathPoint> path, const LapPath& measured, const maps::Point& point) {
-  const LapPath::Place place = measured.project(point);
+/// The profile of the path at a pose along it.
+double speed_at(std::span<const PathPoint> path, const LapPath& measured, const maps::Pose& pose) {
+  const LapPath::Place place = measured.project(pose);
   const PathPoint &a = path[place.segment], &b = path[(place.segment + 1) % path.size()];
   const double length = std::hypot(b.point.x - a.point.x, b.point.y - a.point.y);
-  const double begin = std::hypot(point.x - a.point.x, point.y - a.point.y);
+  const double begin = std::hypot(pose.x - a.point.x, pose.y - a.point.y);
   const double share = length > 0 ? std::clamp(begin / length, 0.0, 1.0) : 0;
   return a.speed + share * (b.speed - a.speed);
 }
@@ -65,9 +65,8 @@ RacingLine::RacingLine(std::span<const PathPoint> path, const Track& track, cons
     const double arc = spacing_ * i;
     const maps::Pose before = path_.at(arc - spacing_), after = path_.at(arc + spacing_);
     const maps::Point here = path_.points()[i];
-    points_.push_back({.point = here,
-                       .yaw = std::atan2(after.y - before.y, after.x - before.x),
-                       .speed = speed_at(path, given, here)});
+    const double yaw = std::atan2(after.y - before.y, after.x - before.x);
+    points_.push_back({.point = here, .yaw = yaw, .speed = speed_at(path, given, {here.x, here.y, yaw})});
   }
   for (const double share : {1.0, 0.6, 0.3, 0.0}) {
     const auto free = free_cells(track, car, parked, share * wall_margin, share * parked_margin);

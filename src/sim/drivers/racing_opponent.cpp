@@ -37,7 +37,7 @@ RacingOpponent::RacingOpponent(std::shared_ptr<const RacingLine> line, std::size
 void RacingOpponent::look(const World& world) {
   const CarState& own = world.state(car_);
   if (placed_) place_ = line_->project_near({own.x, own.y}, place_, 2);
-  if (!placed_ || place_.distance > far_off) place_ = line_->project(maps::Pose{own.x, own.y, own.yaw});
+  if (!placed_ || place_.distance > far_off) place_ = line_->project({own.x, own.y, own.yaw});
   placed_ = true;
   speed_ = std::max(own.speed, 0.0);
   half_length_ = 0.5 * world.options().car.length;

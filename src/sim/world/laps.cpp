@@ -34,13 +34,6 @@ LapPath::Place LapPath::place(const maps::Point& p, std::size_t i) const noexcep
   return {i, arc, dx * ey - dy * ex >= 0 ? distance : -distance, distance};
 }
 
-LapPath::Place LapPath::project(const maps::Point& p) const noexcept {
-  Place best = place(p, 0);
-  for (std::size_t i = 1; i < points_.size(); ++i)
-    if (const Place here = place(p, i); here.distance < best.distance) best = here;
-  return best;
-}
-
 LapPath::Place LapPath::project(const maps::Pose& pose) const noexcept {
   const maps::Point here{pose.x, pose.y};
   const std::size_t count = points_.size();
