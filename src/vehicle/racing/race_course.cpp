@@ -4,6 +4,7 @@
 
 #include "slalom/core/numbers/count.hpp"
 #include "slalom/maps/pose_limits.hpp"
+#include "slalom/maps/reference_path.hpp"
 #include "vehicle/course/track_parts.hpp"
 #include "vehicle/racing/free_space.hpp"
 #include "vehicle/racing/loop_search.hpp"
@@ -35,27 +36,33 @@ std::string rounded(double length) {
   return to_text(std::round(100 * length) / 100);
 }
 
-template <class Points>
-std::size_t nearest_row(const Points& points, const maps::Point& place) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if (distance({points[i].x, points[i].y}, place) < distance({points[best].x, points[best].y}, place))
-      best = i;
-  return best;
+std::vector<maps::Point> line_of(const Raceline& raceline) {
+  std::vector<maps::Point> line;
+  for (const RacelinePoint& point : raceline.points) line.push_back({point.x, point.y});
+  return line;
 }
 
-/// The cosine of the angle between a pose and the line where it is nearest.
-double along(const std::vector<maps::Point>& line, bool closed, const maps::Pose& pose) {
-  const std::size_t n = line.size(), at = nearest_row(line, {pose.x, pose.y});
-  const auto row = [&](std::size_t reach, bool ahead) {
-    if (closed) return ahead ? (at + reach) % n : (at + n - reach) % n;
-    return ahead ? std::min(at + reach, n - 1) : at - std::min(at, reach);
+/// The yaw of a line of cells, which has eight directions from cell to cell, over some of them.
+double yaw_at(const std::vector<maps::Point>& line, bool closed, std::size_t at) {
+  const std::size_t n = line.size(), reach = std::min<std::size_t>(5, n / 4);
+  const std::size_t before = closed ? (at + n - reach) % n : at - std::min(at, reach);
+  const std::size_t after = closed ? (at + reach) % n : std::min(at + reach, n - 1);
+  return std::atan2(line[after].y - line[before].y, line[after].x - line[before].x);
+}
+
+/// The row of a line at which a car stands, facing along it, or also against it.
+std::size_t row_at(const std::vector<maps::Point>& line, bool closed, const maps::Pose& car,
+                   bool also_against) {
+  const auto squared_to = [&](std::size_t i) { return std::pow(distance(line[i], {car.x, car.y}), 2); };
+  const auto turned = [&](std::size_t i) {
+    return (also_against ? 2 : 1) * (car.yaw - yaw_at(line, closed, i));
   };
-  // A line of cells has eight directions from cell to cell.
-  const std::size_t reach = std::min<std::size_t>(5, n / 4);
-  const maps::Point &before = line[row(reach, false)], &after = line[row(reach, true)];
-  return ((after.x - before.x) * std::cos(pose.yaw) + (after.y - before.y) * std::sin(pose.yaw)) /
-         distance(before, after);
+  return maps::place_on_path(line.size(), squared_to, turned, line.size());
+}
+
+/// The cosine of the angle between a pose and the line where it stands.
+double along(const std::vector<maps::Point>& line, bool closed, const maps::Pose& pose) {
+  return std::cos(pose.yaw - yaw_at(line, closed, row_at(line, closed, pose, true)));
 }
 
 /// Makes a row of a closed line the first one.
@@ -70,7 +77,8 @@ void begin_at_start(RaceCourse& course, const std::optional<maps::Pose>& start) 
   if (course.raceline.closed) {
     std::vector<double> speeds;
     for (const RacelinePoint& point : points) speeds.push_back(point.speed);
-    const std::size_t first = start ? nearest_row(points, {start->x, start->y}) : detail::start_row(speeds);
+    const std::size_t first =
+        start ? row_at(line_of(course.raceline), true, *start, false) : detail::start_row(speeds);
     const double before = points[first].arc_length;
     const double length = course.raceline.length;
     begin_at(points, first);
@@ -78,7 +86,8 @@ void begin_at_start(RaceCourse& course, const std::optional<maps::Pose>& start) 
       point.arc_length = std::fmod(point.arc_length - before + length, length);
     points.front().arc_length = 0;
     Corridor& corridor = course.corridor;
-    const std::size_t row = nearest_row(corridor.centre_line, {points.front().x, points.front().y});
+    const RacelinePoint& begin = points.front();
+    const std::size_t row = row_at(corridor.centre_line, true, {begin.x, begin.y, begin.yaw}, false);
     begin_at(corridor.centre_line, row);
     begin_at(corridor.normal, row);
     begin_at(corridor.left, row);
@@ -93,9 +102,7 @@ Raceline fastest_line(const detail::FreeSpace& space, const Corridor& corridor, 
                       const detail::CorridorMeasure& measure) {
   Raceline best = minimum_time_raceline(corridor, car);
   for (int round = 0; round < max_rounds; ++round) {
-    std::vector<maps::Point> line;
-    for (const RacelinePoint& point : best.points) line.push_back({point.x, point.y});
-    const Corridor along_line = detail::measured_corridor(space, line, best.closed, measure);
+    const Corridor along_line = detail::measured_corridor(space, line_of(best), best.closed, measure);
     for (std::size_t i = 0; i < along_line.left.size(); ++i)
       if (along_line.left[i] + along_line.right[i] <= 2 * measure.keep + min_room ||
           measure.keeps(space, along_line.centre_line[i]))
@@ -194,7 +201,7 @@ std::vector<maps::Point> found_loop(const detail::FreeSpace& space, double keep,
                   start ? "" : "; an open course needs a line to drive along");
     throw std::invalid_argument(text);
   }
-  const maps::Point &origin{0, 0}, &passed = line[nearest_row(line, origin)];
+  const maps::Point &origin{0, 0}, &passed = line[row_at(line, true, {}, true)];
   if (!start && space.clearance(origin) >= keep && distance(passed, origin) <= 2 * space.clearance(passed) &&
       std::abs(along(line, true, {})) > std::cos(max_yaw)) {
     start = maps::Pose{};

@@ -100,6 +100,22 @@ TEST(RaceCourse, AStartPoseSetsPlaceAndDirection) {
   EXPECT_THROW(race_course(rectangular_course(), RacingCar{}, options), std::invalid_argument);
 }
 
+TEST(RaceCourse, AStartOnACrossingIsOnThePartThatItFacesAlong) {
+  GuideLine eight{{}, true};
+  for (int i = 0; i < 120; ++i)
+    eight.points.push_back(
+        {8 * std::sin(2 * testing::pi * i / 120), 3.5 * std::sin(4 * testing::pi * i / 120)});
+  maps::OccupancyGrid map = testing::unknown_map(20, 11, -10, -5.5);
+  for (const auto& [half, cell] : {std::pair(1.1, Occupancy::occupied), {0.9, Occupancy::free}})
+    for (const auto& [x, y] : eight.points) fill(map, x - half, y - half, x + half, y + half, cell);
+  for (const double yaw : {0.7, 2.4, -0.7, -2.4}) {
+    RaceCourseOptions options;
+    options.start = maps::Pose{0, 0, yaw};
+    const RaceCourse course = race_course(map, RacingCar{}, options, &eight);
+    EXPECT_NEAR(maps::wrap_angle(course.raceline.points[0].yaw - yaw), 0, 0.4);
+  }
+}
+
 TEST(RaceCourse, ReverseIsTheOtherWayRound) {
   maps::OccupancyGrid map = rectangular_course();
   map.origin.x -= 8;
