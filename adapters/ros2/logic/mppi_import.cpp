@@ -15,25 +15,6 @@ namespace {
 
 constexpr const char* mppi = "nav2_mppi_controller::MPPIController";
 
-/// The parameters that mean the same here, under the same name.
-constexpr const char* taken[] = {"time_steps",
-                                 "model_dt",
-                                 "batch_size",
-                                 "vx_max",
-                                 "vx_min",
-                                 "vy_max",
-                                 "ax_max",
-                                 "ay_max",
-                                 "wz_max",
-                                 "az_max",
-                                 "vx_std",
-                                 "vy_std",
-                                 "wz_std",
-                                 "open_loop",
-                                 "visualize",
-                                 "transform_tolerance",
-                                 "AckermannConstraints.min_turning_r"};
-
 /// A name in nav2, and the name here.
 struct Name {
   const char *there, *here;
@@ -100,22 +81,6 @@ const char* other_name(std::span<const Name> table, const std::string& key) {
   return found == table.end() ? nullptr : found->here;
 }
 
-/// The fate of a key that is not taken.
-std::string fate_of(const std::string& key) {
-  std::vector<std::string> names(std::begin(taken), std::end(taken));
-  names.insert(names.end(), {"temperature", "plugin"});
-  for (const Dropped& each : dropped) {
-    std::string name = each.key;
-    const bool is_section = name.back() == '.';
-    if (is_section ? key.starts_with(name) : key == name) return std::string("dropped (") + each.why + ")";
-    if (is_section) name.pop_back();
-    names.push_back(std::move(name));
-  }
-  const std::string nearest = nearest_name(key, names);
-  return "unknown (no parameter of nav2's MPPI controller" +
-         (nearest.empty() ? "" : ", did you mean '" + nearest + "'?") + ")";
-}
-
 /// A key of a section, with dots between sections, and its value in the file.
 struct Given {
   std::string key;
@@ -155,7 +120,7 @@ class Section {
         fate = "dropped (wz_std: 0 counts)";
       else if (const char* const other = other_name(renamed, given.key))
         fate = take(given, other, text_of(given), "the name here");
-      else if (std::ranges::find(taken, given.key) != std::end(taken))
+      else if (is_option(given.key))
         fate = take(given, given.key, text_of(given), "");
       else
         fate = fate_of(given.key);
@@ -203,6 +168,26 @@ class Section {
     const std::optional<double> number = maps::finite_number(text);
     if (!number) refuse(given, "'" + text + "' must be a number");
     return *number;
+  }
+
+  bool is_option(const std::string& name) const {
+    const std::vector<NamedOption> options = settings_.list();
+    return std::ranges::find(options, name, &NamedOption::name) != options.end();
+  }
+  /// The fate of a key that is not taken.
+  std::string fate_of(const std::string& key) const {
+    std::vector<std::string> names{"plugin"};
+    for (const NamedOption& each : settings_.list()) names.push_back(each.name);
+    for (const Dropped& each : dropped) {
+      std::string name = each.key;
+      const bool is_section = name.back() == '.';
+      if (is_section ? key.starts_with(name) : key == name) return std::string("dropped (") + each.why + ")";
+      if (is_section) name.pop_back();
+      names.push_back(std::move(name));
+    }
+    const std::string nearest = nearest_name(key, names);
+    return "unknown (no parameter of nav2's MPPI controller" +
+           (nearest.empty() ? "" : ", did you mean '" + nearest + "'?") + ")";
   }
 
   /// Sets an option to a text that follows from a key. Returns the fate of the key.

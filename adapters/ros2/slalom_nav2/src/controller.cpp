@@ -5,6 +5,9 @@
 #include <nav2_core/controller_exceptions.hpp>
 #include <pluginlib/class_list_macros.hpp>
 
+#include "option_parameters.hpp"
+#include "tracked_objects.hpp"
+
 namespace slalom_nav2 {
 namespace {
 
@@ -18,8 +21,7 @@ double tolerance(double told) {
 }
 std::optional<GoalTolerance> tolerance_of(nav2_core::GoalChecker* checker) {
   geometry_msgs::msg::Pose pose;
-  geometry_msgs::msg::Twist velocity;
-  if (checker == nullptr || !checker->getTolerances(pose, velocity)) return {};
+  if (checker == nullptr || !get_tolerances(*checker, pose)) return {};
   return GoalTolerance{tolerance(std::min(pose.position.x, pose.position.y)),
                        tolerance(slalom_ros::yaw_of(pose.orientation))};
 }
@@ -27,26 +29,9 @@ std::optional<GoalTolerance> tolerance_of(nav2_core::GoalChecker* checker) {
 /// A parameter that is fixed once the controller is configured.
 std::string setting(Controller::Node& node, const std::string& name, const std::string& value,
                     const char* description) {
-  if (!node.has_parameter(name)) {
-    rcl_interfaces::msg::ParameterDescriptor descriptor;
-    descriptor.description = description;
-    descriptor.read_only = true;
-    node.declare_parameter<std::string>(name, value, descriptor);
-  }
+  if (!node.has_parameter(name))
+    node.declare_parameter<std::string>(name, value, slalom_ros::fixed(description));
   return node.get_parameter(name).as_string();
-}
-
-nav_msgs::msg::Path message_of(const std::vector<Pose>& poses, const std::string& frame,
-                               const rclcpp::Time& time) {
-  nav_msgs::msg::Path path;
-  path.header.frame_id = frame;
-  path.header.stamp = time;
-  for (const Pose& pose : poses) {
-    path.poses.emplace_back();
-    path.poses.back().header = path.header;
-    path.poses.back().pose = slalom_ros::message_of(pose);
-  }
-  return path;
 }
 
 }  // namespace
@@ -64,7 +49,7 @@ void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
   const std::string prefix = name + ".";
   follower_ = std::make_unique<slalom::nodes::PathFollower>(
       setting(*node, prefix + "method", "svg_mppi", "method that plans; `slalom options` lists them"));
-  parameters_ = std::make_unique<slalom_ros::OptionParameters>(
+  parameters_ = std::make_shared<slalom_ros::OptionParameters>(
       *node,
       [this] {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -207,8 +192,8 @@ geometry_msgs::msg::TwistStamped Controller::command(const geometry_msgs::msg::P
 
 void Controller::publish(const rclcpp::Time& time) {
   const std::string frame = costmap_->getGlobalFrameID();
-  predicted_out_->publish(message_of(follower_->predicted(), frame, time));
-  path_out_->publish(message_of(follower_->path(), frame, time));
+  predicted_out_->publish(slalom_ros::path_of(follower_->predicted(), frame, time.nanoseconds()));
+  path_out_->publish(slalom_ros::path_of(follower_->path(), frame, time.nanoseconds()));
 }
 
 bool Controller::cancel() {

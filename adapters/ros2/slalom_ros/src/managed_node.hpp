@@ -10,19 +10,18 @@
 
 #include "logic/input_watch.hpp"
 #include "logic/reports.hpp"
+#include "option_parameters.hpp"
 
 namespace slalom_ros {
-
-namespace nodes = slalom::nodes;
 
 /// A lifecycle node that publishes its state on `/diagnostics` once per second while it is active. With the
 /// parameter `autostart` it configures and activates itself. A transition that throws fails with the message
 /// in the log. All callbacks are in the default callback group, so they never run at the same time.
 class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
  public:
-  /// Calls `tick` once per `tick_period`.
+  /// Calls `tick` once per `tick_period`. `autostart` is the default of that parameter.
   ManagedNode(const std::string& name, const rclcpp::NodeOptions& options,
-              std::chrono::milliseconds tick_period);
+              std::chrono::milliseconds tick_period, bool autostart = false);
 
   using State = rclcpp_lifecycle::State;
   using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
@@ -46,10 +45,7 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
   /// A parameter that is fixed when the node is made.
   template <class Value>
   Value setting(const std::string& name, const Value& value, const std::string& description) {
-    rcl_interfaces::msg::ParameterDescriptor descriptor;
-    descriptor.description = description;
-    descriptor.read_only = true;
-    return declare_parameter<Value>(name, value, descriptor);
+    return declare_parameter<Value>(name, value, fixed(description));
   }
 
   /// Makes a publisher that exists until the node is cleaned up.

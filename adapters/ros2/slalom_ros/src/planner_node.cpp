@@ -4,7 +4,6 @@
 
 #include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
 #include <nav_msgs/msg/odometry.hpp>
-#include <nav_msgs/msg/path.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/imu.hpp>
 #include <sensor_msgs/point_cloud2_iterator.hpp>
@@ -50,7 +49,6 @@ class PlannerNode : public CoreNode<PlannerCore> {
     settings_.others =
         setting("others", settings_.others, "where the planner learns of other cars: none, scan or topic");
     drive_.header.frame_id = base_;
-    path_.header.frame_id = map_;
     make_marker();
   }
 
@@ -195,14 +193,10 @@ class PlannerNode : public CoreNode<PlannerCore> {
   }
 
   void use_path(const PlannerCore::Path& path, bool closed) {
-    path_.header.stamp = now();
-    path_.poses.clear();
-    for (const maps::ReferencePoint& w : path) {
-      path_.poses.emplace_back();
-      path_.poses.back().header = path_.header;
-      path_.poses.back().pose = message_of(Pose{w.x, w.y, w.yaw});
-    }
-    if (closed) path_.poses.push_back(path_.poses.front());
+    std::vector<Pose> poses;
+    for (const maps::ReferencePoint& w : path) poses.push_back({w.x, w.y, w.yaw});
+    if (closed) poses.push_back(poses.front());
+    path_ = path_of(poses, map_, now().nanoseconds());
     if (path_out_->is_activated()) path_out_->publish(path_);
   }
 
