@@ -183,10 +183,6 @@ struct Walker {
     const Cost<T> met = others.cost(s.x, s.y, T(0), T(1), k);
     return {square(u[0] - T(1)) + met.value, met.collided};
   }
-  template <class T>
-  T terminal_cost(const State<T>&) const {
-    return T(0);
-  }
 };
 
 TEST(MovingObstacles, EveryProblemMeetsThemInLanesAsInDouble) {
