@@ -97,7 +97,7 @@ TEST(MppiImport, TakesMotionModelsThatArePlugins) {
                       "      ax_max: 3.0\n      ay_max: 1.0\n")
                    .yaml,
                {"\n  motion_model: Omni\n", "\n  ax_max: 3.0\n", "\n  ay_max: 1.0\n"});
-  expect_error_with<std::runtime_error>({"params.yaml:7:", "m.plugin", "must be one of mppi::DiffDrive"}, [] {
+  expect_error_with<std::runtime_error>({"params.yaml:7:", "m.plugin", "must be a motion model of mppi"}, [] {
     import("      motion_model: m\n      m: {plugin: \"my::Model\"}\n");
   });
 }

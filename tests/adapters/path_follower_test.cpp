@@ -219,6 +219,18 @@ TEST(PathFollower, RefusesAPoseThatIsNotFiniteOrOffTheCostmap) {
   EXPECT_EQ(drive.step().problem, Problem::none);
 }
 
+TEST(PathFollower, TellsTheCostOfItsPlanByTerms) {
+  StraightDrive drive;
+  EXPECT_TRUE(drive.follower.cost_terms().empty());
+  drive.drive(2, {7, 2, 0});
+  EXPECT_GT(drive.follower.cost_terms().front().value, 1) << "progress";
+  EXPECT_STREQ(drive.follower.cost_terms()[3].name, "clearance");
+  EXPECT_LT(drive.follower.cost_terms()[3].value, 1e-6);
+  drive.room.fill(3, 2.3, 7, 4);
+  drive.step();
+  EXPECT_GT(drive.follower.cost_terms()[3].value, 0.1);
+}
+
 TEST(PathFollower, BrakesWhenItIsCancelled) {
   StraightDrive drive;
   drive.drive(2, {7, 2, 0});

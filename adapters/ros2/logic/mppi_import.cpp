@@ -20,11 +20,6 @@ struct Name {
   const char *there, *here;
 };
 
-/// Motion models as plugins of nav2 1.5, and as before.
-constexpr Name models[] = {{"mppi::DiffDriveMotionModel", "DiffDrive"},
-                           {"mppi::OmniMotionModel", "Omni"},
-                           {"mppi::AckermannMotionModel", "Ackermann"}};
-
 constexpr Name renamed[] = {{"GoalAngleCritic.threshold_to_consider", "costs.goal_reach"},
                             {"model_delay_vx", "delay_forward"},
                             {"model_delay_vy", "delay_sideways"},
@@ -54,8 +49,8 @@ constexpr Dropped dropped[] = {
     {"sgf_order", "samples are smooth: svg_mppi.noise_exponent"},
     {"clamp_raw_controls", "all samples keep to the limits"},
     {"publish_optimal_trajectory", "visualize publishes the plan"},
-    {"publish_critics_stats", "costs are not published"},
-    {"critic_index_to_visualize", "costs are not published"},
+    {"publish_critics_stats", "visualize publishes the cost of the plan by its terms"},
+    {"critic_index_to_visualize", "visualize publishes the cost of the plan by its terms"},
     {"TrajectoryValidator.", "the plan is always checked with the footprint, until the robot can brake"},
     {"PathHandler.", "the path counts as far as the robot can drive in a plan"},
     {"critics", "the terms of the cost are fixed; their weights are in costs"},
@@ -209,15 +204,15 @@ class Section {
     const Given* const given = find("motion_model");
     return given ? text_of(*given) : "diff_drive";
   }
-  /// The motion model by its name here, or as it is given where it has none.
+  /// The motion model by its name here: that of a plugin is "mppi::", this name and "MotionModel".
   std::string model() const {
     const std::string key = model_key();
     const Given* const plugin = find(key + ".plugin");
     if (!plugin) return key == "diff_drive" ? "DiffDrive" : key;
-    if (const char* const name = other_name(models, text_of(*plugin))) return name;
-    std::string names;
-    for (const Name& each : models) names += (names.empty() ? "" : ", ") + std::string(each.there);
-    refuse(*plugin, "'" + text_of(*plugin) + "' must be one of " + names);
+    const std::string name = text_of(*plugin), end = "MotionModel";
+    if (name.starts_with("mppi::") && name.ends_with(end))
+      return name.substr(6, name.size() - 6 - end.size());
+    refuse(*plugin, "'" + name + "' must be a motion model of mppi");
   }
   bool no_turn_sampled() const {
     const Given* const given = find("wz_std");

@@ -2,6 +2,8 @@
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose_limits.hpp"
+#include "slalom/navigation/navigation_problem.hpp"
+#include "slalom/solvers/trajectories.hpp"
 #include "slalom/tracking/people.hpp"
 
 namespace slalom::nodes {
@@ -235,6 +237,15 @@ FollowerAnswer PathFollower::update(const FollowerInput& input) try {
 } catch (const std::exception& error) {
   command_ = {};
   return {Problem::no_control, error.what(), "", {}, 0};
+}
+
+std::vector<CostTerm> PathFollower::cost_terms() const {
+  if (predicted_.empty()) return {};
+  const auto none = detail::cost_terms_of<nav::NavigationProblem<nav::DifferentialBase>>();
+  std::vector<CostTerm> terms(none.begin(), none.end());
+  const Trajectories plan = navigator_->roll_out(navigator_->solution().inputs);
+  for (std::size_t i = 0; i < plan.costs.size(); ++i) terms[i % terms.size()].value += plan.costs[i];
+  return terms;
 }
 
 FollowerAnswer PathFollower::judge(const nav::NavigationResult& result, double elapsed) {

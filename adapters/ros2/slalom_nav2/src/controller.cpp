@@ -4,6 +4,7 @@
 
 #include <nav2_core/controller_exceptions.hpp>
 #include <pluginlib/class_list_macros.hpp>
+#include <slalom_msgs/msg/cost_terms.hpp>
 
 #include "option_parameters.hpp"
 #include "tracked_objects.hpp"
@@ -36,6 +37,31 @@ std::string setting(Controller::Node& node, const std::string& name, const std::
 
 }  // namespace
 
+/// The messages for displays.
+struct Controller::Outputs {
+  template <class Message>
+  using Publisher = std::shared_ptr<rclcpp_lifecycle::LifecyclePublisher<Message>>;
+  Publisher<nav_msgs::msg::Path> plan, path;
+  Publisher<slalom_msgs::msg::CostTerms> terms;
+
+  template <class Act>
+  void for_each(Act act) {
+    act(*plan), act(*path), act(*terms);
+  }
+  void publish(const slalom::nodes::PathFollower& follower, const std::string& frame,
+               const rclcpp::Time& time) {
+    plan->publish(slalom_ros::path_of(follower.predicted(), frame, time.nanoseconds()));
+    path->publish(slalom_ros::path_of(follower.path(), frame, time.nanoseconds()));
+    slalom_msgs::msg::CostTerms cost;
+    cost.header.stamp = time;
+    for (const slalom::CostTerm& term : follower.cost_terms()) {
+      cost.names.emplace_back(term.name);
+      cost.costs.push_back(term.value);
+    }
+    terms->publish(cost);
+  }
+};
+
 void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
                            std::shared_ptr<tf2_ros::Buffer> transforms,
                            std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) {
@@ -62,8 +88,10 @@ void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
       prefix);
   for (const std::string& unused : parameters_->unused())
     RCLCPP_WARN(logger_, "parameter %s has no meaning for this controller", unused.c_str());
-  predicted_out_ = node->create_publisher<nav_msgs::msg::Path>("local_plan", 1);
-  path_out_ = node->create_publisher<nav_msgs::msg::Path>("transformed_global_plan", 1);
+  outputs_ = std::make_shared<Outputs>(
+      Outputs{node->create_publisher<nav_msgs::msg::Path>("local_plan", 1),
+              node->create_publisher<nav_msgs::msg::Path>("transformed_global_plan", 1),
+              node->create_publisher<slalom_msgs::msg::CostTerms>("cost_terms", 1)});
   subscribe(*node, prefix);
 }
 
@@ -104,21 +132,18 @@ void Controller::cleanup() {
   objects_.reset();
   const std::lock_guard<std::mutex> lock(mutex_);
   follower_.reset();
-  predicted_out_.reset();
-  path_out_.reset();
+  outputs_.reset();
   costmap_.reset();
   transforms_.reset();
   clock_.reset();
 }
 
 void Controller::activate() {
-  predicted_out_->on_activate();
-  path_out_->on_activate();
+  outputs_->for_each([](auto& each) { each.on_activate(); });
 }
 
 void Controller::deactivate() {
-  predicted_out_->on_deactivate();
-  path_out_->on_deactivate();
+  outputs_->for_each([](auto& each) { each.on_deactivate(); });
 }
 
 void Controller::use_plan(const nav_msgs::msg::Path& plan) {
@@ -177,7 +202,7 @@ geometry_msgs::msg::TwistStamped Controller::command(const geometry_msgs::msg::P
   input.time = clock_->now().seconds();
   input.tolerance = tolerance_of(goal_checker);
   const FollowerAnswer answer = follower_->update(input);
-  if (follower_->visualizes()) publish(pose.header.stamp);
+  if (follower_->visualizes()) outputs_->publish(*follower_, costmap_->getGlobalFrameID(), pose.header.stamp);
   if (answer.problem == FollowerAnswer::Problem::invalid_path) throw nav2_core::InvalidPath(answer.why);
   if (answer.problem == FollowerAnswer::Problem::no_control) throw nav2_core::NoValidControl(answer.why);
 
@@ -188,12 +213,6 @@ geometry_msgs::msg::TwistStamped Controller::command(const geometry_msgs::msg::P
   sent.twist.linear.y = answer.command.left;
   sent.twist.angular.z = answer.command.turn;
   return sent;
-}
-
-void Controller::publish(const rclcpp::Time& time) {
-  const std::string frame = costmap_->getGlobalFrameID();
-  predicted_out_->publish(slalom_ros::path_of(follower_->predicted(), frame, time.nanoseconds()));
-  path_out_->publish(slalom_ros::path_of(follower_->path(), frame, time.nanoseconds()));
 }
 
 bool Controller::cancel() {

@@ -67,7 +67,7 @@ class Controller : public nav2_core::Controller {
   void reset() override;
 
  private:
-  using PathPublisher = rclcpp_lifecycle::LifecyclePublisher<nav_msgs::msg::Path>;
+  struct Outputs;
 
   /// Throws nav2_core::InvalidPath if it has no poses, one is not finite, or it has no frame.
   void use_plan(const nav_msgs::msg::Path& plan);
@@ -80,7 +80,6 @@ class Controller : public nav2_core::Controller {
   slalom::maps::Pose frame_in_costmap(const std::string& frame, const rclcpp::Time& time) const;
   void subscribe(Node& node, const std::string& prefix);
   void read_costmap();
-  void publish(const rclcpp::Time& time);
 
   // Clock and logger of the node, which owns the controller.
   rclcpp::Clock::SharedPtr clock_;
@@ -91,7 +90,7 @@ class Controller : public nav2_core::Controller {
   std::mutex mutex_;  ///< guards the follower
   std::unique_ptr<slalom::nodes::PathFollower> follower_;
   std::shared_ptr<slalom_ros::OptionParameters> parameters_;
-  std::shared_ptr<PathPublisher> predicted_out_, path_out_;
+  std::shared_ptr<Outputs> outputs_;
   rclcpp::SubscriptionBase::SharedPtr scans_, objects_;
   std::string plan_frame_;
 };

@@ -103,7 +103,7 @@ class NodeTest {
     expect(laps_->back().data >= 3, "the simulator has counted the laps");
     expect(collisions_->back().data == collisions, "no collisions");
     expect(!map_->empty() && !path_->empty(), "a map and a path");
-    expect(!parked_->empty() && !markers_->empty(), "markers of parked cars and of plans");
+    expect(!parked_->empty() && !plan_->empty(), "markers of parked cars, and plans");
     expect(plans_->size() > scans_->size() / 2, "plans for most scans");
     expect(client_.diagnostics["planner: plans"].count("latency from scan to command, p99, ms") > 0 &&
                client_.diagnostics["localiser: localisation"].count("health") > 0 &&
@@ -184,7 +184,7 @@ class NodeTest {
   Recorded<nav_msgs::msg::OccupancyGrid> map_ = client_.record<nav_msgs::msg::OccupancyGrid>("map", latched_);
   Recorded<nav_msgs::msg::Path> path_ = client_.record<nav_msgs::msg::Path>("reference_path", latched_);
   Recorded<MarkerArray> parked_ = client_.record<MarkerArray>("obstacles", latched_);
-  Recorded<MarkerArray> markers_ = client_.record<MarkerArray>("planner_markers", some_);
+  Recorded<nav_msgs::msg::Path> plan_ = client_.record<nav_msgs::msg::Path>("plan", some_);
   Nodes nodes_;
 };
 

@@ -28,8 +28,6 @@ namespace rclcpp_lifecycle {
 struct LifecycleNode {
   using WeakPtr = std::weak_ptr<LifecycleNode>;
 };
-template <class Message>
-struct LifecyclePublisher;
 }  // namespace rclcpp_lifecycle
 namespace tf2_ros {
 struct Buffer;
