@@ -219,10 +219,14 @@ TEST(PathFollower, RefusesAPoseThatIsNotFiniteOrOffTheCostmap) {
   EXPECT_EQ(drive.step().problem, Problem::none);
 }
 
-TEST(PathFollower, TellsTheCostOfItsPlanByTerms) {
+TEST(PathFollower, TellsTheCostOfItsPlanByTermsAndItsSamples) {
   StraightDrive drive;
-  EXPECT_TRUE(drive.follower.cost_terms().empty());
+  EXPECT_TRUE(drive.follower.cost_terms().empty() && drive.follower.samples(32).empty());
   drive.drive(2, {7, 2, 0});
+  const std::vector<maps::Point> lines = drive.follower.samples(32);
+  ASSERT_EQ(lines.size(), 2 * 32 * (drive.follower.predicted().size() - 1));
+  for (std::size_t i = 1; i < lines.size(); ++i) EXPECT_LT(maps::distance(lines[i - 1], lines[i]), 1.5);
+  EXPECT_EQ(lines[0].x, drive.follower.predicted()[0].x);
   EXPECT_GT(drive.follower.cost_terms().front().value, 1) << "progress";
   EXPECT_STREQ(drive.follower.cost_terms()[3].name, "clearance");
   EXPECT_LT(drive.follower.cost_terms()[3].value, 1e-6);

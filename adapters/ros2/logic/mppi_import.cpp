@@ -54,7 +54,7 @@ constexpr Dropped dropped[] = {
     {"TrajectoryValidator.", "the plan is always checked with the footprint, until the robot can brake"},
     {"PathHandler.", "the path counts as far as the robot can drive in a plan"},
     {"critics", "the terms of the cost are fixed; their weights are in costs"},
-    {"TrajectoryVisualizer.", "visualize publishes the plan, not the samples"},
+    {"TrajectoryVisualizer.", "visualize publishes the plan and 100 samples"},
     {"ConstraintCritic.", "samples keep to the limits of speed and acceleration"},
     {"CostCritic.", distances_count},
     {"ObstaclesCritic.", distances_count},

@@ -91,6 +91,9 @@ class PathFollower {
   const std::vector<maps::Pose>& predicted() const { return predicted_; }
   /// The parts of the cost of that plan by name, which sum to it; empty where there is no plan. Allocates.
   std::vector<CostTerm> cost_terms() const;
+  /// About `most` samples of that plan as lines from each point to the next, frame of the costmap: two points
+  /// for each. Allocates.
+  std::vector<maps::Point> samples(int most) const;
   /// The path that is followed, with the present detour; frame of the costmap.
   const std::vector<maps::Pose>& path() const { return path_; }
 

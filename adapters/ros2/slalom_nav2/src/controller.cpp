@@ -5,6 +5,7 @@
 #include <nav2_core/controller_exceptions.hpp>
 #include <pluginlib/class_list_macros.hpp>
 #include <slalom_msgs/msg/cost_terms.hpp>
+#include <visualization_msgs/msg/marker.hpp>
 
 #include "option_parameters.hpp"
 #include "tracked_objects.hpp"
@@ -43,10 +44,11 @@ struct Controller::Outputs {
   using Publisher = std::shared_ptr<rclcpp_lifecycle::LifecyclePublisher<Message>>;
   Publisher<nav_msgs::msg::Path> plan, path;
   Publisher<slalom_msgs::msg::CostTerms> terms;
+  Publisher<visualization_msgs::msg::Marker> samples;
 
   template <class Act>
   void for_each(Act act) {
-    act(*plan), act(*path), act(*terms);
+    act(*plan), act(*path), act(*terms), act(*samples);
   }
   void publish(const slalom::nodes::PathFollower& follower, const std::string& frame,
                const rclcpp::Time& time) {
@@ -59,6 +61,17 @@ struct Controller::Outputs {
       cost.costs.push_back(term.value);
     }
     terms->publish(cost);
+    if (samples->get_subscription_count() == 0) return;
+    visualization_msgs::msg::Marker lines;
+    lines.header.frame_id = frame;
+    lines.header.stamp = time;
+    lines.type = visualization_msgs::msg::Marker::LINE_LIST;
+    lines.pose.orientation.w = 1;
+    lines.scale.x = 0.01;
+    lines.color.b = lines.color.a = 0.7F;
+    for (const auto& [x, y] : follower.samples(100))
+      lines.points.push_back(slalom_ros::message_of(Pose{x, y, 0}).position);
+    samples->publish(lines);
   }
 };
 
@@ -91,7 +104,8 @@ void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
   outputs_ = std::make_shared<Outputs>(
       Outputs{node->create_publisher<nav_msgs::msg::Path>("local_plan", 1),
               node->create_publisher<nav_msgs::msg::Path>("transformed_global_plan", 1),
-              node->create_publisher<slalom_msgs::msg::CostTerms>("cost_terms", 1)});
+              node->create_publisher<slalom_msgs::msg::CostTerms>("cost_terms", 1),
+              node->create_publisher<visualization_msgs::msg::Marker>("candidate_trajectories", 1)});
   subscribe(*node, prefix);
 }
 
