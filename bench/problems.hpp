@@ -106,10 +106,6 @@ struct Learned {
   T stage_cost(const State<T>& x, const Input<T, 2>&) const {
     return square(x.speed - T(1));
   }
-  template <class T>
-  T terminal_cost(const State<T>&) const {
-    return T(0);
-  }
 };
 
 }  // namespace slalom::bench

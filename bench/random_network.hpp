@@ -10,9 +10,7 @@ namespace slalom::bench {
 inline Mlp<5, 3> random_network(Activation activation = Activation::tanh) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0, 0.2);
-  MlpParameters p;
-  p.activation = activation;
-  p.residual = true;
+  MlpParameters p{.activation = activation, .residual = true};
   int entering = 5;
   for (const int neurons : {32, 32, 3}) {
     MlpParameters::Layer layer{entering, neurons, {}, {}};

@@ -1,5 +1,5 @@
 // Somebody steps in front of a delivery robot. The samples accelerate smoothly, with a standard deviation of
-// 1 m/s^2, so none of them brakes fully, and the robot brakes too late. A brake that is proposed beside the
+// 1 m/s^2, so hardly one brakes fully, and the robot may brake too late. A brake that is proposed beside the
 // samples is there at once. While nobody is in the way, it costs too much to count.
 
 #include <cstdio>
@@ -32,10 +32,6 @@ struct Robot {
     return {
         T(dt) * (slalom::square(x.speed - T(cruising_speed)) + effort) + slalom::select(hit, T(100), T(0)),
         hit};
-  }
-  template <class T>
-  T terminal_cost(const State<T>&) const {
-    return T(0);
   }
 
   /// Whether the robot collides with the person.

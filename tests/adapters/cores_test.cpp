@@ -21,16 +21,9 @@ Clocks clocks() {
   return {[] { return 1000.0; }, [] { return 1000.0; }};
 }
 
-PlannerCore::Settings with(const std::string& configuration, const std::string& method) {
-  PlannerCore::Settings settings;
-  settings.configuration = configuration;
-  settings.method = method;
-  return settings;
-}
-
 class PlannerCoreTest : public ::testing::Test {
  protected:
-  PlannerCore core_{with("", "mppi"),
+  PlannerCore core_{{.configuration = "", .method = "mppi"},
                     clocks(),
                     {},
                     {{},
@@ -47,8 +40,9 @@ TEST_F(PlannerCoreTest, AnInvalidOptionChangesNothing) {
   EXPECT_THROW(core_.change({{"mppi.samples", "128"}, {"mppi.none", "1"}}), std::exception);
   EXPECT_EQ(value_of(core_, "mppi.samples"), "64");
   EXPECT_EQ(value_of(core_, "planner.max_speed"), "3");
-  EXPECT_THROW(PlannerCore(with("", "none"), clocks(), {}, {}), std::exception);
-  EXPECT_THROW(PlannerCore(with("no/such/file.yaml", "mppi"), clocks(), {}, {}), std::exception);
+  EXPECT_THROW(PlannerCore({.configuration = "", .method = "none"}, clocks(), {}, {}), std::exception);
+  EXPECT_THROW(PlannerCore({.configuration = "no/such/file.yaml", .method = "mppi"}, clocks(), {}, {}),
+               std::exception);
 }
 
 TEST_F(PlannerCoreTest, AnInvalidPathIsIgnored) {

@@ -39,6 +39,7 @@ TEST(MppiImport, TakesWhatMeansTheSame) {
       motion_model: "Ackermann"
       open_loop: False
       visualize: True
+      retry_attempt_limit: 3
       transform_tolerance: 0.2
       AckermannConstraints:
         min_turning_r: 0.4
@@ -46,10 +47,10 @@ TEST(MppiImport, TakesWhatMeansTheSame) {
   expect_words(imported.report,
                {"params.yaml:7: FollowPath.time_steps: 40: taken\n",
                 "params.yaml:18: FollowPath.motion_model: Ackermann: taken\n",
-                "params.yaml:23: FollowPath.AckermannConstraints.min_turning_r: 0.4: taken\n"});
+                "params.yaml:24: FollowPath.AckermannConstraints.min_turning_r: 0.4: taken\n"});
   std::size_t taken = 0;
   for (std::size_t at = 0; (at = imported.report.find(": taken\n", at)) != std::string::npos; ++at) ++taken;
-  EXPECT_EQ(taken, 16U) << imported.report;
+  EXPECT_EQ(taken, 17U) << imported.report;
   expect_words(imported.yaml, {"\nFollowPath:\n  plugin: \"slalom_nav2::Controller\"\n",
                                "\n  time_steps: 40\n", "\n  vx_min: -0.2\n", "\n  visualize: true\n",
                                "\n  AckermannConstraints:\n    min_turning_r: 0.4\n"});
@@ -96,7 +97,7 @@ TEST(MppiImport, TakesMotionModelsThatArePlugins) {
                       "      ax_max: 3.0\n      ay_max: 1.0\n")
                    .yaml,
                {"\n  motion_model: Omni\n", "\n  ax_max: 3.0\n", "\n  ay_max: 1.0\n"});
-  expect_error_with<std::runtime_error>({"params.yaml:7:", "m.plugin", "must be one of mppi::DiffDrive"}, [] {
+  expect_error_with<std::runtime_error>({"params.yaml:7:", "m.plugin", "must be a motion model of mppi"}, [] {
     import("      motion_model: m\n      m: {plugin: \"my::Model\"}\n");
   });
 }

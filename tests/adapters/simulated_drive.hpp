@@ -245,11 +245,7 @@ class Drive {
     allocations_ += slalom::testing::allocations() - before;
   }
   static PlannerCore::Settings planner_settings(const DriveSetup& setup) {
-    PlannerCore::Settings settings;
-    settings.configuration = SLALOM_CONFIGS "/default.yaml";
-    settings.course = place(setup);
-    settings.others = setup.others;
-    return settings;
+    return {.configuration = SLALOM_CONFIGS "/default.yaml", .course = place(setup), .others = setup.others};
   }
   Transforms transforms() {
     return {[this](Stamp at) { return map_to_odometry_.knows(at) && odometry_to_base_.knows(at); },

@@ -23,13 +23,7 @@ struct Predicted : testing::Predicted {
 
 /// A body of 0.6 m x 0.3 m round its reference point, which collides where it touches.
 MovingObstacleOptions touching() {
-  MovingObstacleOptions options;
-  options.front = options.rear = 0.3;
-  options.width = 0.3;
-  options.margin = 0;
-  options.soft_margin = 0.2;
-  options.soft_cost = 10;
-  return options;
+  return {.front = 0.3, .rear = 0.3, .width = 0.3, .margin = 0, .soft_margin = 0.2, .soft_cost = 10};
 }
 
 Cost<double> cost_at(const MovingObstaclesView& view, const Pose& pose, int k = 0) {
@@ -182,10 +176,6 @@ struct Walker {
   Cost<T> stage_cost(const State<T>& s, const Input<T, 2>& u, int k) const {
     const Cost<T> met = others.cost(s.x, s.y, T(0), T(1), k);
     return {square(u[0] - T(1)) + met.value, met.collided};
-  }
-  template <class T>
-  T terminal_cost(const State<T>&) const {
-    return T(0);
   }
 };
 

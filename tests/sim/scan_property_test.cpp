@@ -34,10 +34,7 @@ double walk(const Track& track, const maps::Pose& sensor, double angle, double m
 TEST(ScanProperty, RangesAreTheWaysToTheFirstWallCell) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     const Track track(scattered(seed));
-    LidarOptions options;
-    options.beams = 333;
-    options.field_of_view = 6.28;
-    options.range_max = 6;
+    LidarOptions options{.beams = 333, .field_of_view = 6.28, .range_max = 6};
     const Lidar lidar(options);
     std::vector<float> ranges(lidar.padded_beams());
     std::mt19937 random(seed);

@@ -15,12 +15,10 @@ constexpr ImuOptions faultless{
 
 /// The state on a circle at constant speed (m/s) and yaw rate (rad/s), with a constant slip (rad).
 CarState on_circle(double speed, double yaw_rate, double slip, double time) {
-  CarState state;
-  state.speed = speed;
-  state.yaw = std::remainder(yaw_rate * time, 2 * 3.141592653589793);
-  state.yaw_rate = yaw_rate;
-  state.slip = slip;
-  return state;
+  return {.speed = speed,
+          .yaw = std::remainder(yaw_rate * time, 2 * 3.141592653589793),
+          .yaw_rate = yaw_rate,
+          .slip = slip};
 }
 
 TEST(Imu, ReadsTheCentripetalAccelerationAcrossTheDirectionOfTravel) {

@@ -38,9 +38,7 @@ struct Comparison {
 /// Steps of 0.05 s, for steering that is held and for steering that swings.
 Comparison compared(const Drive& drive) {
   const PathTrackingOptions options = car_options();
-  SingleTrackOptions own;
-  own.tyres = drive.tyres;
-  own.friction = drive.friction;
+  SingleTrackOptions own{.tyres = drive.tyres, .friction = drive.friction};
   const SingleTrackDynamics dynamics(options, own);
   sim::CarParameters car;
   car.friction = drive.friction;
@@ -51,9 +49,7 @@ Comparison compared(const Drive& drive) {
   Comparison found;
   for (const bool swinging : {false, true}) {
     SingleTrackState<double> s{0, 0, 0, drive.speed, 0, 0, 0};
-    sim::CarState truth;
-    truth.x = car.rear_length;
-    truth.speed = drive.speed;
+    sim::CarState truth{.x = car.rear_length, .speed = drive.speed};
     for (int k = 0; k < 20; ++k) {
       const double command = swinging ? steer * std::sin(0.05 * k * 2 * 3.14159 / 0.8) : steer;
       const double acceleration = std::min(drive.acceleration, dynamics.driving_limit(s.speed));
@@ -174,9 +170,7 @@ TEST(SingleTrack, BrakesNoHarderThanTurningLeavesGrip) {
 }
 
 TEST(SingleTrack, KnowsTheForceOfTheStepBefore) {
-  SingleTrackOptions own;
-  own.tyres = TyreModel::linear;
-  own.braking_share = 0.5;
+  SingleTrackOptions own{.tyres = TyreModel::linear, .braking_share = 0.5};
   const SingleTrackDynamics dynamics(car_options(), own);
   SingleTrackState<double> s{0, 0, 0, 6, 0, 0, 0};
   for (int k = 0; k < 40; ++k) s = dynamics.advance(s, 0.05, 0.0, own.friction, 0.05);
@@ -203,9 +197,7 @@ TEST(SingleTrack, BrakesWithItsShareOfTheGripThatIsLeft) {
 }
 
 TEST(SingleTrack, ForTheLapTimeDrivesAtItsShareOfThePathsSpeed) {
-  SingleTrackOptions own;
-  own.objective = Objective::lap_time;
-  own.speed_share = 1.1;
+  SingleTrackOptions own{.objective = Objective::lap_time, .speed_share = 1.1};
   SingleTrack car(car_options(), own);
   car.set_conditions({.friction = own.friction, .top_speed = 6});
   const SingleTrackState<double> s{0, 0, 0, 5, 0, 0, 0};
@@ -215,10 +207,7 @@ TEST(SingleTrack, ForTheLapTimeDrivesAtItsShareOfThePathsSpeed) {
 }
 
 TEST(SingleTrack, ForTheLapTimeAPlanMustEndAtASpeedWithWhichTheCarCanDriveOn) {
-  SingleTrackOptions own;
-  own.objective = Objective::lap_time;
-  own.usable_grip = 0.8;
-  own.grip_weight = 100;
+  SingleTrackOptions own{.objective = Objective::lap_time, .usable_grip = 0.8, .grip_weight = 100};
   const SingleTrack car(car_options(), own);
   const auto at = [](double speed) { return SingleTrackState<double>{0, 0, 0, speed, 0, 0, 0}; };
   EXPECT_EQ(car.overspeed_cost(at(5), 5.0), 0);

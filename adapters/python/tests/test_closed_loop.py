@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import slalom
+import slalom.ros
 from test_controllers import cost, dynamics, linear
 
 LIMITS = [{}, {"input_rate_max": 3}, {"input_min": -1, "input_max": 1, "input_levels": 3}]
@@ -43,6 +44,18 @@ def test_a_drive_is_the_loop_that_everybody_writes():
 def test_mistakes_of_a_drive_are_named(arguments, text):
     with pytest.raises(ValueError, match=text):
         slalom.run(linear(), slalom.Mppi(linear(), horizon=3), *arguments)
+
+
+def test_a_loop_for_ros_is_safe_where_no_plan_can_be_trusted():
+    loop = slalom.ros.Loop(slalom.Mppi(linear(), horizon=5), safe=[0.25], deadline=1)
+    assert loop.command(1) == 0.25 and loop.why == "no state yet"
+    for state, stamp, now, why in [([1, 0], 1, 1.05, ""), ([1, 0], 1, 1.2, "the newest state is 0.20 s old"), ([1, 0], 1.3, 1.3, ""),
+                                   ([1, 0], 3, 2, "the newest state is -1.00 s old"), ([np.nan, 0], 1.35, 1.35, "non_finite_state")]:
+        loop.hear(state, stamp)
+        assert (loop.command(now) == 0.25) == bool(why) and loop.why == why
+    loop.hear([1, 0], 1.4)
+    loop.deadline = 1e-9
+    assert loop.command(1.4) != 0.25 and loop.plan.status == "deadline"
 
 
 @pytest.mark.parametrize("limits", LIMITS)

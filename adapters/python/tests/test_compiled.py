@@ -242,30 +242,21 @@ def test_a_batch_of_solves_gives_the_plans_of_single_solves():
         slalom.solve_batch([one, one], states[:2])
 
 
-def test_callables_of_a_batch_run_on_one_thread():
+def test_callables_of_a_batch_run_on_one_thread_and_their_exceptions_leave_it():
     threads = set()
 
     def cost(x, u):
         threads.add(threading.get_ident())
-        return x[:, 0] ** 2
-
-    problem = slalom.Problem(lambda x, u: x + u, cost, states=1, inputs=1)
-    batch = [slalom.Mppi(problem, horizon=3, samples=64) for _ in range(16)]
-    slalom.solve_batch(batch, [[0.5]] * 16, threads=4)
-    assert threads == {threading.get_ident()}
-
-
-def test_exceptions_of_callables_leave_a_batch():
-    def cost(x, u):
         if x[0, 0] > 1:
             raise ArithmeticError("too far")
         return x[:, 0] ** 2
 
     problem = slalom.Problem(lambda x, u: x + u, cost, states=1, inputs=1)
-    batch = [slalom.Mppi(problem, horizon=2, samples=8, variance=1e-12) for _ in range(2)]
+    batch = [slalom.Mppi(problem, horizon=3, samples=64, variance=1e-12) for _ in range(16)]
     with pytest.raises(ArithmeticError, match="too far"):
-        slalom.solve_batch(batch, [[0.5], [2]], threads=2)
-    assert slalom.solve_batch(batch, [[0.5], [0.1]])[1].ok
+        slalom.solve_batch(batch, [[0.5]] * 15 + [[2]], threads=4)
+    assert slalom.solve_batch(batch, [[0.5]] * 16, threads=4)[15].ok
+    assert threads == {threading.get_ident()}
 
 
 def test_the_package_needs_no_compiler_to_be_imported():

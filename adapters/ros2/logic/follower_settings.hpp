@@ -49,7 +49,7 @@ void visit_options(Options& o, Visit&& visit) {
                        "price of a cell with cost 252, as of an unknown cell; falls with the square of the "
                        "cost; 0: only obstacles count",
                        0, 1000});
-  visit(o.visualize, {"visualize", "", "publish local_plan and transformed_global_plan"});
+  visit(o.visualize, {"visualize", "", "publish plan, followed path, cost terms and samples"});
   visit(o.transform_tolerance,
         {"transform_tolerance", "s", "time to wait for a transform at the time of a pose", 0, 60});
 }

@@ -3,12 +3,6 @@
 #include "slalom/sim/wheel_odometry.hpp"
 
 namespace slalom::nodes {
-namespace {
-
-constexpr Stamp furthest = 100'000'000;  // ns, that an odometry is extrapolated
-
-}  // namespace
-
 LocaliserCore::LocaliserCore(const Settings& settings, Clocks clocks, Transforms transforms, Outputs outputs)
     : clocks_(std::move(clocks)),
       transforms_(std::move(transforms)),
@@ -26,14 +20,11 @@ std::vector<NamedOption> LocaliserCore::options() const {
 
 void LocaliserCore::change(const Changes& changes) {
   vehicle::LocaliserOptions changed = options_;
-  for (const auto& [name, text] : changes) {
-    try {
-      if (set_option(changed, name, text)) continue;
+  for (const auto& [name, text] : changes) try {
+      if (!set_option(changed, name, text)) throw std::invalid_argument("unknown option of the localiser");
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("key " + name + ": " + error.what());
     }
-    throw std::invalid_argument("key " + name + ": unknown option of the localiser");
-  }
   changed.validate();
   if (localiser_) {
     localiser_.emplace(vehicle::Localiser(map_, changed));
@@ -135,6 +126,7 @@ void LocaliserCore::hear_scan(Stamp stamp, const std::string& frame, const maps:
 
 /// The odometry of the rear axle at a time: interpolated, or extrapolated by speed after the last message.
 bool LocaliserCore::odometry_at(Stamp stamp, maps::Pose& rear) const {
+  constexpr Stamp furthest = 100'000'000;  // ns, that an odometry is extrapolated
   if (count_ == 0) return false;
   std::size_t after = 0;
   while (after < count_ && odometry(after).stamp < stamp) ++after;

@@ -15,34 +15,10 @@ namespace {
 
 constexpr const char* mppi = "nav2_mppi_controller::MPPIController";
 
-/// The parameters that mean the same here, under the same name.
-constexpr const char* taken[] = {"time_steps",
-                                 "model_dt",
-                                 "batch_size",
-                                 "vx_max",
-                                 "vx_min",
-                                 "vy_max",
-                                 "ax_max",
-                                 "ay_max",
-                                 "wz_max",
-                                 "az_max",
-                                 "vx_std",
-                                 "vy_std",
-                                 "wz_std",
-                                 "open_loop",
-                                 "visualize",
-                                 "transform_tolerance",
-                                 "AckermannConstraints.min_turning_r"};
-
 /// A name in nav2, and the name here.
 struct Name {
   const char *there, *here;
 };
-
-/// Motion models as plugins of nav2 1.5, and as before.
-constexpr Name models[] = {{"mppi::DiffDriveMotionModel", "DiffDrive"},
-                           {"mppi::OmniMotionModel", "Omni"},
-                           {"mppi::AckermannMotionModel", "Ackermann"}};
 
 constexpr Name renamed[] = {{"GoalAngleCritic.threshold_to_consider", "costs.goal_reach"},
                             {"model_delay_vx", "delay_forward"},
@@ -73,12 +49,12 @@ constexpr Dropped dropped[] = {
     {"sgf_order", "samples are smooth: svg_mppi.noise_exponent"},
     {"clamp_raw_controls", "all samples keep to the limits"},
     {"publish_optimal_trajectory", "visualize publishes the plan"},
-    {"publish_critics_stats", "costs are not published"},
-    {"critic_index_to_visualize", "costs are not published"},
+    {"publish_critics_stats", "visualize publishes the cost of the plan by its terms"},
+    {"critic_index_to_visualize", "visualize publishes the cost of the plan by its terms"},
     {"TrajectoryValidator.", "the plan is always checked with the footprint, until the robot can brake"},
     {"PathHandler.", "the path counts as far as the robot can drive in a plan"},
     {"critics", "the terms of the cost are fixed; their weights are in costs"},
-    {"TrajectoryVisualizer.", "visualize publishes the plan, not the samples"},
+    {"TrajectoryVisualizer.", "visualize publishes the plan and 100 samples"},
     {"ConstraintCritic.", "samples keep to the limits of speed and acceleration"},
     {"CostCritic.", distances_count},
     {"ObstaclesCritic.", distances_count},
@@ -98,22 +74,6 @@ constexpr const char* dead_bands = "VelocityDeadbandCritic.deadband_velocities";
 const char* other_name(std::span<const Name> table, const std::string& key) {
   const auto found = std::ranges::find(table, key, &Name::there);
   return found == table.end() ? nullptr : found->here;
-}
-
-/// The fate of a key that is not taken.
-std::string fate_of(const std::string& key) {
-  std::vector<std::string> names(std::begin(taken), std::end(taken));
-  names.insert(names.end(), {"temperature", "plugin"});
-  for (const Dropped& each : dropped) {
-    std::string name = each.key;
-    const bool is_section = name.back() == '.';
-    if (is_section ? key.starts_with(name) : key == name) return std::string("dropped (") + each.why + ")";
-    if (is_section) name.pop_back();
-    names.push_back(std::move(name));
-  }
-  const std::string nearest = nearest_name(key, names);
-  return "unknown (no parameter of nav2's MPPI controller" +
-         (nearest.empty() ? "" : ", did you mean '" + nearest + "'?") + ")";
 }
 
 /// A key of a section, with dots between sections, and its value in the file.
@@ -155,7 +115,7 @@ class Section {
         fate = "dropped (wz_std: 0 counts)";
       else if (const char* const other = other_name(renamed, given.key))
         fate = take(given, other, text_of(given), "the name here");
-      else if (std::ranges::find(taken, given.key) != std::end(taken))
+      else if (is_option(given.key))
         fate = take(given, given.key, text_of(given), "");
       else
         fate = fate_of(given.key);
@@ -205,6 +165,26 @@ class Section {
     return *number;
   }
 
+  bool is_option(const std::string& name) const {
+    const std::vector<NamedOption> options = settings_.list();
+    return std::ranges::find(options, name, &NamedOption::name) != options.end();
+  }
+  /// The fate of a key that is not taken.
+  std::string fate_of(const std::string& key) const {
+    std::vector<std::string> names{"plugin"};
+    for (const NamedOption& each : settings_.list()) names.push_back(each.name);
+    for (const Dropped& each : dropped) {
+      std::string name = each.key;
+      const bool is_section = name.back() == '.';
+      if (is_section ? key.starts_with(name) : key == name) return std::string("dropped (") + each.why + ")";
+      if (is_section) name.pop_back();
+      names.push_back(std::move(name));
+    }
+    const std::string nearest = nearest_name(key, names);
+    return "unknown (no parameter of nav2's MPPI controller" +
+           (nearest.empty() ? "" : ", did you mean '" + nearest + "'?") + ")";
+  }
+
   /// Sets an option to a text that follows from a key. Returns the fate of the key.
   std::string take(const Given& given, const std::string& option, const std::string& text,
                    const std::string& why) {
@@ -224,15 +204,15 @@ class Section {
     const Given* const given = find("motion_model");
     return given ? text_of(*given) : "diff_drive";
   }
-  /// The motion model by its name here, or as it is given where it has none.
+  /// The motion model by its name here: that of a plugin is "mppi::", this name and "MotionModel".
   std::string model() const {
     const std::string key = model_key();
     const Given* const plugin = find(key + ".plugin");
     if (!plugin) return key == "diff_drive" ? "DiffDrive" : key;
-    if (const char* const name = other_name(models, text_of(*plugin))) return name;
-    std::string names;
-    for (const Name& each : models) names += (names.empty() ? "" : ", ") + std::string(each.there);
-    refuse(*plugin, "'" + text_of(*plugin) + "' must be one of " + names);
+    const std::string name = text_of(*plugin), end = "MotionModel";
+    if (name.starts_with("mppi::") && name.ends_with(end))
+      return name.substr(6, name.size() - 6 - end.size());
+    refuse(*plugin, "'" + name + "' must be a motion model of mppi");
   }
   bool no_turn_sampled() const {
     const Given* const given = find("wz_std");

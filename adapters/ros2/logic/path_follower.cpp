@@ -2,6 +2,8 @@
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/pose_limits.hpp"
+#include "slalom/navigation/navigation_problem.hpp"
+#include "slalom/solvers/trajectories.hpp"
 #include "slalom/tracking/people.hpp"
 
 namespace slalom::nodes {
@@ -235,6 +237,31 @@ FollowerAnswer PathFollower::update(const FollowerInput& input) try {
 } catch (const std::exception& error) {
   command_ = {};
   return {Problem::no_control, error.what(), "", {}, 0};
+}
+
+std::vector<CostTerm> PathFollower::cost_terms() const {
+  if (predicted_.empty()) return {};
+  const auto none = detail::cost_terms_of<nav::NavigationProblem<nav::DifferentialBase>>();
+  std::vector<CostTerm> terms(none.begin(), none.end());
+  const Trajectories plan = navigator_->roll_out(navigator_->solution().inputs);
+  for (std::size_t i = 0; i < plan.costs.size(); ++i) terms[i % terms.size()].value += plan.costs[i];
+  return terms;
+}
+
+std::vector<maps::Point> PathFollower::samples(int most) const {
+  const SequenceBatch* const drawn = predicted_.empty() ? nullptr : navigator_->solution().samples;
+  if (!drawn) return {};
+  std::vector<float> sequences;
+  for (int sample = 0; sample < drawn->samples(); sample += std::max(drawn->samples() / most, 1))
+    for (int row = 0; row < drawn->rows(); ++row) sequences.push_back(drawn->data(row)[sample]);
+  const std::vector<double> states = navigator_->roll_out(sequences).states;
+  constexpr std::size_t size = 6;  // values of a state, which begin with x and y
+  std::vector<maps::Point> lines;
+  for (std::size_t i = 1; i < states.size() / size; ++i)
+    if (i % predicted_.size() != 0)
+      for (const double* end : {&states[size * (i - 1)], &states[size * i]})
+        lines.push_back({end[0], end[1]});
+  return lines;
 }
 
 FollowerAnswer PathFollower::judge(const nav::NavigationResult& result, double elapsed) {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "logic/follower_settings.hpp"
+#include "slalom/core/problem_parts.hpp"
 #include "slalom/navigation/costmap.hpp"
 
 /// The logic of a controller of nav2, without its transport.
@@ -88,6 +89,11 @@ class PathFollower {
   FollowerAnswer update(const FollowerInput& input);
   /// The poses of the last plan of the solver, frame of the costmap.
   const std::vector<maps::Pose>& predicted() const { return predicted_; }
+  /// The parts of the cost of that plan by name, which sum to it; empty where there is no plan. Allocates.
+  std::vector<CostTerm> cost_terms() const;
+  /// About `most` samples of that plan as lines from each point to the next, frame of the costmap: two points
+  /// for each. Allocates.
+  std::vector<maps::Point> samples(int most) const;
   /// The path that is followed, with the present detour; frame of the costmap.
   const std::vector<maps::Pose>& path() const { return path_; }
 

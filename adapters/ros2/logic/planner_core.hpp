@@ -42,8 +42,8 @@ class PlannerCore {
   struct Settings {
     std::string configuration = "default";  ///< a name or a file
     std::string method = "svg_mppi";
-    std::string course;  ///< a name or a folder, whose path is driven; empty: the path comes as a message
-    WatchLimits limits;
+    std::string course{};  ///< a name or a folder, whose path is driven; empty: the path comes as a message
+    WatchLimits limits{};
     std::string others = "none";  ///< where it learns of other cars: a name of OthersFrom
     double rear_axle = 0;         ///< m, x of the middle of the rear axle in the base frame
     double scan_interval = 0;     ///< s, scans that come sooner after the last one used are not used

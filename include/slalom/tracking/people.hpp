@@ -22,12 +22,7 @@ inline TrackerOptions people_tracker_options() {
 
 /// Options of a predictor of people on foot, as far ahead as a mobile robot plans.
 inline PredictorOptions people_predictor_options() {
-  PredictorOptions options;
-  options.horizon = 2.8;
-  options.min_speed = 0.25;
-  options.braking = 1.5;
-  options.acceleration_deviation = 0.2;
-  return options;
+  return {.horizon = 2.8, .min_speed = 0.25, .braking = 1.5, .acceleration_deviation = 0.2};
 }
 
 }  // namespace slalom::tracking

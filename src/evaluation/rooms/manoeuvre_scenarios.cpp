@@ -16,10 +16,7 @@ static sim::Box box(double x0, double y0, double x1, double y1) {
 }
 
 static navigation::BaseOptions base_of(BaseKind kind, double turning_radius = 0.2) {
-  navigation::BaseOptions base;
-  base.kind = kind;
-  base.min_turning_radius = turning_radius;
-  return base;
+  return {.kind = kind, .min_turning_radius = turning_radius};
 }
 
 /// A scenario along a path.

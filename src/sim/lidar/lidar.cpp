@@ -24,13 +24,7 @@ std::uint64_t scramble(std::uint64_t x) {
 }  // namespace
 
 LidarOptions LidarOptions::hokuyo_utm_30lx() {
-  LidarOptions options;
-  options.beams = 1081;
-  options.field_of_view = 1.5 * pi;
-  options.range_max = 30;
-  options.noise = 0.01;
-  options.rate = 40;
-  return options;
+  return {.beams = 1081, .field_of_view = 1.5 * pi, .range_max = 30, .noise = 0.01, .rate = 40};
 }
 
 Lidar::Lidar(const LidarOptions& options) : options_(options) {

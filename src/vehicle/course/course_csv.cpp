@@ -100,10 +100,7 @@ Columns optimised_line_columns(const std::filesystem::path& file, const Line& he
     if (std::count(names.begin(), names.end(), name) > 1)
       throw IoError(file.string(), header.number,
                     "column " + std::string(name) + ": occurs twice in '" + header.text + "'");
-  Columns columns;
-  columns.count = names.size();
-  columns.speed = static_cast<std::size_t>(speed - names.begin());
-  return columns;
+  return {.count = names.size(), .speed = static_cast<std::size_t>(speed - names.begin())};
 }
 
 bool is_comment(const Line& line) {

@@ -4,6 +4,11 @@
 
 #include <nav2_core/controller_exceptions.hpp>
 #include <pluginlib/class_list_macros.hpp>
+#include <slalom_msgs/msg/cost_terms.hpp>
+#include <visualization_msgs/msg/marker.hpp>
+
+#include "option_parameters.hpp"
+#include "tracked_objects.hpp"
 
 namespace slalom_nav2 {
 namespace {
@@ -18,8 +23,7 @@ double tolerance(double told) {
 }
 std::optional<GoalTolerance> tolerance_of(nav2_core::GoalChecker* checker) {
   geometry_msgs::msg::Pose pose;
-  geometry_msgs::msg::Twist velocity;
-  if (checker == nullptr || !checker->getTolerances(pose, velocity)) return {};
+  if (checker == nullptr || !get_tolerances(*checker, pose)) return {};
   return GoalTolerance{tolerance(std::min(pose.position.x, pose.position.y)),
                        tolerance(slalom_ros::yaw_of(pose.orientation))};
 }
@@ -27,29 +31,49 @@ std::optional<GoalTolerance> tolerance_of(nav2_core::GoalChecker* checker) {
 /// A parameter that is fixed once the controller is configured.
 std::string setting(Controller::Node& node, const std::string& name, const std::string& value,
                     const char* description) {
-  if (!node.has_parameter(name)) {
-    rcl_interfaces::msg::ParameterDescriptor descriptor;
-    descriptor.description = description;
-    descriptor.read_only = true;
-    node.declare_parameter<std::string>(name, value, descriptor);
-  }
+  if (!node.has_parameter(name))
+    node.declare_parameter<std::string>(name, value, slalom_ros::fixed(description));
   return node.get_parameter(name).as_string();
 }
 
-nav_msgs::msg::Path message_of(const std::vector<Pose>& poses, const std::string& frame,
-                               const rclcpp::Time& time) {
-  nav_msgs::msg::Path path;
-  path.header.frame_id = frame;
-  path.header.stamp = time;
-  for (const Pose& pose : poses) {
-    path.poses.emplace_back();
-    path.poses.back().header = path.header;
-    path.poses.back().pose = slalom_ros::message_of(pose);
-  }
-  return path;
-}
-
 }  // namespace
+
+/// The messages for displays.
+struct Controller::Outputs {
+  template <class Message>
+  using Publisher = std::shared_ptr<rclcpp_lifecycle::LifecyclePublisher<Message>>;
+  Publisher<nav_msgs::msg::Path> plan, path;
+  Publisher<slalom_msgs::msg::CostTerms> terms;
+  Publisher<visualization_msgs::msg::Marker> samples;
+
+  template <class Act>
+  void for_each(Act act) {
+    act(*plan), act(*path), act(*terms), act(*samples);
+  }
+  void publish(const slalom::nodes::PathFollower& follower, const std::string& frame,
+               const rclcpp::Time& time) {
+    plan->publish(slalom_ros::path_of(follower.predicted(), frame, time.nanoseconds()));
+    path->publish(slalom_ros::path_of(follower.path(), frame, time.nanoseconds()));
+    slalom_msgs::msg::CostTerms cost;
+    cost.header.stamp = time;
+    for (const slalom::CostTerm& term : follower.cost_terms()) {
+      cost.names.emplace_back(term.name);
+      cost.costs.push_back(term.value);
+    }
+    terms->publish(cost);
+    if (samples->get_subscription_count() == 0) return;
+    visualization_msgs::msg::Marker lines;
+    lines.header.frame_id = frame;
+    lines.header.stamp = time;
+    lines.type = visualization_msgs::msg::Marker::LINE_LIST;
+    lines.pose.orientation.w = 1;
+    lines.scale.x = 0.01;
+    lines.color.b = lines.color.a = 0.7F;
+    for (const auto& [x, y] : follower.samples(100))
+      lines.points.push_back(slalom_ros::message_of(Pose{x, y, 0}).position);
+    samples->publish(lines);
+  }
+};
 
 void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
                            std::shared_ptr<tf2_ros::Buffer> transforms,
@@ -64,7 +88,7 @@ void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
   const std::string prefix = name + ".";
   follower_ = std::make_unique<slalom::nodes::PathFollower>(
       setting(*node, prefix + "method", "svg_mppi", "method that plans; `slalom options` lists them"));
-  parameters_ = std::make_unique<slalom_ros::OptionParameters>(
+  parameters_ = std::make_shared<slalom_ros::OptionParameters>(
       *node,
       [this] {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -77,8 +101,11 @@ void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
       prefix);
   for (const std::string& unused : parameters_->unused())
     RCLCPP_WARN(logger_, "parameter %s has no meaning for this controller", unused.c_str());
-  predicted_out_ = node->create_publisher<nav_msgs::msg::Path>("local_plan", 1);
-  path_out_ = node->create_publisher<nav_msgs::msg::Path>("transformed_global_plan", 1);
+  outputs_ = std::make_shared<Outputs>(
+      Outputs{node->create_publisher<nav_msgs::msg::Path>("local_plan", 1),
+              node->create_publisher<nav_msgs::msg::Path>("transformed_global_plan", 1),
+              node->create_publisher<slalom_msgs::msg::CostTerms>("cost_terms", 1),
+              node->create_publisher<visualization_msgs::msg::Marker>("candidate_trajectories", 1)});
   subscribe(*node, prefix);
 }
 
@@ -119,21 +146,18 @@ void Controller::cleanup() {
   objects_.reset();
   const std::lock_guard<std::mutex> lock(mutex_);
   follower_.reset();
-  predicted_out_.reset();
-  path_out_.reset();
+  outputs_.reset();
   costmap_.reset();
   transforms_.reset();
   clock_.reset();
 }
 
 void Controller::activate() {
-  predicted_out_->on_activate();
-  path_out_->on_activate();
+  outputs_->for_each([](auto& each) { each.on_activate(); });
 }
 
 void Controller::deactivate() {
-  predicted_out_->on_deactivate();
-  path_out_->on_deactivate();
+  outputs_->for_each([](auto& each) { each.on_deactivate(); });
 }
 
 void Controller::use_plan(const nav_msgs::msg::Path& plan) {
@@ -192,7 +216,7 @@ geometry_msgs::msg::TwistStamped Controller::command(const geometry_msgs::msg::P
   input.time = clock_->now().seconds();
   input.tolerance = tolerance_of(goal_checker);
   const FollowerAnswer answer = follower_->update(input);
-  if (follower_->visualizes()) publish(pose.header.stamp);
+  if (follower_->visualizes()) outputs_->publish(*follower_, costmap_->getGlobalFrameID(), pose.header.stamp);
   if (answer.problem == FollowerAnswer::Problem::invalid_path) throw nav2_core::InvalidPath(answer.why);
   if (answer.problem == FollowerAnswer::Problem::no_control) throw nav2_core::NoValidControl(answer.why);
 
@@ -203,12 +227,6 @@ geometry_msgs::msg::TwistStamped Controller::command(const geometry_msgs::msg::P
   sent.twist.linear.y = answer.command.left;
   sent.twist.angular.z = answer.command.turn;
   return sent;
-}
-
-void Controller::publish(const rclcpp::Time& time) {
-  const std::string frame = costmap_->getGlobalFrameID();
-  predicted_out_->publish(message_of(follower_->predicted(), frame, time));
-  path_out_->publish(message_of(follower_->path(), frame, time));
 }
 
 bool Controller::cancel() {

@@ -5,18 +5,27 @@
 #include <nav2_core/controller.hpp>
 
 #include "logic/path_follower.hpp"
-#include "option_parameters.hpp"
-#include "tracked_objects.hpp"
 
+namespace slalom_ros {
+class OptionParameters;
+}
 namespace slalom_nav2 {
 
+/// The tolerances of a goal checker as a pose. Returns whether it tells them.
+inline bool get_tolerances(nav2_core::GoalChecker& checker, geometry_msgs::msg::Pose& pose) {
+  geometry_msgs::msg::Twist velocity;
 #if SLALOM_NAV2_MINOR >= 5
+  double length = 0;  // m, of the path
+  return checker.getTolerances(pose, velocity, length);
+}
 using ServerNode = nav2::LifecycleNode;
 #else
+  return checker.getTolerances(pose, velocity);
+}
 using ServerNode = rclcpp_lifecycle::LifecycleNode;
 #endif
 
-/// A controller of nav2's controller server that drives with slalom::navigation, for nav2 1.3 and 1.5, of
+/// A controller of nav2's controller server that drives with slalom::navigation, for nav2 1.3 to 1.5, of
 /// which SLALOM_NAV2_MINOR is one. Its logic is in slalom::nodes::PathFollower; this has messages, frames and
 /// parameters. The server may call its functions and change its parameters from several threads.
 class Controller : public nav2_core::Controller {
@@ -38,8 +47,8 @@ class Controller : public nav2_core::Controller {
   geometry_msgs::msg::TwistStamped computeVelocityCommands(const geometry_msgs::msg::PoseStamped& pose,
                                                            const geometry_msgs::msg::Twist& velocity,
                                                            nav2_core::GoalChecker* goal_checker,
-                                                           nav_msgs::msg::Path&,
-                                                           const geometry_msgs::msg::Pose&) override {
+                                                           const nav_msgs::msg::Path&,
+                                                           const geometry_msgs::msg::PoseStamped&) override {
     return command(pose, velocity, goal_checker);
   }
 #else
@@ -58,7 +67,7 @@ class Controller : public nav2_core::Controller {
   void reset() override;
 
  private:
-  using PathPublisher = rclcpp_lifecycle::LifecyclePublisher<nav_msgs::msg::Path>;
+  struct Outputs;
 
   /// Throws nav2_core::InvalidPath if it has no poses, one is not finite, or it has no frame.
   void use_plan(const nav_msgs::msg::Path& plan);
@@ -71,7 +80,6 @@ class Controller : public nav2_core::Controller {
   slalom::maps::Pose frame_in_costmap(const std::string& frame, const rclcpp::Time& time) const;
   void subscribe(Node& node, const std::string& prefix);
   void read_costmap();
-  void publish(const rclcpp::Time& time);
 
   // Clock and logger of the node, which owns the controller.
   rclcpp::Clock::SharedPtr clock_;
@@ -81,8 +89,8 @@ class Controller : public nav2_core::Controller {
   std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap_;
   std::mutex mutex_;  ///< guards the follower
   std::unique_ptr<slalom::nodes::PathFollower> follower_;
-  std::unique_ptr<slalom_ros::OptionParameters> parameters_;
-  std::shared_ptr<PathPublisher> predicted_out_, path_out_;
+  std::shared_ptr<slalom_ros::OptionParameters> parameters_;
+  std::shared_ptr<Outputs> outputs_;
   rclcpp::SubscriptionBase::SharedPtr scans_, objects_;
   std::string plan_frame_;
 };

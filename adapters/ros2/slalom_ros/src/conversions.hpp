@@ -11,6 +11,7 @@
 #include <geometry_msgs/msg/pose.hpp>
 #include <geometry_msgs/msg/transform_stamped.hpp>
 #include <nav_msgs/msg/occupancy_grid.hpp>
+#include <nav_msgs/msg/path.hpp>
 #include <sensor_msgs/msg/laser_scan.hpp>
 
 #include "logic/transforms.hpp"
@@ -55,6 +56,17 @@ inline geometry_msgs::msg::Pose message_of(const Pose& p) {
   m.position.y = p.y;
   m.orientation = quaternion(p.yaw);
   return m;
+}
+inline nav_msgs::msg::Path path_of(const std::vector<Pose>& poses, const std::string& frame, Stamp stamp) {
+  nav_msgs::msg::Path path;
+  path.header.frame_id = frame;
+  path.header.stamp = time_of(stamp);
+  for (const Pose& pose : poses) {
+    path.poses.emplace_back();
+    path.poses.back().header = path.header;
+    path.poses.back().pose = message_of(pose);
+  }
+  return path;
 }
 /// Sets all but the names of the frames.
 inline void set_transform(geometry_msgs::msg::TransformStamped& m, const Pose& p, Stamp stamp) {

@@ -10,10 +10,9 @@
 
 #include "logic/input_watch.hpp"
 #include "logic/reports.hpp"
+#include "option_parameters.hpp"
 
 namespace slalom_ros {
-
-namespace nodes = slalom::nodes;
 
 /// A lifecycle node that publishes its state on `/diagnostics` once per second while it is active. With the
 /// parameter `autostart` it configures and activates itself. A transition that throws fails with the message
@@ -46,10 +45,7 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
   /// A parameter that is fixed when the node is made.
   template <class Value>
   Value setting(const std::string& name, const Value& value, const std::string& description) {
-    rcl_interfaces::msg::ParameterDescriptor descriptor;
-    descriptor.description = description;
-    descriptor.read_only = true;
-    return declare_parameter<Value>(name, value, descriptor);
+    return declare_parameter<Value>(name, value, fixed(description));
   }
 
   /// Makes a publisher that exists until the node is cleaned up.

@@ -12,6 +12,14 @@ namespace slalom_ros {
 
 namespace nodes = slalom::nodes;
 
+/// The descriptor of a parameter that is fixed once it is declared.
+inline rcl_interfaces::msg::ParameterDescriptor fixed(const std::string& description) {
+  rcl_interfaces::msg::ParameterDescriptor descriptor;
+  descriptor.description = description;
+  descriptor.read_only = true;
+  return descriptor;
+}
+
 /// Declared options of Slalom as parameters of a node, with type, description and rule, that can change while
 /// the node runs. A change that breaks a rule is refused with that rule.
 class OptionParameters {

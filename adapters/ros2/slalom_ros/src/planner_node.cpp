@@ -4,7 +4,6 @@
 
 #include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
 #include <nav_msgs/msg/odometry.hpp>
-#include <nav_msgs/msg/path.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/imu.hpp>
 #include <sensor_msgs/point_cloud2_iterator.hpp>
@@ -13,7 +12,6 @@
 #include <slalom_msgs/srv/drive_laps.hpp>
 #include <slalom_msgs/srv/save.hpp>
 #include <std_msgs/msg/float32.hpp>
-#include <visualization_msgs/msg/marker_array.hpp>
 
 #include "core_node.hpp"
 #include "logic/planner_core.hpp"
@@ -33,7 +31,6 @@ using slalom_msgs::msg::TrackedObjects;
 using slalom_msgs::msg::Waypoints;
 using slalom_msgs::srv::DriveLaps;
 using slalom_msgs::srv::Save;
-using visualization_msgs::msg::MarkerArray;
 
 class PlannerNode : public CoreNode<PlannerCore> {
  public:
@@ -50,15 +47,13 @@ class PlannerNode : public CoreNode<PlannerCore> {
     settings_.others =
         setting("others", settings_.others, "where the planner learns of other cars: none, scan or topic");
     drive_.header.frame_id = base_;
-    path_.header.frame_id = map_;
-    make_marker();
   }
 
  protected:
   void set_up() override {
     drive_out_ = advertise<AckermannDriveStamped>("drive", rclcpp::QoS(1));
     metrics_out_ = advertise<PlannerMetrics>("mppi/eval_metrics", rclcpp::QoS(1));
-    markers_out_ = advertise<MarkerArray>("planner_markers", rclcpp::QoS(1));
+    plan_out_ = advertise<nav_msgs::msg::Path>("plan", rclcpp::QoS(1));
     path_out_ = advertise_latched<nav_msgs::msg::Path>("reference_path");
     make_core(settings_, {[this](const slalom::Command& command) { send(command); },
                           [this](const PlannerOutput& output, Stamp scan) { show(output, scan); },
@@ -195,14 +190,10 @@ class PlannerNode : public CoreNode<PlannerCore> {
   }
 
   void use_path(const PlannerCore::Path& path, bool closed) {
-    path_.header.stamp = now();
-    path_.poses.clear();
-    for (const maps::ReferencePoint& w : path) {
-      path_.poses.emplace_back();
-      path_.poses.back().header = path_.header;
-      path_.poses.back().pose = message_of(Pose{w.x, w.y, w.yaw});
-    }
-    if (closed) path_.poses.push_back(path_.poses.front());
+    std::vector<Pose> poses;
+    for (const maps::ReferencePoint& w : path) poses.push_back({w.x, w.y, w.yaw});
+    if (closed) poses.push_back(poses.front());
+    path_ = path_of(poses, map_, now().nanoseconds());
     if (path_out_->is_activated()) path_out_->publish(path_);
   }
 
@@ -216,46 +207,19 @@ class PlannerNode : public CoreNode<PlannerCore> {
     metrics_.effective_samples = output.solve ? static_cast<float>(output.solve->effective_sample_size) : 0;
     metrics_.calculation_time = static_cast<float>(1e3 * output.tick_time);
     metrics_out_->publish(metrics_);
-    if (markers_out_->get_subscription_count() == 0) return;
-    const bool ok = nodes::has_plan(output.status);
-    auto& line = markers_.markers[0];
-    line.header.stamp = time_of(scan);
-    line.color.r = ok ? 0.1F : 0.9F;
-    line.color.g = ok ? 0.5F : 0.1F;
-    line.color.b = ok ? 0.9F : 0.1F;
-    line.points.clear();
-    for (const auto& state : output.predicted) {
-      line.points.emplace_back();
-      line.points.back().x = state.pose.x;
-      line.points.back().y = state.pose.y;
-      line.points.back().z = 0.05;
-    }
-    using visualization_msgs::msg::Marker;
-    line.action = line.points.empty() ? Marker::DELETE : Marker::ADD;
-    markers_out_->publish(markers_);
-  }
-
-  /// Sets the fields that are the same for all plans.
-  void make_marker() {
-    markers_.markers.resize(1);
-    auto& line = markers_.markers[0];
-    line.header.frame_id = map_;
-    line.ns = "plan";
-    line.type = visualization_msgs::msg::Marker::LINE_STRIP;
-    line.pose.orientation.w = 1;
-    line.scale.x = 0.06;
-    line.color.a = 1;
+    if (plan_out_->get_subscription_count() == 0) return;
+    std::vector<Pose> poses;
+    for (const auto& state : output.predicted) poses.push_back(state.pose);
+    plan_out_->publish(path_of(poses, map_, scan));
   }
 
   LifecyclePublisher<AckermannDriveStamped>* drive_out_ = nullptr;
   LifecyclePublisher<PlannerMetrics>* metrics_out_ = nullptr;
-  LifecyclePublisher<MarkerArray>* markers_out_ = nullptr;
-  LifecyclePublisher<nav_msgs::msg::Path>* path_out_ = nullptr;
+  LifecyclePublisher<nav_msgs::msg::Path>*path_out_ = nullptr, *plan_out_ = nullptr;
   std::vector<std::array<double, 3>> points_;
   // These messages are kept so that their memory is reused.
   AckermannDriveStamped drive_;
   PlannerMetrics metrics_;
-  MarkerArray markers_;
   nav_msgs::msg::Path path_;
 };
 
