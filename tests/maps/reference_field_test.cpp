@@ -219,27 +219,26 @@ TEST(ReferenceField, TheViewLooksUpTheSameCells) {
   }
 }
 
-/// Drives round an eight whose parts cross at 97 degrees, 0.3 m beside it, and turns to the other part by up
-/// to 0.4 rad. The place follows the part that the robot is on, from any first place.
+/// Drives round an eight whose parts cross at 97 degrees, 0.3 m beside it and turned to the other part.
 TEST(ReferenceField, KeepsToItsPartWhereThePathCrossesItself) {
   std::vector<ReferencePoint> path;
   for (int i = 0; i < 400; ++i) {
-    const double t = 2 * M_PI * i / 400, dx = std::cos(t), dy = 0.88 * std::cos(2 * t);
-    path.push_back({10 * std::sin(t), 4.4 * std::sin(2 * t), std::atan2(dy, dx), 1});
+    const double t = 2 * M_PI * i / 400;
+    path.push_back(
+        {10 * std::sin(t), 4.4 * std::sin(2 * t), std::atan2(8.8 * std::cos(2 * t), 10 * std::cos(t)), 1});
   }
   ReferenceField driven(path);
-  for (int i = 0; i < 400; ++i) {
-    const ReferencePoint& at = path[static_cast<std::size_t>(i)];
+  for (int i = 0; i < 400; ++i)
     for (const double side : {0.3, -0.3}) {
-      const Pose robot{at.x - side * std::sin(at.yaw), at.y + side * std::cos(at.yaw), at.yaw + side / 0.75};
+      const ReferencePoint& at = path[static_cast<std::size_t>(i)];
+      const Point beside = transform({at.x, at.y, at.yaw}, {0, side});
       ReferenceField placed(path);
       for (ReferenceField* field : {&driven, &placed}) {
-        ASSERT_TRUE(field->update(robot, 0.1));
+        ASSERT_TRUE(field->update({beside.x, beside.y, at.yaw + side / 0.75}, 0.1));
         EXPECT_LE(std::abs(std::remainder(field->nearest() - i, 400)), 3) << i << ' ' << side;
       }
     }
-  }
-  // Across the path, the place is that of before.
+  // Facing along the other part, within 90 degrees of its own, it is still on its own.
   ASSERT_TRUE(driven.update({0, 0, path[200].yaw}));
   ASSERT_TRUE(driven.update({0, 0, path[0].yaw + 0.3}));
   EXPECT_EQ(driven.nearest(), 200);

@@ -8,16 +8,15 @@ namespace slalom::tracking {
 /// Options of a tracker of people on foot, each of them a round body 0.5 m across, in scans of a mobile robot
 /// with a noise of about 0.01 m. Anything slower than 0.25 m/s stands.
 inline TrackerOptions people_tracker_options() {
-  TrackerOptions options;
-  options.min_points = 3;
-  options.length = options.width = 0.5;
-  options.size_deviation = 0.03;
-  options.max_speed = 3;
-  options.acceleration_deviation = 1;
-  options.free_margin = 0.1;
-  options.max_unseen_time = 1;
-  options.min_speed = 0.25;
-  return options;
+  return {.min_points = 3,
+          .length = 0.5,
+          .width = 0.5,
+          .size_deviation = 0.03,
+          .max_speed = 3,
+          .acceleration_deviation = 1,
+          .max_unseen_time = 1,
+          .free_margin = 0.1,
+          .min_speed = 0.25};
 }
 
 /// Options of a predictor of people on foot, as far ahead as a mobile robot plans.
