@@ -97,7 +97,7 @@ TEST(RacingLine, LeadsRoundWhatIsParkedWithItsMargins) {
   EXPECT_FALSE(among->narrow());
   const CarParameters car;
   double widest = 0;
-  for (double arc = 0; arc < among->length(); arc += 0.1) {
+  for (double arc = 0; arc < among->path().length(); arc += 0.1) {
     const RacingLine::Point at = among->at(arc);
     EXPECT_NEAR(alone->at(arc).offset, 0, 1e-9);
     EXPECT_GE(at.offset, at.least);
@@ -127,7 +127,7 @@ TEST(RacingLine, LeadsRoundWhatIsLongerThanACar) {
   const RacingLine among(testing::ring_path(3), *testing::ring_track(), CarParameters{}, wall);
   EXPECT_FALSE(among.narrow());
   const CarParameters car;
-  for (double arc = 0; arc < among.length(); arc += 0.1) {
+  for (double arc = 0; arc < among.path().length(); arc += 0.1) {
     const RacingLine::Point at = among.at(arc);
     const maps::Point middle = at.beside(at.offset);
     EXPECT_GT(signed_gap({{middle.x, middle.y, at.yaw}, car.length, car.width}, wall[0]), 0.05) << arc;

@@ -36,16 +36,9 @@ class RacingLine {
   RacingLine(std::span<const PathPoint> path, const Track& track, const CarParameters& car,
              std::span<const Box> parked = {});
 
-  double length() const noexcept { return path_.length(); }  ///< m, once round the path
+  const LapPath& path() const noexcept { return path_; }  ///< the path, along which arc lengths count
   /// The line at an arc length (m, any number of turns), linear between samples.
   Point at(double arc) const noexcept;
-  /// The place of a car on the whole path.
-  LapPath::Place project(const maps::Pose& pose) const noexcept { return path_.project(pose); }
-  /// The nearest place of the path within `reach` (m) along it of the place `near`.
-  LapPath::Place project_near(const maps::Point& point, const LapPath::Place& near,
-                              double reach) const noexcept {
-    return path_.project_near(point, near.segment, reach);
-  }
   /// m from arc length `from` to `to` along the path, in [-length / 2, length / 2).
   double between(double from, double to) const noexcept;
   /// Whether the line keeps less than the margins, or leads through parked bodies.

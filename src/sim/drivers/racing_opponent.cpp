@@ -36,8 +36,8 @@ RacingOpponent::RacingOpponent(std::shared_ptr<const RacingLine> line, std::size
 /// Finds the own place along the path and those of the other cars. The line knows the parked bodies.
 void RacingOpponent::look(const World& world) {
   const CarState& own = world.state(car_);
-  if (placed_) place_ = line_->project_near({own.x, own.y}, place_, 2);
-  if (!placed_ || place_.distance > far_off) place_ = line_->project({own.x, own.y, own.yaw});
+  if (placed_) place_ = line_->path().project_near({own.x, own.y}, place_.segment, 2);
+  if (!placed_ || place_.distance > far_off) place_ = line_->path().project({own.x, own.y, own.yaw});
   placed_ = true;
   speed_ = std::max(own.speed, 0.0);
   half_length_ = 0.5 * world.options().car.length;
@@ -47,7 +47,7 @@ void RacingOpponent::look(const World& world) {
     const Box box = world.outline(car);
     if (car == car_ || !world.on_track(car) || std::hypot(box.pose.x - own.x, box.pose.y - own.y) > sight)
       continue;
-    const LapPath::Place place = line_->project_near({box.pose.x, box.pose.y}, place_, sight);
+    const LapPath::Place place = line_->path().project_near({box.pose.x, box.pose.y}, place_.segment, sight);
     if (std::abs(place.offset) > widest) continue;
     const double turned = box.pose.yaw - line_->at(place.arc).yaw;
     const double c = std::abs(std::cos(turned)), s = std::abs(std::sin(turned));
