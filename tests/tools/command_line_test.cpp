@@ -210,6 +210,8 @@ TEST_F(CommandLine, RejectsContradictoryOptions) {
   refuses("options --yaml --method mppi", {"--method", "--yaml"}, 2);
   refuses("drive --record-times", {"--record-times", "--record"}, 2);
   refuses("bench --methods foo", {"--methods: ", "foo", "svg_mppi"}, 2);
+  for (const char* scenario : {"--course fox", "--set mppi.samples=9"})
+    refuses(std::string("view --problem pendulum --port 0 ") + scenario, {"--problem: has only --method"}, 2);
 }
 
 TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheCloneThatAreNamed) {
@@ -262,11 +264,6 @@ TEST_F(CommandLine, PicturesAreWrittenInTheFormatOfTheirEnding) {
 
 TEST_F(CommandLine, ATokenMustFitIntoAnAddress) {
   refuses("view --port 0 --token 'a b/&?#'", {"--token: 'a b/&?#' must have only letters, digits"}, 2);
-}
-
-TEST_F(CommandLine, AProblemThatIsNotACarHasNoScenario) {
-  for (const char* option : {"--course fox", "--set mppi.samples=9"})
-    refuses(std::string("view --problem pendulum --port 0 ") + option, {"--problem: has only --method"}, 2);
 }
 
 TEST_F(CommandLine, ReportsThatMemoryRanOut) {

@@ -17,11 +17,8 @@ using view::PayloadReader;
 constexpr std::uint64_t most_cells = 1u << 28;
 
 maps::OccupancyGrid read_grid(PayloadReader from) {
-  maps::OccupancyGrid grid;
-  grid.width = static_cast<int>(from.get<std::uint32_t>());
-  grid.height = static_cast<int>(from.get<std::uint32_t>());
-  grid.resolution = from.get<double>();
-  grid.origin = from.pose();
+  const auto size = [&] { return static_cast<int>(from.get<std::uint32_t>()); };
+  maps::OccupancyGrid grid{size(), size(), from.get<double>(), from.pose(), {}};
   const std::uint64_t cells = static_cast<std::uint64_t>(std::max(grid.width, 0)) *
                               static_cast<std::uint64_t>(std::max(grid.height, 0));
   if (cells > most_cells) throw std::invalid_argument("the map has too many cells");
