@@ -282,7 +282,6 @@ TEST(LapPath, PlacesACarOnThePartThatItDrivesAlong) {
     EXPECT_NEAR(path.project({aside.x, aside.y, on.yaw - 0.3}).arc, arc, 0.2);
   }
 }
-}
 
 }  // namespace
 }  // namespace slalom::sim::world_test
