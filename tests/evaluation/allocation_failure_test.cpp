@@ -36,8 +36,7 @@ TEST(AllocationFailure, ACourseIsLoadedOrThrows) {
 /// aggregate twice if the copy of a later one throws.
 double start_of_lap(const std::shared_ptr<const Environment>& environment,
                     const vehicle::Configuration& configuration, const LapSettings& settings) {
-  LapSetup setup;
-  setup.environment = environment;
+  LapSetup setup{.environment = environment};
   setup.driver.configuration = configuration;
   setup.settings = settings;
   LapDrive drive(setup, 5);

@@ -147,8 +147,7 @@ TEST(Navigator, ASearchOverALargeCostmapTakesSeveralUpdates) {
 }
 
 TEST(Navigator, WithoutDetoursItReportsNone) {
-  NavigatorOptions options;
-  options.find_detours = false;
+  NavigatorOptions options{.find_detours = false};
   CheckedDrive drive(options);
   drive.block(4, -2, 4.3, 2);
   drive.navigator->set_path(straight);
@@ -261,9 +260,7 @@ TEST(Navigator, TheSameSeedGivesTheSameCommandsOnAnyNumberOfThreads) {
 }
 
 TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
-  BaseOptions base;
-  base.max_forward = 2;
-  base.max_turn = 3;
+  BaseOptions base{.max_forward = 2, .max_turn = 3};
   const SolverOptions cem = method_options("cem", base), sv_mpc = method_options("sv_mpc", base);
   EXPECT_STREQ(cem.method(), "cem");
   EXPECT_EQ(*cem.find<int>("horizon"), 56);

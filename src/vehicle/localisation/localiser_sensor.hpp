@@ -100,9 +100,9 @@ class SensorTables {
 
 /// Everything that a kernel reads.
 struct WeighInput {
-  ParticlePoses particles;
+  ParticlePoses particles{};
   const ScanBeams* beams = nullptr;
-  GridView<1> field, place, rows;
+  GridView<1> field{}, place{}, rows{};
   const std::uint32_t* pairs = nullptr;
   float range_unit = 0;
   float laser_x = 0, laser_y = 0;
