@@ -36,7 +36,8 @@ TEST(AllocationFailure, ACourseIsLoadedOrThrows) {
 /// aggregate twice if the copy of a later one throws.
 double start_of_lap(const std::shared_ptr<const Environment>& environment,
                     const vehicle::Configuration& configuration, const LapSettings& settings) {
-  LapSetup setup{.environment = environment};
+  LapSetup setup;
+  setup.environment = environment;
   setup.driver.configuration = configuration;
   setup.settings = settings;
   LapDrive drive(setup, 5);

@@ -78,9 +78,9 @@ struct LapResult : LapFigures {
 /// Describes a lap: its course, driver and conditions. All random numbers of a lap follow from its seed, so
 /// laps can be driven in any order and on any number of threads, with the same bits.
 struct LapSetup {
-  std::shared_ptr<const Environment> environment{};  ///< course of the lap
-  Driver driver{};                                   ///< driver of the first car
-  LapSettings settings{};                            ///< conditions of the lap
+  std::shared_ptr<const Environment> environment;  ///< course of the lap
+  Driver driver;                                   ///< driver of the first car
+  LapSettings settings{};                          ///< conditions of the lap
 
   /// Throws std::invalid_argument if the environment is null, the method is unknown, an option or a setting
   /// is out of range, or the start is off the map or less than 0.15 m from a wall.
