@@ -77,8 +77,7 @@ TEST(Imu, HasTheBiasAndNoiseOfItsOptions) {
 TEST(Imu, IgnoresWhatIsNotFinite) {
   Imu imu(faultless);
   imu.reset({});
-  CarState bad;
-  bad.speed = std::nan("");
+  CarState bad{.speed = std::nan("")};
   imu.update(bad, time_step);
   imu.update({}, 0);
   EXPECT_EQ(imu.read().forward, 0);

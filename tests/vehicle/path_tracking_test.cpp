@@ -41,8 +41,7 @@ Problem on(const Maps& maps, const PathTrackingOptions& options) {
 
 // The cost map of a box holds the whole body, seen from the rear axle; the map of clearances holds a point.
 TEST(ObstacleCost, LooksAheadOfTheRearAxleWithDiscsOnly) {
-  BodyOptions body;
-  body.model = BodyModel::discs;
+  BodyOptions body{.model = BodyModel::discs};
   EXPECT_NEAR(ObstacleCost(body).foremost(), 0.461 - 0.58 / 6, 1e-6);
   body.model = BodyModel::box;
   EXPECT_EQ(ObstacleCost(body).foremost(), 0);

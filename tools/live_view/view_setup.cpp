@@ -33,8 +33,7 @@ std::string random_token() {
 }  // namespace
 
 view::Choices choices() {
-  view::Choices choices;
-  choices.courses = vehicle::course_names(vehicle::course_roots(program_folder()));
+  view::Choices choices{.courses = vehicle::course_names(vehicle::course_roots(program_folder()))};
   for (const char* name : solver_names()) choices.methods.emplace_back(name);
   choices.configurations = configuration_names();
   return choices;

@@ -77,8 +77,7 @@ struct Header {
 };
 
 RecordedScan read_scan(CdrReader& from, double time) {
-  RecordedScan scan;
-  scan.time = time;
+  RecordedScan scan{.time = time};
   scan.shape.angle_min = from.get<float>();
   from.get<float>();  // angle_max
   scan.shape.angle_increment = from.get<float>();

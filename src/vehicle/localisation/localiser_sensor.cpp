@@ -199,22 +199,19 @@ SensorTables::Explained SensorTables::explain(const maps::Pose& pose, const Scan
 
 void SensorTables::weigh_by_field(const ParticlePoses& particles, const ScanBeams& beams,
                                   float* log_fit) const noexcept {
-  detail::weigh_by_field({.particles = particles,
-                          .beams = &beams,
-                          .field = field_.view(geometry_),
-                          .place = place_.view(geometry_),
-                          .log_fit = log_fit});
+  WeighInput in{.particles = particles,
+                .beams = &beams,
+                .field = field_.view(geometry_),
+                .place = place_.view(geometry_),
+                .log_fit = log_fit};
+  detail::weigh_by_field(in);
 }
 
 void SensorTables::weigh(const ParticlePoses& particles, const ScanBeams& beams,
                          float* log_fit) const noexcept {
   if (options_.sensor_model == SensorModel::likelihood_field)
     return weigh_by_field(particles, beams, log_fit);
-  WeighInput in;
-  in.particles = particles;
-  in.beams = &beams;
-  in.place = place_.view(geometry_);
-  in.log_fit = log_fit;
+  WeighInput in{.particles = particles, .beams = &beams, .place = place_.view(geometry_), .log_fit = log_fit};
   const double hit = hit_density(options_), random = random_density(options_), highest = hit + random;
   in.rows = table_.rows.view(table_.geometry);
   in.pairs = table_.pairs.data();

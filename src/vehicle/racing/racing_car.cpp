@@ -21,15 +21,15 @@ double highest(double low, double high, const Holds& holds) {
 }
 
 RacingCar passenger_car() {
-  constexpr double power = 75;  // 110 kW, 1500 kg
-  return {.name = "passenger",
-          .width = 1.85,
-          .margin = 0.3,
-          .wheelbase = 2.7,
-          .max_steering = 0.5,
-          .max_steering_rate = 0.6,
-          .limits = {55, 8.5, 5, 8.5},
-          .power = power};
+  RacingCar car{.name = "passenger",
+                .width = 1.85,
+                .margin = 0.3,
+                .wheelbase = 2.7,
+                .max_steering = 0.5,
+                .max_steering_rate = 0.6,
+                .limits = {55, 8.5, 5, 8.5}};
+  car.power = 75;  // 110 kW, 1500 kg
+  return car;
 }
 
 }  // namespace

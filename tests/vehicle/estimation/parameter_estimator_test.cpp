@@ -40,8 +40,7 @@ struct Drive {
 };
 
 ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {}) {
-  sim::CarParameters car;
-  car.friction = drive.friction;
+  sim::CarParameters car{.friction = drive.friction};
   sim::PlantOptions plant_options;
   plant_options.dynamics.model = drive.tyres;
   sim::Plant plant(car, plant_options, time_step);

@@ -51,8 +51,7 @@ std::unique_ptr<DynamicVehicleModel> model_with(double friction) {
 }
 
 Errors errors_of(const Drive& drive) {
-  sim::CarParameters car;
-  car.friction = drive.friction;
+  sim::CarParameters car{.friction = drive.friction};
   sim::PlantOptions plant_options;
   plant_options.dynamics.model = sim::Model::saturating;
   sim::Plant plant(car, plant_options, time_step);
