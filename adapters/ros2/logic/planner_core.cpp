@@ -155,11 +155,10 @@ int PlannerCore::laps() const {
 
 void PlannerCore::count_laps(const maps::Pose& pose) {
   if (!laps_) return;
-  const maps::Point at{pose.x, pose.y};
   if (std::exchange(laps_->started, true))
-    laps_->timer.update(laps_->path, at, in_seconds(scan_stamp_));
+    laps_->timer.update(laps_->path, {pose.x, pose.y}, in_seconds(scan_stamp_));
   else
-    laps_->timer.reset(laps_->path, at, in_seconds(scan_stamp_));
+    laps_->timer.reset(laps_->path, pose, in_seconds(scan_stamp_));
 }
 
 /// The pose of the rear axle at the time of the scan. Returns false and reports the fault if it is unknown.
