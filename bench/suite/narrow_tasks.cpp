@@ -111,11 +111,7 @@ struct ArmAmongBalls : problems::Arm {
   SLALOM_INLINE_CALLS mask_t<T> collides_with_any(const Posture<T>& arm) const {
     mask_t<T> hit(false);
     for (std::size_t i = 0; i < radius.size(); ++i) {
-      Arm one;
-      one.ball_x = centre_x[i];
-      one.ball_y = centre_y[i];
-      one.ball_z = centre_z[i];
-      one.ball_radius = radius[i];
+      Arm one{.ball_x = centre_x[i], .ball_y = centre_y[i], .ball_z = centre_z[i], .ball_radius = radius[i]};
       hit = hit | one.collides(arm);
     }
     return hit;

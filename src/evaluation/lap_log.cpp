@@ -90,8 +90,7 @@ class NumberTable {
 
 LapLog read_lap_log(const std::filesystem::path& file) {
   NumberTable table(file);
-  LapLog log;
-  log.file = file.string();
+  LapLog log{.file = file.string()};
   double solve_sum = 0, solve_max = 0;
   const bool timed = table.has("mean_calculation_time") && table.has("max_calculation_time");
   while (table.next()) {

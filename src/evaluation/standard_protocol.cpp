@@ -12,8 +12,7 @@ class StandardRules final : public LapRules {
                 const std::vector<std::filesystem::path>&) const override {}
 
   sim::WorldOptions world_options() const override {
-    sim::WorldOptions options;
-    options.time_step = 0.005;
+    sim::WorldOptions options{.time_step = 0.005};
     options.lidar.rate = 40;  // Hz, a scan for every command
     // After a collision the car continues if it can, so that one collision does not hide the next.
     options.wall_response = options.body_response = sim::CollisionResponse::slide;

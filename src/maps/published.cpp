@@ -6,16 +6,11 @@
 namespace slalom::maps {
 
 LocalCostMapOptions published_cost_map() {
-  LocalCostMapOptions options;
-  options.body_inset = 0;
-  options.published = {.half_open_inflation = true, .forget_points_outside = true};
-  return options;
+  return {.body_inset = 0, .published = {.half_open_inflation = true, .forget_points_outside = true}};
 }
 
 ReferenceFieldOptions published_reference_field() {
-  ReferenceFieldOptions options;
-  options.points_behind = 0;
-  return options;
+  return {.points_behind = 0};
 }
 
 }  // namespace slalom::maps

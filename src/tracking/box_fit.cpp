@@ -71,8 +71,7 @@ End find_end(std::size_t count, double sign, double deviation, const Along& alon
     most = std::max(most, across(i));
     ++near;
   }
-  End end;
-  end.side = near >= 3 && most - least > 2 * window;
+  End end{.side = near >= 3 && most - least > 2 * window};
   end.in_view = end.side || (lowest == 0 ? first_ends : lowest == count - 1 ? last_ends : true);
   end.at = sign * (end.side ? sum / near : low);
   return end;
@@ -93,8 +92,7 @@ BoxFit fit_box(std::span<const Reading> readings, double deviation) noexcept {
   const double middle = best;
   for (int i = -fine_angles + 1; i < fine_angles; ++i)
     attempt(middle + i * right_angle / coarse_angles / fine_angles);
-  BoxFit fit;
-  fit.angle = best - right_angle * std::floor(best / right_angle);
+  BoxFit fit{.angle = best - right_angle * std::floor(best / right_angle)};
   const double c = std::cos(fit.angle), s = std::sin(fit.angle);
   fit.extent[0] = range_along(readings, 1, c, s).length();
   fit.extent[1] = range_along(readings, 1, -s, c).length();

@@ -110,15 +110,13 @@ TEST(OptionAccess, AListMayHaveAnyCount) {
   EXPECT_EQ(validation_error(o, 2), "accepted");
   o.shares = std::vector<double>{};
   EXPECT_EQ(validation_error(o, 2), "sample.shares: has 0 values, must have one or more");
-  SampleOptions per_input;
-  per_input.spread = {0.1, 0.2, 0.3};
+  SampleOptions per_input{.spread = {0.1, 0.2, 0.3}};
   EXPECT_EQ(validation_error(per_input, 2),
             "sample.spread: has 3 values, must have one for all inputs, or one for each of the 2");
 }
 
 TEST(OptionAccess, ListsValuesThatReadBack) {
-  SampleOptions o;
-  o.gain = 0.1 + 0.2;
+  SampleOptions o{.gain = 0.1 + 0.2};
   SampleOptions copy;
   const auto entries = list_options(o);
   ASSERT_EQ(entries.size(), 6u);

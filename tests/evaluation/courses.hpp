@@ -44,13 +44,11 @@ inline vehicle::Configuration quick_configuration() {
 /// A car `progress` (m) along testing::ring_track, `left` (m) of it, at a speed along it and one to its left.
 inline sim::CarState on_ring(double progress, double left, double speed, double sideways = 0) {
   const double angle = progress / 5.5, radius = 5.5 - left;
-  sim::CarState state;
-  state.x = 10 + radius * std::cos(angle);
-  state.y = 10 + radius * std::sin(angle);
-  state.yaw = angle + 0.5 * std::numbers::pi;
-  state.speed = std::hypot(speed, sideways);
-  state.slip = std::atan2(sideways, speed);
-  return state;
+  return {.x = 10 + radius * std::cos(angle),
+          .y = 10 + radius * std::sin(angle),
+          .speed = std::hypot(speed, sideways),
+          .yaw = angle + 0.5 * std::numbers::pi,
+          .slip = std::atan2(sideways, speed)};
 }
 
 }  // namespace slalom::evaluation

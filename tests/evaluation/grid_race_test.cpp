@@ -13,12 +13,7 @@ namespace slalom::evaluation {
 namespace {
 
 CarResult car_that(CarEnd end, double time, double progress, int grid_place) {
-  CarResult car;
-  car.end = end;
-  car.time = time;
-  car.progress = progress;
-  car.grid_place = grid_place;
-  return car;
+  return {.grid_place = grid_place, .end = end, .time = time, .progress = progress};
 }
 
 TEST(Standings, AreByTimeAndThenByDistance) {

@@ -46,8 +46,7 @@ TEST(Lap, DrivesTheSameLapAtUtmCoordinates) {
     EXPECT_EQ(here->course.origin.x, 0);
     EXPECT_EQ(there->course.origin.x, 500000);
     EXPECT_EQ(there->course.origin.y, 5000000);
-    LapSettings settings;
-    settings.obstacles = 2;
+    LapSettings settings{.obstacles = 2};
     const LapResult a = run_lap({timed_out_after(2, here), {configuration("default")}, settings}, 0);
     const LapResult b = run_lap({timed_out_after(2, there), {configuration("default")}, settings}, 0);
     EXPECT_EQ(bits(a), bits(b));

@@ -74,8 +74,7 @@ TEST(OptionRanges, OfTheSimulatorAreKept) {
   expect_ranges_are_kept<sim::ImuOptions>([](const auto& o) { sim::Imu{o}; });
   expect_ranges_are_kept<sim::WheelOdometryOptions>([](const auto& o) { sim::WheelOdometry({}, o); });
   EXPECT_THROW(sim::World({}, nullptr), std::invalid_argument);
-  sim::CarParameters light;
-  light.inertia = 1e-9;
+  sim::CarParameters light{.inertia = 1e-9};
   expect_error_with<std::invalid_argument>({"parts of a step"}, [&] { sim::World({.car = light}, track); });
 }
 

@@ -104,8 +104,7 @@ TEST(Race, AccelerationsAreThoseOfTheSpeedsAndTheCurve) {
 }
 
 TEST(Race, EveryLapCanBeginWithAStandingStart) {
-  LapSettings settings;
-  settings.obstacles = 1;
+  LapSettings settings{.obstacles = 1};
   const auto laps = drive_race(setup(course("stag"), settings), {.laps = 2, .seed = 5, .standing = true});
   ASSERT_EQ(laps.size(), 2u);
   EXPECT_EQ(laps[0].seed, lap_seed(5, 0, 1));

@@ -53,9 +53,7 @@ struct CheckedDrive : Drive {
 const maps::Pose straight[] = {{1, 0, 0}, {6, 0, 0}};
 
 TEST(Navigator, AnAckermannBaseKeepsItsTurningRadius) {
-  NavigatorOptions options;
-  options.base.kind = BaseKind::ackermann;
-  options.base.min_turning_radius = 0.8;
+  NavigatorOptions options{.base = {.kind = BaseKind::ackermann, .min_turning_radius = 0.8}};
   CheckedDrive drive(options);
   const maps::Pose path[] = {{1, 0, 0}, {3, 0, 0}, {3.5, 1.2, 0}, {6, 1.2, 0}};
   drive.navigator->set_path(path);
@@ -147,8 +145,7 @@ TEST(Navigator, ASearchOverALargeCostmapTakesSeveralUpdates) {
 }
 
 TEST(Navigator, WithoutDetoursItReportsNone) {
-  NavigatorOptions options;
-  options.find_detours = false;
+  NavigatorOptions options{.find_detours = false};
   CheckedDrive drive(options);
   drive.block(4, -2, 4.3, 2);
   drive.navigator->set_path(straight);
@@ -195,8 +192,7 @@ TEST(Navigator, StandsWhereItCannotDrive) {
 }
 
 TEST(Navigator, RejectsInvalidOptionsAndPaths) {
-  NavigatorOptions options;
-  options.base.max_forward = -1;
+  NavigatorOptions options{.base = {.max_forward = -1}};
   const Costmap costmap(50, 50, 0.05);
   EXPECT_THROW(Navigator(body, options, costmap), std::invalid_argument);
   EXPECT_THROW(Navigator(Footprint::rectangle(20, 20, 1), {}, costmap), std::invalid_argument);
@@ -261,9 +257,7 @@ TEST(Navigator, TheSameSeedGivesTheSameCommandsOnAnyNumberOfThreads) {
 }
 
 TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
-  BaseOptions base;
-  base.max_forward = 2;
-  base.max_turn = 3;
+  BaseOptions base{.max_forward = 2, .max_turn = 3};
   const SolverOptions cem = method_options("cem", base), sv_mpc = method_options("sv_mpc", base);
   EXPECT_STREQ(cem.method(), "cem");
   EXPECT_EQ(*cem.find<int>("horizon"), 56);

@@ -79,8 +79,7 @@ TEST(NavigatorOthers, TheRobotBrakesBeforeWhatIsTooNear) {
 
 TEST(NavigatorOthers, TheRobotPlansAgainAsOftenAsItIsToldBeforeItBrakes) {
   const auto solves = [](int retries) {
-    NavigatorOptions options;
-    options.retries = retries;
+    NavigatorOptions options{.retries = retries};
     Meeting meeting({{30, 0}, {0, 0}}, options);
     meeting.drive(2, true);
     meeting.other = {{meeting.pose.x + 1.0, meeting.pose.y}, {-2, 0}};  // no plan avoids it
@@ -111,8 +110,7 @@ TEST(NavigatorOthers, TheRobotDoesNotTouchSomebodyWhoStopsBesideIt) {
 
 TEST(NavigatorOthers, WaitingForThemIsNoDeadEnd) {
   // Somebody who walks up and down where the way is narrow would hold the robot for longer than this.
-  NavigatorOptions options;
-  options.stuck_after = 0.5;
+  NavigatorOptions options{.stuck_after = 0.5};
   Meeting meeting({{2.3, 0}, {0.01, 0}}, options);
   meeting.block(0, 0.5, 10, 3);
   meeting.block(0, -3, 10, -0.5);

@@ -60,8 +60,7 @@ TEST(ScanProperty, RangesAreTheWaysToTheFirstWallCell) {
 TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
   const Track track(scattered(7));
   for (const int beams : {1, 2, 15, 16, 17, 64, 65, 271, 1080, 1100, 3000}) {
-    LidarOptions options;
-    options.beams = beams;
+    LidarOptions options{.beams = beams};
     const Lidar lidar(options);
     std::vector<float> cosines(lidar.padded_beams()), sines(cosines), cone_cosines(256), cone_sines(256);
     for (std::size_t i = 0; i < cosines.size(); ++i) {
@@ -125,8 +124,7 @@ TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
 }
 
 TEST(ScanProperty, TheGymWindowReachesToTheNearestBeamOfEveryCorner) {
-  LidarOptions options;
-  options.gym = true;
+  LidarOptions options{.gym = true};
   const Lidar lidar(options);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-3, 3);

@@ -77,8 +77,7 @@ TEST(Imu, HasTheBiasAndNoiseOfItsOptions) {
 TEST(Imu, IgnoresWhatIsNotFinite) {
   Imu imu(faultless);
   imu.reset({});
-  CarState bad;
-  bad.speed = std::nan("");
+  CarState bad{.speed = std::nan("")};
   imu.update(bad, time_step);
   imu.update({}, 0);
   EXPECT_EQ(imu.read().forward, 0);
@@ -97,8 +96,7 @@ struct Driven {
 };
 Driven drive(const WheelOdometryOptions& options, double steering) {
   const CarParameters car;
-  PlantOptions plant_options;
-  plant_options.dynamics.model = Model::kinematic;
+  PlantOptions plant_options{.dynamics = {.model = Model::kinematic}};
   Plant plant(car, plant_options, time_step);
   plant.reset({});
   WheelOdometry odometry(car, options);

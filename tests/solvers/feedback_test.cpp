@@ -133,8 +133,7 @@ TEST(Feedback, HoldsAnUnstablePendulumBetweenSolves) {
 }
 
 TEST(Feedback, KeepsTheBoundsAndLeavesInputsThatPushAgainstThem) {
-  Scalar problem;
-  problem.p = 2;
+  Scalar problem{.p = 2};
   Mppi controller{problem,
                   {.horizon = 4, .samples = 256, .variance = 100, .input_min = {-0.3}, .input_max = {0.3}}};
   Feedback feedback{controller};

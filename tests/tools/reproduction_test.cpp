@@ -122,8 +122,7 @@ TEST(PaperRows, NameTheLapsOfTheReleasedProgram) {
 
 /// Laps whose MS scatter round `ms`.
 LapLog laps_of(int count, double ms) {
-  LapLog log;
-  log.laps = count;
+  LapLog log{.laps = count};
   for (int i = 0; i < count; ++i) log.ms.push_back(ms * (1 + 0.01 * (i % 7 - 3)));
   return log;
 }
@@ -135,8 +134,7 @@ LogComparison compared(double measured, const LapLog& log, int count = 30) {
 }
 
 std::string verdict(double measured, double log, double released = 0) {
-  Reference r;
-  r.log = laps_of(30, log);
+  Reference r{.log = laps_of(30, log)};
   r.published = compared(measured, *r.log);
   if (released > 0) {
     r.released_log = laps_of(8, released);
@@ -158,15 +156,13 @@ TEST(Verdict, SaysWithWhichOfTheTwoTheLapsAgree) {
 }
 
 TEST(Verdict, FewLapsDecideNothing) {
-  Reference r;
-  r.log = laps_of(3, 1);
+  Reference r{.log = laps_of(3, 1)};
   r.published = compared(1, *r.log);
   EXPECT_EQ(verdict_of(r, 0).rfind("too few laps to decide: MS", 0), 0u) << verdict_of(r, 0);
 }
 
 TEST(Verdict, LapsOfTheProgramThatCannotDifferDecideNothing) {
-  Reference r;
-  r.log = laps_of(30, 2);
+  Reference r{.log = laps_of(30, 2)};
   r.published = compared(1, *r.log, 3);
   for (const auto& [count, decides] : {std::pair(1, false), {3, false}, {4, true}}) {
     r.released_log = laps_of(count, 1);

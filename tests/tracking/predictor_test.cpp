@@ -29,13 +29,8 @@ maps::Pose beside(double arc, double offset, double turned = 0) {
 }
 
 TrackedObject object_at(const maps::Pose& pose, double speed, double yaw_rate = 0) {
-  TrackedObject object;
-  object.id = 3;
-  object.pose = pose;
-  object.speed = speed;
-  object.yaw_rate = yaw_rate;
-  object.length = 0.58;
-  object.width = 0.31;
+  TrackedObject object{
+      .id = 3, .pose = pose, .speed = speed, .yaw_rate = yaw_rate, .length = 0.58, .width = 0.31};
   const double deviations[5] = {0.03, 0.03, 0.05, 0.2, 0.3};
   for (int i = 0; i < 5; ++i) object.covariance[i][i] = deviations[i] * deviations[i];
   return object;

@@ -15,10 +15,7 @@ namespace slalom::vehicle {
 namespace {
 
 PathTrackingOptions car_options() {
-  PathTrackingOptions options;
-  options.steer_time_constant = 1e-3;
-  options.max_acceleration = options.max_deceleration = 9.51;
-  return options;
+  return {.steer_time_constant = 1e-3, .max_acceleration = 9.51, .max_deceleration = 9.51};
 }
 
 struct Drive {
@@ -40,8 +37,7 @@ Comparison compared(const Drive& drive) {
   const PathTrackingOptions options = car_options();
   SingleTrackOptions own{.tyres = drive.tyres, .friction = drive.friction};
   const SingleTrackDynamics dynamics(options, own);
-  sim::CarParameters car;
-  car.friction = drive.friction;
+  sim::CarParameters car{.friction = drive.friction};
   sim::DynamicsOptions reference;
   reference.model = drive.tyres == TyreModel::linear ? sim::Model::single_track : sim::Model::saturating;
   const double steer =
@@ -137,8 +133,7 @@ TEST(SingleTrack, StaysInBoundsForAnyInputAndStep) {
   for (int n = 0; n < 4000; ++n) {
     PathTrackingOptions options = car_options();
     if (n % 4 < 2) options.time_step = between(0.01, 1);
-    SingleTrackOptions own;
-    own.tyres = n % 2 ? TyreModel::saturating : TyreModel::linear;
+    SingleTrackOptions own{.tyres = n % 2 ? TyreModel::saturating : TyreModel::linear};
     if (n % 4 < 2) own.half_steer_speed = between(0.1, 100);
     SingleTrack car(options, own);
     car.set_conditions({.friction = uniform(0.1, 1.5), .reverse = n % 3 == 0 ? 1.0 : 0.0});
@@ -158,8 +153,7 @@ TEST(SingleTrack, StaysInBoundsForAnyInputAndStep) {
 }
 
 TEST(SingleTrack, BrakesNoHarderThanTurningLeavesGrip) {
-  SingleTrackOptions own;
-  own.usable_grip = 0.9;
+  SingleTrackOptions own{.usable_grip = 0.9};
   const SingleTrackDynamics dynamics(car_options(), own);
   const double most = 0.9 * own.friction * 9.81;
   for (const double turning : {0.0, 0.5, 0.9, 2.0}) {
@@ -187,8 +181,7 @@ TEST(SingleTrack, KnowsTheForceOfTheStepBefore) {
 }
 
 TEST(SingleTrack, BrakesWithItsShareOfTheGripThatIsLeft) {
-  SingleTrackOptions own;
-  own.braking_share = 0.7;
+  SingleTrackOptions own{.braking_share = 0.7};
   const SingleTrack car(car_options(), own);
   const SingleTrackState<double> s{0, 0, 0, 5, 0, 0, 0};
   const double most = own.usable_grip * own.friction * 9.81;

@@ -27,13 +27,11 @@ class TrackProperty : public ::testing::TestWithParam<std::tuple<Case, std::uint
  protected:
   static TrackGeneratorOptions options() {
     const auto& [test, seed] = GetParam();
-    TrackGeneratorOptions result;
-    result.seed = seed;
-    result.length = test.length;
-    result.width = test.width;
-    result.character = test.character;
-    result.limits.top_speed = usual_top_speed(test.character);
-    return result;
+    return {.seed = seed,
+            .length = test.length,
+            .width = test.width,
+            .character = test.character,
+            .limits = {.top_speed = usual_top_speed(test.character)}};
   }
   const TrackGeneratorOptions asked_ = options();
   const GeneratedTrack track_ = generate_track(asked_);

@@ -34,8 +34,7 @@ constexpr const char* compared_models[] = {"kinematic", "kinematic_acceleration"
 
 /// The vehicle models of compared_models with the car and the body of the configuration `default`.
 std::vector<vehicle::VehicleOptions> models_to_compare() {
-  ScenarioArguments scenario;
-  scenario.config = "default";
+  ScenarioArguments scenario{.config = "default"};
   const vehicle::VehicleOptions sliding = load_configuration(scenario, "svg_mppi").vehicle;
   vehicle::VehicleOptions gripping;
   static_cast<vehicle::PathTrackingOptions&>(gripping) = sliding;

@@ -97,8 +97,7 @@ Json identify_steering(std::FILE* out, std::span<const vehicle::DrivenSample> sa
 /// configuration.
 Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> samples,
                     const IdentifyArguments& arguments) {
-  ScenarioArguments scenario;
-  scenario.config = arguments.config;
+  ScenarioArguments scenario{.config = arguments.config};
   const vehicle::Configuration car = load_configuration(scenario, "svg_mppi");
   const TyreIdentification found = vehicle::identify_tyres(
       samples, car.vehicle, car.vehicle.own_of<vehicle::SingleTrackOptions>(), arguments.options);

@@ -65,8 +65,7 @@ class Comparison {
   Comparison(const DrivenRecording& drive, const evaluation::LapSetup& setup)
       : drive_(drive), setup_(setup), planner_(evaluation::make_planner(setup)) {
     if (drive.in_map) return;
-    vehicle::LocaliserOptions options;
-    options.laser_x = setup.driver.configuration.planner.laser_x;
+    vehicle::LocaliserOptions options{.laser_x = setup.driver.configuration.planner.laser_x};
     localiser_.emplace(vehicle::reachable_map(setup.environment->course), options);
     if (setup.settings.start) localiser_->start_at(*setup.settings.start);
   }

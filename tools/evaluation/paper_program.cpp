@@ -47,12 +47,10 @@ std::optional<evaluation::LapLog> paper_program_laps(const std::string& row, con
     return row == laps.row && scenario == laps.scenario;
   });
   if (found == table().end()) return {};
-  evaluation::LapLog log;
-  log.file = "the paper's program, " + row + ", " + scenario;
-  log.laps = static_cast<int>(found->ms.size());
-  log.collisions = found->collisions;
-  log.ms = found->ms;
-  return log;
+  return {.file = "the paper's program, " + row + ", " + scenario,
+          .laps = static_cast<int>(found->ms.size()),
+          .collisions = found->collisions,
+          .ms = found->ms};
 }
 
 }  // namespace slalom::tools

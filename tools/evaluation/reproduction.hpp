@@ -60,10 +60,10 @@ inline constexpr const char* none = "not compared";
 
 /// Reference results of an experiment: logs of the authors, and of the paper's program in this simulator.
 struct Reference {
-  std::optional<evaluation::LapLog> log, released_log;
-  std::optional<evaluation::LogComparison> published, released;
-  std::string verdict;  ///< one of `verdicts`, and figures
-  std::string note;     ///< reason of a difference, if known
+  std::optional<evaluation::LapLog> log{}, released_log{};
+  std::optional<evaluation::LogComparison> published{}, released{};
+  std::string verdict{};  ///< one of `verdicts`, and figures
+  std::string note{};     ///< reason of a difference, if known
 };
 
 /// The verdict on `published` and `released`; `collision_rate` is that of the measured laps.

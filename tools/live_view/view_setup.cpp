@@ -33,8 +33,7 @@ std::string random_token() {
 }  // namespace
 
 view::Choices choices() {
-  view::Choices choices;
-  choices.courses = vehicle::course_names(vehicle::course_roots(program_folder()));
+  view::Choices choices{.courses = vehicle::course_names(vehicle::course_roots(program_folder()))};
   for (const char* name : solver_names()) choices.methods.emplace_back(name);
   choices.configurations = configuration_names();
   return choices;
@@ -57,12 +56,10 @@ view::ServerOptions server_options(const std::string& host, std::uint16_t port, 
   };
   if (!std::all_of(token.begin(), token.end(), stands_for_itself))
     throw CommandLineError("--token", token, "must have only letters, digits and - . _ ~");
-  view::ServerOptions options;
-  options.host = host;
-  options.port = port;
-  options.ports = 10;
-  options.token = token.empty() && !view::is_loopback(host) ? random_token() : token;
-  return options;
+  return {.host = host,
+          .port = port,
+          .ports = 10,
+          .token = token.empty() && !view::is_loopback(host) ? random_token() : token};
 }
 
 }  // namespace slalom::tools

@@ -77,9 +77,7 @@ struct Header {
 };
 
 RecordedScan read_scan(CdrReader& from, double time) {
-  RecordedScan scan;
-  scan.time = time;
-  scan.shape.angle_min = from.get<float>();
+  RecordedScan scan{.time = time, .shape = {.angle_min = from.get<float>()}};
   from.get<float>();  // angle_max
   scan.shape.angle_increment = from.get<float>();
   from.get<float>();  // time_increment

@@ -34,10 +34,10 @@ struct ScenarioArguments {
   std::string course = "fox";
   std::string config = "default";
   std::string evaluation = "true";
-  std::vector<std::string> set;       ///< key=value, in order
-  std::string start;                  ///< x,y,yaw or empty
-  int obstacles = 0;                  ///< at least as many as places are given
-  std::vector<std::string> obstacle;  ///< places x,y,yaw of the first of them
+  std::vector<std::string> set{};       ///< key=value, in order
+  std::string start{};                  ///< x,y,yaw or empty
+  int obstacles = 0;                    ///< at least as many as places are given
+  std::vector<std::string> obstacle{};  ///< places x,y,yaw of the first of them
   int opponents = 0;
   double latency_ms = 0;
   bool hardware = false;          ///< the conditions of a real car

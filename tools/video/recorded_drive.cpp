@@ -80,9 +80,7 @@ std::vector<RecordedBody> read_bodies(PayloadReader from) {
   std::vector<RecordedBody> bodies;
   for (auto count = from.get<std::uint32_t>(); count > 0; --count) {
     from.get<std::uint16_t>();
-    RecordedBody body;
-    body.kind = from.get<std::uint8_t>();
-    body.collided = from.get<std::uint8_t>() != 0;
+    RecordedBody body{.kind = from.get<std::uint8_t>(), .collided = from.get<std::uint8_t>() != 0};
     const double x = from.f32(), y = from.f32(), yaw = from.f32(), length = from.f32();
     body.box = {{x, y, yaw}, length, from.f32()};
     bodies.push_back(body);

@@ -19,7 +19,7 @@ struct RecordedCandidate {
 struct RecordedBody {
   int kind = 0;  ///< 0 driven, 1 parked car, 2 box, 3 disc, 4 opponent
   bool collided = false;
-  sim::Box box;
+  sim::Box box{};
 };
 
 /// The part of a control step that a video shows.

@@ -189,8 +189,7 @@ std::vector<maps::Pose> LocaliserCore::particles(int most) const {
 }
 
 Report LocaliserCore::report() {
-  Report r;
-  r.about = "localisation";
+  Report r{.about = "localisation"};
   r.add("status", vehicle::name(estimate_.status));
   r.add("health", estimate_.health);
   r.add("fraction of beams explained", estimate_.fit);

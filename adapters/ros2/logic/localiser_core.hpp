@@ -34,7 +34,7 @@ class LocaliserCore {
     double trust_health = 0.7;         ///< see PoseTrust
     double transform_tolerance = 0.1;  ///< s, how far the stamps of transforms are in the future
     double rear_axle = 0;              ///< m, x of the middle of the rear axle in the base frame
-    WatchLimits limits;
+    WatchLimits limits{};
   };
   /// The messages that the node sends; called from within the functions below.
   struct Outputs {

@@ -265,10 +265,8 @@ std::vector<maps::Point> PathFollower::samples(int most) const {
 }
 
 FollowerAnswer PathFollower::judge(const nav::NavigationResult& result, double elapsed) {
-  FollowerAnswer answer;
-  answer.status = nav::name(result.status);
-  answer.remaining = result.remaining;
-  answer.command = result.command;
+  FollowerAnswer answer{
+      .status = nav::name(result.status), .command = result.command, .remaining = result.remaining};
   if (cancelling_) {  // without a path the navigator brakes
     cancelling_for_ += elapsed;
     return answer;

@@ -250,8 +250,7 @@ void PlannerCore::send(const Command& command) {
 }
 
 Report PlannerCore::report() {
-  Report r;
-  r.about = "plans";
+  Report r{.about = "plans"};
   r.add("plans", second_.plans);
   r.add("stops", second_.stops);
   r.add("deadlines missed", second_.late);

@@ -43,7 +43,7 @@ struct CarResult {
   CarEnd end = CarEnd::timeout;         ///< how the race ended for it
   double time = 0;                      ///< s since the start, when it ended
   double gap = 0;                       ///< s behind the winner; NaN unless finished
-  std::vector<double> lap_times;        ///< s, of whole laps; the first begins with the start
+  std::vector<double> lap_times{};      ///< s, of whole laps; the first begins with the start
   double distance = 0;                  ///< m, driven
   double progress = 0;                  ///< m along the course beyond the finish line
   int overtakes = 0;                    ///< number of cars that it overtook
@@ -53,7 +53,7 @@ struct CarResult {
   bool contact_before = false;          ///< with CarEnd::wall: it collided with a car in the second before
   maps::Pose last{};                    ///< pose of its centre of gravity where it ended
   std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
-  std::vector<float> solve_ms;          ///< wall-clock time of each solve
+  std::vector<float> solve_ms{};        ///< wall-clock time of each solve
 
   double best_lap() const noexcept;  ///< s; NaN without a whole lap
 };

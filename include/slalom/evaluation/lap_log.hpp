@@ -9,13 +9,13 @@ namespace slalom::evaluation {
 /// A log of laps: CSV with at least the columns `success`, `collision`, `state_cost` and `collision_cost` and
 /// one row per lap, as written by the program of Honda et al. (ICRA 2024).
 struct LapLog {
-  std::string file;                                   ///< path
-  int laps = 0, successes = 0, timeouts = 0;          ///< numbers of laps
-  std::int64_t collisions = 0;                        ///< collisions of all laps
-  std::vector<double> ms;                             ///< per lap: state_cost + collision_cost
-  std::vector<double> seeds;                          ///< per lap; empty if the log has no column `seed`
-  std::vector<double> lap_collisions;                 ///< per lap; empty if only their sum is known
-  std::optional<double> solve_ms_mean, solve_ms_max;  ///< ms, where the log has `*_calculation_time`
+  std::string file{};                                     ///< path
+  int laps = 0, successes = 0, timeouts = 0;              ///< numbers of laps
+  std::int64_t collisions = 0;                            ///< collisions of all laps
+  std::vector<double> ms{};                               ///< per lap: state_cost + collision_cost
+  std::vector<double> seeds{};                            ///< per lap; empty if the log has no column `seed`
+  std::vector<double> lap_collisions{};                   ///< per lap; empty if only their sum is known
+  std::optional<double> solve_ms_mean{}, solve_ms_max{};  ///< ms, where the log has `*_calculation_time`
 };
 
 /// Reads a log of at most 64 MiB, 64 KiB a line and 1,000,000 laps. Throws IoError with file, line and column

@@ -16,8 +16,7 @@ constexpr double largest_jump =
     0.5;  // m, of the localiser from the odometry's pose, where that one fits the scan
 
 sim::WheelOdometryOptions seeded_wheels(TrackingMode mode, std::uint64_t seed) {
-  sim::WheelOdometryOptions options;
-  options.seed = seed;
+  sim::WheelOdometryOptions options{.seed = seed};
   // Without a map nothing corrects the yaw, and the steering does not give it while tyres slip.
   options.yaw_from_gyro = mode == TrackingMode::mapless;
   return options;

@@ -127,8 +127,7 @@ bool ParameterEstimator::continues() const noexcept {
 }
 
 const ParameterEstimate& ParameterEstimator::update(const MeasuredMotion& now) noexcept {
-  Moment next;
-  next.motion = now;
+  Moment next{.motion = now};
   turn_wheels(next);
   newest_ = (newest_ + 1) % kept;
   history_[newest_] = next;

@@ -212,11 +212,7 @@ void SensorTables::weigh(const ParticlePoses& particles, const ScanBeams& beams,
                          float* log_fit) const noexcept {
   if (options_.sensor_model == SensorModel::likelihood_field)
     return weigh_by_field(particles, beams, log_fit);
-  WeighInput in;
-  in.particles = particles;
-  in.beams = &beams;
-  in.place = place_.view(geometry_);
-  in.log_fit = log_fit;
+  WeighInput in{.particles = particles, .beams = &beams, .place = place_.view(geometry_), .log_fit = log_fit};
   const double hit = hit_density(options_), random = random_density(options_), highest = hit + random;
   in.rows = table_.rows.view(table_.geometry);
   in.pairs = table_.pairs.data();

@@ -102,7 +102,7 @@ class SensorTables {
 struct WeighInput {
   ParticlePoses particles;
   const ScanBeams* beams = nullptr;
-  GridView<1> field, place, rows;
+  GridView<1> field{}, place{}, rows{};
   const std::uint32_t* pairs = nullptr;
   float range_unit = 0;
   float laser_x = 0, laser_y = 0;

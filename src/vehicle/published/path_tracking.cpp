@@ -65,14 +65,11 @@ VehicleOptions vehicle_options() {
 }
 
 vehicle::PlannerOptions planner_options() {
-  vehicle::PlannerOptions options;
-  options.steer_limit = 0.45;
-  options.stop_when_blocked = false;
-  options.verify_plan = false;
-  options.back_up = false;
-  options.published.maps = true;
-  options.published.wrap_steer = true;
-  return options;
+  return {.steer_limit = 0.45,
+          .stop_when_blocked = false,
+          .verify_plan = false,
+          .back_up = false,
+          .published = {.maps = true, .wrap_steer = true}};
 }
 
 }  // namespace slalom::vehicle::published

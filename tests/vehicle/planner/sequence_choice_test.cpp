@@ -22,7 +22,7 @@ class SequenceSelection : public ::testing::Test {
  protected:
   explicit SequenceSelection(Objective objective = Objective::path_speed, double margin = 0.04)
       : field_(testing::lane(5)) {
-    VehicleOptions car{.model = vehicle_model("single_track"), .max_acceleration = 9, .max_deceleration = 9};
+    VehicleOptions car{{.max_acceleration = 9, .max_deceleration = 9}, vehicle_model("single_track"), {}};
     car.body.margin = margin;
     car.own_of<SingleTrackOptions>().objective = objective;
     model_ = make_vehicle_model(car);

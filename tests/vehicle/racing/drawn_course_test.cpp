@@ -95,8 +95,7 @@ TEST(DrawnCourse, AGapThatIsMuchNarrowerThanTheRoadIsADoubt) {
 }
 
 TEST(DrawnCourse, WithoutAMarginTheCarStartsInTheMiddleOfTheRoad) {
-  RacingCar car;
-  car.margin = 0;
+  RacingCar car{.margin = 0};
   const auto ring = curve([](double a) { return maps::Point{6 * std::cos(a), 6 * std::sin(a)}; });
   const RaceCourse course = race_course(road(ring, 0.45), car);
   EXPECT_NEAR(std::hypot(course.raceline.points[0].x, course.raceline.points[0].y), 5.7, 0.06);

@@ -123,9 +123,7 @@ TEST(MinimumTime, OnAnOpenStraightItIsStraightAtTheTopSpeed) {
 }
 
 TEST(MinimumTime, StaysInTheCorridorAndWithinTheLimits) {
-  RacingCar car;
-  car.limits = {9, 7, 4, 6};
-  car.power = 25;
+  RacingCar car{.limits = {9, 7, 4, 6}, .power = 25};
   const Corridor corridor = winding(1.1);
   const Raceline line = minimum_time_raceline(corridor, car);
   const std::size_t n = line.points.size();

@@ -87,8 +87,7 @@ TEST(RaceCourse, DoesNotStartAtAnOriginThatFacesAWall) {
 }
 
 TEST(RaceCourse, AStartPoseSetsPlaceAndDirection) {
-  RaceCourseOptions options;
-  options.start = maps::Pose{8, 8, 0};
+  RaceCourseOptions options{.start = maps::Pose{8, 8, 0}};
   const RaceCourse course = race_course(rectangular_course(), RacingCar{}, options);
   EXPECT_LT(signed_area(course.corridor.centre_line), 0);
   EXPECT_NEAR(course.raceline.points[0].x, 8, 0.3);

@@ -74,8 +74,8 @@ struct PlannerOptions {
   double time_behind = 0;
   double sight_deceleration = 0;
   PerInput grip_shares = 1.0;
-  EstimationOptions estimation;         ///< estimation of state, car and ground, for models whose tyres slip
-  published::PlannerOptions published;  ///< to reproduce the program of proj-svg_mppi
+  EstimationOptions estimation{};  ///< estimation of state, car and ground, for models whose tyres slip
+  published::PlannerOptions published{};  ///< to reproduce the program of proj-svg_mppi
 };
 
 template <class Options, class Visit>

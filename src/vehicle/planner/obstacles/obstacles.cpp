@@ -10,15 +10,13 @@ namespace {
 
 maps::MovingObstacleOptions moving_options(const PlannerOptions& options, const BodyOptions& body,
                                            const ObstacleMargins& margins) {
-  maps::MovingObstacleOptions made;
-  made.front = body.front;
-  made.rear = body.rear;
-  made.width = body.width;
-  made.margin = std::max(body.margin, margins.least);
-  made.soft_margin = std::max(body.soft_margin, margins.least_soft);
-  made.soft_cost = body.soft_cost;
-  made.max_probability = options.collision_probability;
-  return made;
+  return {.front = body.front,
+          .rear = body.rear,
+          .width = body.width,
+          .margin = std::max(body.margin, margins.least),
+          .soft_margin = std::max(body.soft_margin, margins.least_soft),
+          .soft_cost = body.soft_cost,
+          .max_probability = options.collision_probability};
 }
 
 }  // namespace
