@@ -81,8 +81,7 @@ SvgMppiOptions guided(int horizon, int samples, double temperature, const PerInp
 void run() {
   std::puts("problem,method,samples,difference of first plan,GPU ms,99 %,TFLOP/s,16 threads,1 thread,asked");
   const CostMap map;
-  Navigation navigation;
-  navigation.map = map.view();
+  Navigation navigation{.map = map.view()};
   const PerInput low{-0.35, -0.5}, high{0.5, 0.5};
   const auto navigate = [&](int samples, const char* asked = "") {
     compare("navigation", navigation, {7.4, 7.4, 0.785398}, 45,

@@ -12,15 +12,14 @@ Options seeded(Options options, std::uint64_t seed) {
 }  // namespace
 
 HardwareConditions HardwareConditions::sensors(double range_noise, double dropout) {
-  HardwareConditions conditions;
-  conditions.range_noise = range_noise;
-  conditions.dropout = dropout;
-  conditions.steering_dead_time = sim::PlantOptions{}.steering_dead_time;
-  conditions.steering_time_constant = 0;
-  conditions.steering_gain = 1;
-  conditions.steering_offset = 0;
-  conditions.speed_gain = sim::ActuationOptions{}.speed_gain;
-  conditions.acceleration_max = sim::CarParameters{}.acceleration_max;
+  HardwareConditions conditions{.range_noise = range_noise,
+                                .dropout = dropout,
+                                .steering_dead_time = sim::PlantOptions{}.steering_dead_time,
+                                .steering_time_constant = 0,
+                                .steering_gain = 1,
+                                .steering_offset = 0,
+                                .speed_gain = sim::ActuationOptions{}.speed_gain,
+                                .acceleration_max = sim::CarParameters{}.acceleration_max};
   // Near the limit of grip a car turns less than its steering says, so the odometry takes the yaw rate of a
   // gyro, and the localiser trusts it. The rear axle slips outwards, which the odometry does not know. With
   // all ranges the localiser sees the next corner from far down a straight.

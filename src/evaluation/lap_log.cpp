@@ -168,12 +168,11 @@ LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, c
   }
   const std::optional<LapLog> pairs = obstacles > 0 ? laps_with_seeds(log, rows) : std::nullopt;
   const LapLog& theirs = pairs ? *pairs : log;
-  LogComparison c;
-  c.paired = pairs.has_value();
-  c.our_laps = static_cast<int>(measured.size());
-  c.laps = theirs.laps;
-  c.ms_mean = mean(log.ms);
-  c.ms_ci = bootstrap_mean(log.ms);
+  LogComparison c{.our_laps = static_cast<int>(measured.size()),
+                  .laps = theirs.laps,
+                  .paired = pairs.has_value(),
+                  .ms_mean = mean(log.ms),
+                  .ms_ci = bootstrap_mean(log.ms)};
   const double ms = mean(theirs.ms);
   c.ms_ratio = mean(measured) / ms;
   const Interval difference =

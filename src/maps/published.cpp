@@ -6,7 +6,9 @@
 namespace slalom::maps {
 
 LocalCostMapOptions published_cost_map() {
-  return {.body_inset = 0, .published = {.half_open_inflation = true, .forget_points_outside = true}};
+  LocalCostMapOptions options{.body_inset = 0};
+  options.published = {.half_open_inflation = true, .forget_points_outside = true};
+  return options;
 }
 
 ReferenceFieldOptions published_reference_field() {

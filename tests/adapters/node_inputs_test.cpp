@@ -105,12 +105,11 @@ TEST(NodeInputs, ObjectsThatAnotherNodeTracksAreNeededAndAvoided) {
     return Told(
         4,
         [=](Told& d, auto& to) {
-          tracking::TrackedObject object;
-          object.id = 1;
-          object.pose = moved_ahead(d.car().pose(), ahead);
-          object.speed = speed;
-          object.length = 0.5;
-          object.width = 0.3;
+          tracking::TrackedObject object{.id = 1,
+                                         .pose = moved_ahead(d.car().pose(), ahead),
+                                         .speed = speed,
+                                         .length = 0.5,
+                                         .width = 0.3};
           for (int i = 0; i < 5; ++i) object.covariance[i][i] = 1e-4;
           to.hear_objects(d.now(), {&object, 1});
         },

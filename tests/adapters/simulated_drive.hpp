@@ -106,7 +106,7 @@ class Drive {
   void end_localiser() { localiser_.reset(); }
   /// Starts a localiser that continues from the place that an earlier one has kept.
   void start_localiser() {
-    LocaliserCore::Settings settings{.course = place(setup_), .earlier = kept_};
+    const LocaliserCore::Settings settings{.course = place(setup_), .earlier = kept_};
     const auto say = log("localiser");
     localiser_.emplace(
         settings, clocks_, transforms(),

@@ -173,8 +173,7 @@ TEST(Lap, ATrackerFindsTheOtherCars) {
 
 TEST(Lap, ACarThatCannotLocaliseStops) {
   const auto environment = timed_out_after(2);
-  HardwareConditions blind;
-  blind.dropout = 1;
+  HardwareConditions blind{.dropout = 1};
   const LapResult lap =
       run_lap({environment, {configuration("default_kinematic", 64), "mppi"}, {.hardware = blind}}, 1);
   EXPECT_FALSE(lap.finished);
@@ -225,8 +224,7 @@ TEST(Lap, RejectsInvalidSettings) {
   refuses({environment, usual, {.start = maps::Pose{1e6, 0, 0}}}, "start");
   refuses({environment, usual, {.latency = std::numeric_limits<double>::quiet_NaN()}}, "latency");
   refuses({environment, usual, {.threads = 0}}, "threads");
-  HardwareConditions lost;
-  lost.dropout = 2;
+  HardwareConditions lost{.dropout = 2};
   refuses({environment, usual, {.hardware = lost}}, "dropout");
   lost = {};
   lost.localiser.beams = 0;

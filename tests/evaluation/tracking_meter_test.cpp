@@ -42,7 +42,8 @@ maps::OccupancyGrid room_with_the_same_view_elsewhere(const sim::CarParameters& 
 }
 
 TEST(TrackingMeter, ATrackerKeepsItsPlaceWhereTheLocaliserJumps) {
-  sim::WorldOptions options{.time_step = period, .lidar = {.noise = 0.02}};
+  sim::WorldOptions options{.time_step = period};
+  options.lidar.noise = 0.02;
   const sim::CarParameters& car = options.car;
   const maps::Pose mount{car.rear_length + options.lidar.mount.x, options.lidar.mount.y, 0};
   const double sensor_x = start.x + options.lidar.mount.x;

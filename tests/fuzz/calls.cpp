@@ -87,10 +87,9 @@ const Target localiser_target(
         ranges.resize(adversary.once_in(10) ? adversary.below(3000) : 181);
         if (hostile || i < 2)
           for (float& range : ranges) range = static_cast<float>(value(0.5, 3));
-        vehicle::LocaliserInput input;
-        input.scan = {ranges, value(-1.6, -1.5), value(0.017, 0.018), 0.05, 30};
-        input.odometry = {0.02 * i + value(0, 0.01), value(0, 0.01), value(0, 0.01)};
-        input.stamp = hostile ? adversary.any(0, 10) : 0.025 * i;
+        vehicle::LocaliserInput input{.scan = {ranges, value(-1.6, -1.5), value(0.017, 0.018), 0.05, 30},
+                                      .odometry = {0.02 * i + value(0, 0.01), value(0, 0.01), value(0, 0.01)},
+                                      .stamp = hostile ? adversary.any(0, 10) : 0.025 * i};
         check(localiser.update(input));
       }
       return true;

@@ -8,8 +8,7 @@ namespace slalom::testing {
 /// `svg_mppi` as a closed form for inputs of order one: one batch of white noise, fixed temperature and
 /// variances.
 inline SvgMppiOptions closed_form(double temperature) {
-  SvgMppiOptions o;
-  o.batches = 1;
+  SvgMppiOptions o{.batches = 1};
   o.temperature = o.guides.gradient_temperature = temperature;
   o.variance = o.variance_max = o.guides.variance = o.guides.restart_variance = 1;
   o.variance_min = 0.01;

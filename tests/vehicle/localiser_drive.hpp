@@ -47,10 +47,11 @@ class Drive {
   }
 
   static sim::WorldOptions world_options() {
-    return {.time_step = time_step,
-            .lidar = {.beams = 1081, .field_of_view = 4.71238898, .noise = 0.02, .dropout = 0.01, .rate = 40},
-            .wall_response = sim::CollisionResponse::count_only,
-            .body_response = sim::CollisionResponse::count_only};
+    sim::WorldOptions o{.time_step = time_step};
+    o.lidar = {.beams = 1081, .field_of_view = 4.71238898, .noise = 0.02, .dropout = 0.01, .rate = 40};
+    o.wall_response = sim::CollisionResponse::count_only;
+    o.body_response = sim::CollisionResponse::count_only;
+    return o;
   }
 
   /// One control period.

@@ -20,9 +20,8 @@ struct BenchArguments {
 /// The given configuration. Without one, the workload `reference`: the configuration `published` with one
 /// trajectory per rollout.
 vehicle::Configuration configuration_of(const BenchArguments& arguments) {
-  ScenarioArguments scenario;
-  scenario.config = arguments.config.empty() ? "published" : arguments.config;
-  scenario.set = arguments.set;
+  ScenarioArguments scenario{.config = arguments.config.empty() ? "published" : arguments.config,
+                             .set = arguments.set};
   vehicle::Configuration made = load_configuration(scenario, "svg_mppi");
   if (arguments.config.empty())
     made.vehicle.own_of<vehicle::published::ModelOptions>().straight_local_rollout = false;

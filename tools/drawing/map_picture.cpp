@@ -34,8 +34,7 @@ Bounds bounds_of(const maps::OccupancyGrid& map, const std::vector<maps::Point>&
 
 MapView view_of(const Bounds& bounds, int long_side) {
   const double wide = bounds.right - bounds.left, high = bounds.top - bounds.low;
-  MapView view;
-  view.scale = long_side / std::max(wide, high);
+  MapView view{.scale = long_side / std::max(wide, high)};
   view.height = static_cast<int>(std::ceil(high * view.scale - 1e-6));
   view.width = std::max(static_cast<int>(std::ceil(wide * view.scale - 1e-6)), 900);
   view.left = bounds.left - 0.5 * (view.width / view.scale - wide);

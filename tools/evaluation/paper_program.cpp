@@ -47,10 +47,10 @@ std::optional<evaluation::LapLog> paper_program_laps(const std::string& row, con
     return row == laps.row && scenario == laps.scenario;
   });
   if (found == table().end()) return {};
-  return {.file = "the paper's program, " + row + ", " + scenario,
-          .laps = static_cast<int>(found->ms.size()),
-          .collisions = found->collisions,
-          .ms = found->ms};
+  return evaluation::LapLog{.file = "the paper's program, " + row + ", " + scenario,
+                            .laps = static_cast<int>(found->ms.size()),
+                            .collisions = found->collisions,
+                            .ms = found->ms};
 }
 
 }  // namespace slalom::tools

@@ -103,9 +103,8 @@ double seen_way(const std::vector<maps::ReferencePoint>& path, const sim::Benchm
 
 RacingMap load_racing_map(const fs::path& folder, const std::string& name) {
   const fs::path own = folder / name, from = fs::is_directory(own) ? own : folder;
-  RacingMap map;
-  map.name = name;
-  map.grid = maps::load_ros_map(from / (name + ".yaml"), maps::MapRule::grey_threshold);
+  RacingMap map{.name = name,
+                .grid = maps::load_ros_map(from / (name + ".yaml"), maps::MapRule::grey_threshold)};
   const fs::path file = from / (name + "_centerline.csv");
   map.centre_line = vehicle::read_centre_line(file).line.points;
   map.centre_line.erase(map.centre_line.begin());

@@ -18,9 +18,9 @@ inline constexpr double racing_grip = 0.9 * gravity;  ///< m/s^2, with which a s
 
 /// A map of the benchmark with the centre line that its program uses.
 struct RacingMap {
-  std::string name;
-  maps::OccupancyGrid grid;              ///< without unknown cells
-  std::vector<maps::Point> centre_line;  ///< m, without the first row of the file, which the program drops
+  std::string name{};
+  maps::OccupancyGrid grid{};              ///< without unknown cells
+  std::vector<maps::Point> centre_line{};  ///< m, without the first row of the file, which the program drops
 };
 
 /// Loads `folder/NAME/NAME.yaml` and `NAME_centerline.csv`, or both from `folder` itself. Throws IoError.

@@ -108,9 +108,7 @@ Explanation explain(SolverOptions options, const std::string& about, std::uint64
   const auto solver = make_solver(options, 1);
   solver->reset(seed);
   const int steps = solver->horizon();
-  Explanation e;
-  e.method = options.method();
-  e.about = about;
+  Explanation e{.method = options.method(), .about = about};
   const double way = e.point.speed * e.point.dt;
   e.beside = std::clamp(static_cast<int>(std::lround(e.point.disc_x / way)), 0, steps);
   ProblemEvaluator<PassingPoint> evaluator(e.point);

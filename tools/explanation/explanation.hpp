@@ -16,21 +16,21 @@ struct ExplainedSample {
 };
 
 struct Explanation {
-  std::string method, about;
-  problems::PassingPoint point;
+  std::string method{}, about{};
+  problems::PassingPoint point{};
   int beside = 0;  ///< the state at which the point is beside the disc
 
-  std::vector<ExplainedSample> samples;
-  std::vector<std::vector<Way>> guides;  ///< ways of each guide after every step
+  std::vector<ExplainedSample> samples{};
+  std::vector<std::vector<Way>> guides{};  ///< ways of each guide after every step
   int best_guide = -1;  ///< index of the guide that is the nominal sequence; -1 without guides
-  Way plan;             ///< way of the sequence that would be sent
+  Way plan{};           ///< way of the sequence that would be sent
   bool plan_collides = false;
-  Way mean;                       ///< mean of the resulting distribution
-  std::vector<double> deviation;  ///< standard deviation of the distribution, m, at every state
+  Way mean{};                       ///< mean of the resulting distribution
+  std::vector<double> deviation{};  ///< standard deviation of the distribution, m, at every state
   double effective_samples = 0;
 
   /// The optimal distribution of the place beside the disc, q*(v) ~ exp(-S(v)) N(v | 0, 1).
-  std::vector<double> places, density;  ///< m, 1/m
+  std::vector<double> places{}, density{};  ///< m, 1/m
 };
 
 /// Solves once and explains the solve. `about`: a few words on the method. The options get a horizon of 20

@@ -191,8 +191,7 @@ Drawing beside(const Drawing& a, const Drawing& b) {
 
 /// The paper's closed form, with one batch of white noise, and guides that do not restart.
 SvgMppiOptions closed_form() {
-  SvgMppiOptions o;
-  o.batches = 1;
+  SvgMppiOptions o{.batches = 1};
   o.guides.count = 4;
   o.guides.iterations = 10;
   o.guides.step = 0.125;

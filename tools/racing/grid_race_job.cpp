@@ -93,8 +93,7 @@ class GridRaceJob {
       race_.drivers.push_back({scenario_.configuration, driver.method});
       Json car{{"name", races_.names[i]}, {"config", driver.config}, {"method", driver.method}};
       if (!driver.own) {
-        ScenarioArguments other;
-        other.config = driver.config;
+        ScenarioArguments other{.config = driver.config};
         race_.drivers.back().configuration = load_configuration(other, driver.method);
         car["options"] = options_json(race_.drivers.back().configuration, driver.method);
       }

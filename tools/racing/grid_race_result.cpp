@@ -35,8 +35,7 @@ void visit_figures(const CarSummary& car, Visit&& visit) {
 }
 
 CarSummary car_summary(const GridRaces& races, int entry) {
-  CarSummary summary;
-  summary.contacts = evaluation::contact_rate(races.results, entry);
+  CarSummary summary{.contacts = evaluation::contact_rate(races.results, entry)};
   for (const GridRaceResult& race : races.results) {
     const CarResult& car = race.cars[static_cast<std::size_t>(entry)];
     summary.best_lap = std::fmin(summary.best_lap, car.best_lap());

@@ -77,7 +77,8 @@ struct Header {
 };
 
 RecordedScan read_scan(CdrReader& from, double time) {
-  RecordedScan scan{.time = time, .shape = {.angle_min = from.get<float>()}};
+  RecordedScan scan{.time = time};
+  scan.shape.angle_min = from.get<float>();
   from.get<float>();  // angle_max
   scan.shape.angle_increment = from.get<float>();
   from.get<float>();  // time_increment

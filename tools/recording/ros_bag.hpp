@@ -14,7 +14,7 @@ namespace slalom::tools {
 /// A scan of a recording.
 struct RecordedScan {
   double time = 0;              ///< s, on the clock of the samples
-  maps::LaserScanView shape;    ///< all but the ranges
+  maps::LaserScanView shape{};  ///< all but the ranges
   std::vector<float> ranges{};  ///< m
 
   maps::LaserScanView view() const {

@@ -14,9 +14,8 @@ constexpr const char* figure_labels =
 }  // namespace
 
 std::shared_ptr<const SubjectFacts> car_facts(const evaluation::Environment* environment) {
-  SubjectFacts facts;
-  facts.inputs = {"steering, rad", "acceleration, m/s^2"};
-  facts.terms = {"distance", "yaw", "collision"};
+  SubjectFacts facts{.inputs = {"steering, rad", "acceleration, m/s^2"},
+                     .terms = {"distance", "yaw", "collision"}};
   facts.can_place = facts.can_move = facts.can_add = facts.can_delay = true;
   facts.fixes_seed = facts.scans_ahead = true;
   for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)

@@ -9,13 +9,7 @@ namespace {
 ServerOptions server_options(const ServeOptions& given) {
   if (given.token.empty() && !is_loopback(given.host))
     throw std::invalid_argument("token: must be given where other machines can reach host " + given.host);
-  ServerOptions options;
-  options.host = given.host;
-  options.port = given.port;
-  options.ports = 10;
-  options.token = given.token;
-  options.framed_by = notebooks;
-  return options;
+  return {.host = given.host, .port = given.port, .ports = 10, .token = given.token, .framed_by = notebooks};
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ if importlib.util.find_spec("slalom._driving"):
 else:  # built without the layers for cars
     _driving = None  # type: ignore[assignment]
 
-_DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "Planner", "PredictedObstacle", "World", "courses", "drive_lap", "plan_path")
+_DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "ObjectTracker", "Planner", "PredictedObstacle", "Predictor", "TrackedObject",
+            "World", "courses", "drive_lap", "plan_path")
 
 
 class SymptomWarning(RuntimeWarning):

@@ -75,20 +75,14 @@ void bind_planner(py::module_& module) {
            "{'samples': 2000, 'planner.max_speed': 4, 'vehicle....': ...}")
       .def(
           "update",
-          [](vehicle::Planner& self,
-             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, double angle_min,
-             double angle_increment, double range_min, double range_max, const std::array<double, 3>& pose,
-             double speed, const vehicle::PoseCovariance& covariance,
-             const std::vector<std::array<double, 2>>& obstacles,
+          [](vehicle::Planner& self, const Ranges& ranges, double angle_min, double angle_increment,
+             double range_min, double range_max, const std::array<double, 3>& pose, double speed,
+             const vehicle::PoseCovariance& covariance, const std::vector<std::array<double, 2>>& obstacles,
              const std::optional<std::array<double, 3>>& imu, const std::vector<Prediction>& others,
              const std::optional<std::array<double, 2>>& obeyed, const std::optional<double>& goal_speed) {
-            const maps::LaserScanView scan{{ranges.data(), static_cast<std::size_t>(ranges.size())},
-                                           angle_min,
-                                           angle_increment,
-                                           range_min,
-                                           range_max};
             vehicle::PlannerInput input{
-                .scan = scan, .odometry = {.pose = to_pose(pose), .speed = speed, .covariance = covariance}};
+                .scan = scan_of(ranges, angle_min, angle_increment, range_min, range_max),
+                .odometry = {.pose = to_pose(pose), .speed = speed, .covariance = covariance}};
             std::vector<maps::Point> points;
             for (const auto& [x, y] : obstacles) points.push_back({x, y});
             const std::vector<maps::PredictedObstacle> views = views_of(others);
@@ -158,4 +152,5 @@ PYBIND11_MODULE(_driving, module) {
   slalom::python::bind_planner(module);
   slalom::python::bind_laps(module);
   slalom::python::bind_navigation(module);
+  slalom::python::bind_tracking(module);
 }

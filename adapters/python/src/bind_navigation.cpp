@@ -128,30 +128,7 @@ struct PythonNavigator : Navigator {
   std::shared_ptr<PythonCost> cost;
 };
 
-Prediction make_prediction(const Numbers& poses, double length, double width, double interval,
-                           const std::vector<double>& weights, int id) {
-  const auto count = static_cast<py::ssize_t>(weights.size());
-  if (poses.ndim() != 3 || poses.shape(2) != 5 || poses.shape(0) != count || poses.shape(1) < 1 ||
-      count < 1 || count > maps::PredictedObstacle::max_hypotheses)
-    throw py::value_error("PredictedObstacle.poses: must have shape (n, times, 5), with n weights, 1 to 4");
-  Prediction made;
-  maps::PredictedObstacle& each = made.obstacle;
-  each.id = id, each.length = length, each.width = width, each.interval = interval;
-  each.hypotheses = static_cast<int>(count);
-  std::copy(weights.begin(), weights.end(), each.weights.begin());
-  for (const double* at = poses.data(); at < poses.data() + poses.size(); at += 5)
-    made.poses.push_back({{at[0], at[1], at[2]}, at[3], at[4]});
-  return made;
-}
-
 void bind_navigator(py::module_& module) {
-  py::class_<Prediction>(
-      module, "PredictedObstacle", guarded(),
-      "A box that moves, in hypotheses with probabilities `weights`. `poses` [hypothesis, time, "
-      "5]: x, y, yaw, and standard deviations along and across it (m, rad), now and every "
-      "`interval` s.")
-      .def(py::init(&make_prediction), "poses"_a, py::kw_only(), "length"_a, "width"_a, "interval"_a = 0.1,
-           "weights"_a = std::vector<double>{1}, "id"_a = 0);
   const std::string words =
       "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
       "with the options of `solver`. Other options:\n\n" +

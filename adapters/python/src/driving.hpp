@@ -17,6 +17,14 @@ using Folders = std::vector<std::filesystem::path>;
 Folders folders_of(Folders (*search)(const std::filesystem::path&), const char* what);
 Folders course_folders();
 
+/// Ranges of a scan, m.
+using Ranges = py::array_t<float, py::array::c_style | py::array::forcecast>;
+inline maps::LaserScanView scan_of(const Ranges& ranges, double angle_min, double angle_increment,
+                                   double range_min, double range_max) {
+  const std::span<const float> values(ranges.data(), static_cast<std::size_t>(ranges.size()));
+  return {values, angle_min, angle_increment, range_min, range_max};
+}
+
 /// Poses are tuples in Python.
 inline maps::Pose to_pose(const std::array<double, 3>& pose) {
   return {pose[0], pose[1], pose[2]};
@@ -51,6 +59,7 @@ inline std::vector<maps::PredictedObstacle> views_of(const std::vector<Predictio
 }
 
 void bind_navigation(py::module_& module);
+void bind_tracking(py::module_& module);
 void bind_world(py::module_& module);
 
 }  // namespace slalom::python

@@ -54,27 +54,31 @@ def test_a_cost_of_ones_own_slows_the_robot():
     assert steps == set(range(56))
 
 
-def test_people_of_ones_own_detector_are_met_where_they_will_be():
-    def nearest(told):
-        costmap, body = slalom.Costmap(slalom.OccupancyGrid(np.zeros((60, 100), bool), 0.1)), slalom.Footprint.rectangle(
-            0.3, 0.3, 0.4)
-        navigator = slalom.Navigator(body, costmap, solver={"samples": 500})
-        navigator.reset(1)
-        navigator.set_path([(1, 3, 0), (8, 3, 0)])
-        pose, velocity, least = np.array([1.0, 3.0, 0.0]), (0.0, 0.0, 0.0), 9.0
-        for step in range(200):
-            person = np.array([4, 0.4 + 0.42 * 0.05 * step])
-            way = [[(4, person[1] + 0.42 * 0.1 * k, np.pi / 2, 0.02, 0.02) for k in range(30)]]
-            others = [slalom.PredictedObstacle(way, length=0.5, width=0.5)] if told else []
-            velocity = navigator.update(pose, velocity, costmap, 0.05, others)["command"]
-            turned = pose[2] + 0.025 * velocity[2]
-            pose = pose + 0.05 * np.array([velocity[0] * np.cos(turned), velocity[0] * np.sin(turned), velocity[2]])
-            least = min(least, np.linalg.norm(pose[:2] - person))
-        return least
+def scan(pose, person, radius=0.25):
+    """720 ranges all around in a room of 10 x 6 m with a person."""
+    angles = np.linspace(-np.pi, np.pi, 720, endpoint=False)
+    way, to = np.array([np.cos(angles), np.sin(angles)]), person - pose[:2]
+    walls = [(edge - pose[i]) / np.where(way[i] == 0, 1e-9, way[i]) for i, size in enumerate((10, 6)) for edge in (0, size)]
+    along, off = to @ way, to[0] * way[1] - to[1] * way[0]
+    hit = np.where((along > 0) & (abs(off) < radius), along - np.sqrt(np.maximum(radius**2 - off**2, 0)), 99)
+    return {"ranges": np.minimum(hit, np.where(np.array(walls) > 0, walls, 99).min(axis=0)), "angle_min": -np.pi,
+            "angle_increment": np.pi / 360, "range_max": 15.0}
 
-    assert nearest(False) < 0.45 < 0.55 < nearest(True)
-    with pytest.raises(ValueError, match="must have shape"):
-        slalom.PredictedObstacle(np.zeros((1, 3, 2)), length=1, width=1)
+
+def test_people_in_scans_are_tracked_and_predicted():
+    tracker, predictor, pose = slalom.ObjectTracker(people=True, min_points=4), slalom.Predictor(people=True), np.array([2, 3, 0])
+    for stamp in np.arange(0, 4, 0.05):
+        person = np.array([4, 0.5 + 0.6 * stamp])
+        seen = tracker.update(**scan(pose, person), pose=pose, stamp=stamp)
+        others = predictor.update(seen["objects"], stamp)
+    [found], [other] = seen["objects"], others
+    assert seen["status"] == "ok" and seen["pose"] == tuple(pose) and found.unseen == 0 and 0.4 < found.width < 0.6
+    assert np.hypot(*(found.pose[:2] - person)) < 0.1 and found.speed == pytest.approx(0.6, abs=0.1) and found.covariance[3, 3] > 0
+    assert np.allclose(other.poses[np.argmax(other.weights), 10, :2], person + [0, 0.6], atol=0.15), "a second later"
+    for call, words in [(lambda: slalom.PredictedObstacle(np.zeros((1, 3, 2)), length=1, width=1), "must have shape"),
+                        (lambda: slalom.ObjectTracker(gate=0), "gate: '0' must be in"), (lambda: slalom.Predictor([(0, 0, 0, 1)]), "path")]:
+        with pytest.raises(ValueError, match=words):
+            call()
 
 
 def test_errors_of_a_cost_reach_the_caller():

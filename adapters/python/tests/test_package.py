@@ -92,14 +92,14 @@ def objects():
             streams[0]]
     made += [cls() for cls in (slalom.Arm, slalom.Pendulum, slalom.CartPole, slalom.DifferentialDrive, slalom.Quadrotor,
                                slalom.Car)]
-    made += [getattr(slalom, cls)(slalom.CartPole()) for cls in dir(slalom)
-             if isinstance(getattr(slalom, cls), type) and issubclass(getattr(slalom, cls), slalom.Controller)
-             and cls != "Controller"]
+    made += [cls(slalom.CartPole()) for cls in vars(slalom._slalom).values()
+             if isinstance(cls, type) and issubclass(cls, slalom.Controller) and cls is not slalom.Controller]
     if hasattr(slalom, "Course"):
         course = slalom.Course("wren")
         costmap, body = slalom.Costmap(slalom.OccupancyGrid(np.zeros((30, 30)), 0.1)), slalom.Footprint.rectangle(0.2, 0.2, 0.3)
         made += [course, slalom.World(course), slalom.Planner(course), costmap, body, slalom.Navigator(body, costmap)]
-        made.append(slalom.PredictedObstacle(np.zeros((1, 1, 5)), length=1, width=1))
+        made += [slalom.PredictedObstacle(np.zeros((1, 1, 5)), length=1, width=1), slalom.TrackedObject(1, (0, 0, 0), speed=1),
+                 slalom.ObjectTracker(), slalom.Predictor()]
     return made
 
 

@@ -25,15 +25,14 @@ class LocaliserCore {
  public:
   /// The settings that are fixed when the node starts.
   struct Settings {
-    std::string course;       ///< a name or a folder, whose map is used; empty: the map is a message
+    std::string course{};     ///< a name or a folder, whose map is used; empty: the map is a message
     bool everywhere = false;  ///< search the whole map at the start
-    std::optional<maps::Pose>
-        start;  ///< pose of the base frame; otherwise the start of the course, or everywhere
-    std::optional<KnownPose> earlier;  ///< last pose of the base frame by an earlier node; comes first
-    int trust_scans = 10;              ///< see PoseTrust
-    double trust_health = 0.7;         ///< see PoseTrust
-    double transform_tolerance = 0.1;  ///< s, how far the stamps of transforms are in the future
-    double rear_axle = 0;              ///< m, x of the middle of the rear axle in the base frame
+    std::optional<maps::Pose> start{};   ///< pose of the base frame; else the course's start, or everywhere
+    std::optional<KnownPose> earlier{};  ///< last pose of the base frame by an earlier node; comes first
+    int trust_scans = 10;                ///< see PoseTrust
+    double trust_health = 0.7;           ///< see PoseTrust
+    double transform_tolerance = 0.1;    ///< s, how far the stamps of transforms are in the future
+    double rear_axle = 0;                ///< m, x of the middle of the rear axle in the base frame
     WatchLimits limits{};
   };
   /// The messages that the node sends; called from within the functions below.

@@ -44,10 +44,10 @@ struct FollowerAnswer {
     no_control,    ///< there is no command that makes sense; the robot should stop
   };
   Problem problem = Problem::none;
-  std::string why{};             ///< the problem, for the user
-  std::string_view status;       ///< name of the navigator's status; empty before it ran
-  navigation::Velocity command;  ///< 0 unless there is a command; always finite and within the limits
-  double remaining = 0;          ///< m of path to the goal
+  std::string why{};               ///< the problem, for the user
+  std::string_view status{};       ///< name of the navigator's status; empty before it ran
+  navigation::Velocity command{};  ///< 0 unless there is a command; always finite and within the limits
+  double remaining = 0;            ///< m of path to the goal
 };
 
 /// Follows plans. Options that mean the same as in nav2's MPPI controller have its names. Not thread-safe.

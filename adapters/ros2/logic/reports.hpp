@@ -19,7 +19,7 @@ enum class Level { ok = 0, warning = 1, error = 2 };
 /// The state of a node, about once per second.
 struct Report {
   Level level = Level::ok;
-  std::string about;      ///< the subject
+  std::string about{};    ///< the subject
   std::string message{};  ///< the state in a few words
   std::vector<std::pair<std::string, std::string>> values{};
 

@@ -25,9 +25,9 @@ struct HardwareConditions {
   double acceleration_max = 6.0;
   double max_blind_time = 0.1;
   bool imu = true;
-  sim::WheelOdometryOptions wheels;  ///< errors of the wheel odometry; its seed is that of the lap
-  sim::ImuOptions inertial;          ///< errors of the inertial measurement unit; its seed is that of the lap
-  vehicle::LocaliserOptions localiser;  ///< its seed is that of the lap
+  sim::WheelOdometryOptions wheels{};  ///< errors of the wheel odometry; its seed is that of the lap
+  sim::ImuOptions inertial{};  ///< errors of the inertial measurement unit; its seed is that of the lap
+  vehicle::LocaliserOptions localiser{};  ///< its seed is that of the lap
 
   /// The sensors and the localisation of a real car, whose LiDAR has this noise (m, standard deviation) and
   /// dropout (fraction of beams without a return): pose and speed are estimates, the planner gets the IMU,

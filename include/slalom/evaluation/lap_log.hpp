@@ -34,19 +34,19 @@ enum class Agreement {
 /// each measured lap, since the seed places the obstacles: only these laps of the log count, and the tests
 /// are those of paired laps.
 struct LogComparison {
-  int our_laps = 0;      ///< number of measured laps
-  int laps = 0;          ///< number of laps of the log that they are compared with
-  bool paired = false;   ///< whether the laps are paired by seed
-  double ms_mean = 0;    ///< MS of the whole log
-  Interval ms_ci;        ///< interval of the log's MS, bootstrap over laps
-  double ms_ratio = 0;   ///< measured / log
-  Interval ms_ratio_ci;  ///< 1 + the bootstrapped difference of means / mean of the log
+  int our_laps = 0;        ///< number of measured laps
+  int laps = 0;            ///< number of laps of the log that they are compared with
+  bool paired = false;     ///< whether the laps are paired by seed
+  double ms_mean = 0;      ///< MS of the whole log
+  Interval ms_ci{};        ///< interval of the log's MS, bootstrap over laps
+  double ms_ratio = 0;     ///< measured / log
+  Interval ms_ratio_ci{};  ///< 1 + the bootstrapped difference of means / mean of the log
   /// Wilcoxon's signed-rank test; not paired: two-sample bootstrap, or permutation test below `enough_laps`.
   double ms_p = 1;
-  std::optional<double> collision_rate;        ///< collision rate of the whole log; none without obstacles
-  std::optional<Interval> collision_rate_ci;   ///< interval of the log's collision rate, Wilson
-  std::optional<Interval> rate_difference_ci;  ///< measured - log, Newcombe, which ignores the pairs
-  std::optional<double> collision_p;  ///< Wilcoxon's signed-rank test; not paired: Fisher's exact test
+  std::optional<double> collision_rate{};        ///< collision rate of the whole log; none without obstacles
+  std::optional<Interval> collision_rate_ci{};   ///< interval of the log's collision rate, Wilson
+  std::optional<Interval> rate_difference_ci{};  ///< measured - log, Newcombe, which ignores the pairs
+  std::optional<double> collision_p{};  ///< Wilcoxon's signed-rank test; not paired: Fisher's exact test
 
   static constexpr int enough_laps = 10;  ///< laps from which on the bootstrap is used and MS can be inside
   /// `inside` requires confidence intervals no wider than this to each side: a fraction of MS, and a

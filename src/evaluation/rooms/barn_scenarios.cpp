@@ -76,9 +76,7 @@ std::vector<RoomScenario> barn_scenarios(const std::filesystem::path& folder, in
     const std::string number = std::to_string(i);
     const auto world = folder / ("world_" + number + ".world"),
                path = folder / "path_files" / ("path_" + number + ".npy");
-    RoomScenario made;
-    made.name = "barn-" + number;
-    made.summary = "world " + number + " of BARN";
+    RoomScenario made{.name = "barn-" + number, .summary = "world " + number + " of BARN"};
     made.room.length = floor_length;
     made.room.width = floor_width;
     made.room.posts = posts_of(read_file(world, most_bytes), world.string());

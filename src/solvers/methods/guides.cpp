@@ -200,12 +200,11 @@ void Guides::estimate_gradient(int g) noexcept {
   const Rows rows = rows_of(batch_);
   const Range block{g * block_, block_};
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
-  SurrogateGradient gradient;
-  gradient.temperature = static_cast<float>(options_.guides.gradient_temperature);
-  gradient.subtract_minimum = options_.published.subtract_minimum;
-  gradient.floor = options_.published.gradient_floor;
-  gradient.centre = guides_[g];
-  gradient.inverse_variance = inverse_.data();
+  SurrogateGradient gradient{.temperature = static_cast<float>(options_.guides.gradient_temperature),
+                             .subtract_minimum = options_.published.subtract_minimum,
+                             .floor = options_.published.gradient_floor,
+                             .centre = guides_[g],
+                             .inverse_variance = inverse_.data()};
   if (options_.guides.weight == GuideWeight::importance) gradient.linear = linear_.data();
   if (options_.guides.weight == GuideWeight::proximity) {
     gradient.distance_centre = solution_.data();

@@ -148,9 +148,10 @@ void close_gap(std::vector<Waypoint>& points, double gap, double step) {
   const int pieces = saturate_cast<int>(std::ceil(gap / step));
   for (int k = 1; k < pieces; ++k) {
     const double share = static_cast<double>(k) / pieces;
-    points.push_back({.x = last.x + share * (first.x - last.x),
-                      .y = last.y + share * (first.y - last.y),
-                      .speed = last.speed + share * (first.speed - last.speed)});
+    Waypoint point{.x = last.x + share * (first.x - last.x),
+                   .y = last.y + share * (first.y - last.y),
+                   .speed = last.speed + share * (first.speed - last.speed)};
+    points.push_back(point);
   }
 }
 

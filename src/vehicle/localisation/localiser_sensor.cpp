@@ -199,12 +199,11 @@ SensorTables::Explained SensorTables::explain(const maps::Pose& pose, const Scan
 
 void SensorTables::weigh_by_field(const ParticlePoses& particles, const ScanBeams& beams,
                                   float* log_fit) const noexcept {
-  WeighInput in;
-  in.particles = particles;
-  in.beams = &beams;
-  in.field = field_.view(geometry_);
-  in.place = place_.view(geometry_);
-  in.log_fit = log_fit;
+  WeighInput in{.particles = particles,
+                .beams = &beams,
+                .field = field_.view(geometry_),
+                .place = place_.view(geometry_),
+                .log_fit = log_fit};
   detail::weigh_by_field(in);
 }
 

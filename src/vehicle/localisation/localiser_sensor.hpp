@@ -100,7 +100,7 @@ class SensorTables {
 
 /// Everything that a kernel reads.
 struct WeighInput {
-  ParticlePoses particles;
+  ParticlePoses particles{};
   const ScanBeams* beams = nullptr;
   GridView<1> field{}, place{}, rows{};
   const std::uint32_t* pairs = nullptr;

@@ -21,14 +21,13 @@ double highest(double low, double high, const Holds& holds) {
 }
 
 RacingCar passenger_car() {
-  RacingCar car;
-  car.name = "passenger";
-  car.width = 1.85;
-  car.margin = 0.3;
-  car.wheelbase = 2.7;
-  car.max_steering = 0.5;
-  car.max_steering_rate = 0.6;
-  car.limits = {55, 8.5, 5, 8.5};
+  RacingCar car{.name = "passenger",
+                .width = 1.85,
+                .margin = 0.3,
+                .wheelbase = 2.7,
+                .max_steering = 0.5,
+                .max_steering_rate = 0.6,
+                .limits = {55, 8.5, 5, 8.5}};
   car.power = 75;  // 110 kW, 1500 kg
   return car;
 }

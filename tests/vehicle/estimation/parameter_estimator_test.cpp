@@ -37,7 +37,8 @@ struct Drive {
 
 ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {}) {
   sim::CarParameters car{.friction = drive.friction};
-  sim::PlantOptions plant_options{.dynamics = {.model = drive.tyres}};
+  sim::PlantOptions plant_options;
+  plant_options.dynamics.model = drive.tyres;
   sim::Plant plant(car, plant_options, time_step);
   plant.reset({.speed = drive.speed});
   const SingleTrackDynamics dynamics(

@@ -52,7 +52,8 @@ std::unique_ptr<DynamicVehicleModel> model_with(double friction) {
 
 Errors errors_of(const Drive& drive) {
   sim::CarParameters car{.friction = drive.friction};
-  sim::PlantOptions plant_options{.dynamics = {.model = sim::Model::saturating}};
+  sim::PlantOptions plant_options;
+  plant_options.dynamics.model = sim::Model::saturating;
   sim::Plant plant(car, plant_options, time_step);
   plant.reset({.speed = 4});
   sim::Imu imu({.seed = 3});

@@ -28,7 +28,8 @@ struct Truth {
 std::vector<DrivenSample> drive(const Truth& truth) {
   sim::CarParameters car{
       .friction = truth.friction, .cornering_front = truth.front, .cornering_rear = truth.rear};
-  sim::PlantOptions options{.dynamics = {.model = sim::Model::saturating}};
+  sim::PlantOptions options;
+  options.dynamics.model = sim::Model::saturating;
   sim::Plant plant(car, options, time_step);
   plant.reset({.speed = truth.speed});
   RandomStream noise({11, 0});

@@ -22,7 +22,9 @@ class SequenceSelection : public ::testing::Test {
  protected:
   explicit SequenceSelection(Objective objective = Objective::path_speed, double margin = 0.04)
       : field_(testing::lane(5)) {
-    VehicleOptions car{{.max_acceleration = 9, .max_deceleration = 9}, vehicle_model("single_track"), {}};
+    VehicleOptions car;
+    car.model = vehicle_model("single_track");
+    car.max_acceleration = car.max_deceleration = 9;
     car.body.margin = margin;
     car.own_of<SingleTrackOptions>().objective = objective;
     model_ = make_vehicle_model(car);

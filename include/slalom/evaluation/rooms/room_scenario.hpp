@@ -33,8 +33,8 @@ struct RoomScenario {
   std::string summary{};  ///< one line
   /// Its first obstacle is the one whose sides are counted, and if there is none the first walker. In a drive
   /// its `people` are those of `walkers`.
-  sim::Room room;
-  maps::Pose start, goal;                     ///< m, m, rad
+  sim::Room room{};
+  maps::Pose start{}, goal{};                 ///< m, m, rad
   RoomOutcome wanted = RoomOutcome::reached;  ///< the end that is a success; if the robot says something
                                               ///< else of that kind, the drive goes on
   std::vector<sim::Walker> walkers{};         ///< people; a drive varies their speeds and pauses
