@@ -10,9 +10,9 @@ using diagnostic_msgs::msg::DiagnosticArray;
 using States = lifecycle_msgs::msg::State;
 
 ManagedNode::ManagedNode(const std::string& name, const rclcpp::NodeOptions& options,
-                         std::chrono::milliseconds tick_period, bool autostart)
+                         std::chrono::milliseconds tick_period)
     : rclcpp_lifecycle::LifecycleNode(name, options), tick_period_(tick_period) {
-  if (!setting("autostart", autostart, "whether the node configures and activates itself")) return;
+  if (!setting("autostart", false, "whether the node configures and activates itself")) return;
   autostart_timer_ = create_wall_timer(std::chrono::milliseconds(1), [this] {
     autostart_timer_->cancel();
     if (configure().id() == States::PRIMARY_STATE_INACTIVE) activate();

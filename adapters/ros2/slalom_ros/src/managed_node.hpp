@@ -19,9 +19,9 @@ namespace slalom_ros {
 /// in the log. All callbacks are in the default callback group, so they never run at the same time.
 class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
  public:
-  /// Calls `tick` once per `tick_period`. `autostart` is the default of that parameter.
+  /// Calls `tick` once per `tick_period`.
   ManagedNode(const std::string& name, const rclcpp::NodeOptions& options,
-              std::chrono::milliseconds tick_period, bool autostart = false);
+              std::chrono::milliseconds tick_period);
 
   using State = rclcpp_lifecycle::State;
   using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
