@@ -235,6 +235,17 @@ TEST(PathFollower, TellsTheCostOfItsPlanByTermsAndItsSamples) {
   EXPECT_GT(drive.follower.cost_terms()[3].value, 0.1);
 }
 
+TEST(PathFollower, KeepsToOneSideOfItsPathByACostOfOnesOwn) {
+  StraightDrive drive;
+  drive.follower.add_cost("keep_left", [](const navigation::RolloutStates& states, std::span<double> costs) {
+    for (std::size_t i = 0; i < costs.size(); ++i) costs[i] += 5 * std::max(2.3 - states.y[i], 0.0);
+  });
+  EXPECT_EQ(drive.drive(30, {7, 2, 0}, 1).problem, Problem::none);
+  EXPECT_NEAR(drive.input.pose.y, 2.3, 0.1);
+  EXPECT_STREQ(drive.follower.cost_terms().back().name, "keep_left");
+  EXPECT_GT(drive.follower.cost_terms().back().value, 0.05);
+}
+
 TEST(PathFollower, BrakesWhenItIsCancelled) {
   StraightDrive drive;
   drive.drive(2, {7, 2, 0});
