@@ -7,16 +7,13 @@ namespace {
 
 constexpr double wrong_way = std::numbers::pi / 3;  // rad from the path, from which the robot first turns
 constexpr std::size_t most_goals = 30;              // poses, as goals of a search
-
-/// The length of a body, m.
-double length_of(const Footprint& footprint) {
-  return 2 * footprint.circumscribed_radius();
-}
+constexpr double more_room = 0.1;                   // radii of room that a manoeuvre keeps if it can
 
 maps::ManoeuvreOptions search_options(const NavigatorOptions& options, const Footprint& footprint) {
   const bool turns = turns_on_the_spot(options.base);
-  maps::ManoeuvreOptions made = maps::ManoeuvreOptions::of(
-      length_of(footprint), turns ? 0 : 1.1 * options.base.min_turning_radius);  // the rest corrects
+  maps::ManoeuvreOptions made =
+      maps::ManoeuvreOptions::of(2 * footprint.circumscribed_radius(),
+                                 turns ? 0 : 1.1 * options.base.min_turning_radius);  // the rest corrects
   if (turns) made.bend = 10 * made.step;  // bends away from a wall beside which there is no room to turn
   made.can_reverse = options.base.max_reverse > 0;
   return made;
@@ -45,11 +42,13 @@ class CostmapRoom final : public maps::BodyRoom {
 }  // namespace
 
 Approach::Approach(const NavigatorOptions& options, const Footprint& footprint)
-    : options_(options), footprint_(footprint), search_(search_options(options, footprint)) {
+    : options_(options),
+      footprint_(footprint),
+      enlarged_(footprint.without_rim(-more_room * footprint.circumscribed_radius())),
+      search_(search_options(options, footprint)) {
   goals_.reserve(2 * most_goals);
 }
 
-/// The turn to a yaw on which the body is free, the shorter one if both are; 0 if neither is.
 double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& costmap,
                            double rate) const noexcept {
   constexpr double step = 0.1;  // rad between the poses that are checked
@@ -65,10 +64,10 @@ double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& c
   return 0;
 }
 
-double Approach::turn_to(const maps::Pose& robot, double yaw, const Costmap& costmap,
-                         double rate) const noexcept {
-  const double turn = free_turn(robot, yaw, costmap, rate);
-  return turn != 0 ? turn : maps::wrap_angle(yaw - robot.yaw);
+/// Searches a manoeuvre from a pose to one of the goals, at first with more room.
+bool Approach::search(const maps::Pose& start, bool backward_in_time, const Costmap& costmap) noexcept {
+  return search_.search(CostmapRoom(costmap, enlarged_, start, backward_in_time), goals_) ||
+         search_.search(CostmapRoom(costmap, footprint_, start, backward_in_time), goals_);
 }
 
 /// Searches a manoeuvre from a pose to one of the points `first` to `last` of the path; or, backward in time,
@@ -85,7 +84,7 @@ bool Approach::search(const PathGuide& guide, const maps::Pose& from, std::size_
     goals_.push_back({{place.x, place.y, at.yaw + turn - start.yaw},
                       guide.step() * static_cast<double>(backward_in_time ? i - first : last - i)});
   }
-  if (!search_.search(CostmapRoom(costmap, footprint_, start, backward_in_time), goals_)) return false;
+  if (!search(start, backward_in_time, costmap)) return false;
   joint_ = first + stride * search_.goal();
   return true;
 }
@@ -93,18 +92,41 @@ bool Approach::search(const PathGuide& guide, const maps::Pose& from, std::size_
 bool Approach::join(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
                     std::vector<maps::Pose>& buffer) noexcept {
   const auto points = guide.points();
-  const std::size_t last = std::min(points.size() - 1, guide.nearest() + guide.points_for(longest_change));
-  if (!search(guide, robot, guide.nearest(), last, false, costmap)) return false;
+  const std::size_t first = guide.nearest(),
+                    last = std::min(points.size() - 1, first + guide.points_for(longest_change()));
+  return search(guide, robot, first, last, false, costmap) && lead(guide, robot, joint_, buffer);
+}
+
+bool Approach::dock(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
+                    std::vector<maps::Pose>& buffer) noexcept {
+  const maps::Pose& goal = guide.goal();
+  const double yaw = std::atan2(goal.y - robot.y, goal.x - robot.x);
+  if (turns_on_the_spot(options_.base) && free_turn(robot, yaw, costmap) != 0) return false;
+  goals_.clear();
+  for (const double run : {-footprint_.circumscribed_radius(), footprint_.circumscribed_radius()}) {
+    const maps::Pose begin{goal.x + run * std::cos(goal.yaw), goal.y + run * std::sin(goal.yaw), goal.yaw};
+    const maps::Point place = maps::inverse_transform(robot, position(begin));
+    if (!costmap.collides(footprint_, begin, goal))
+      goals_.push_back({{place.x, place.y, goal.yaw - robot.yaw}, 0});
+  }
+  return !goals_.empty() && search(robot, false, costmap) &&
+         lead(guide, robot, guide.points().size() - 1, buffer);
+}
+
+/// Leads the path along the way that was found, from the robot, and on from a point of the path.
+bool Approach::lead(PathGuide& guide, const maps::Pose& robot, std::size_t joint,
+                    std::vector<maps::Pose>& buffer) noexcept {
+  const auto points = guide.points();
   const auto way = search_.poses();
   if (way.size() + points.size() > buffer.capacity()) return false;
   buffer.clear();
-  for (const maps::Pose& pose : way.first(way.size() - 1)) {
+  for (const maps::Pose& pose : way) {
     const maps::Point place = maps::transform(robot, {pose.x, pose.y});
     buffer.push_back({place.x, place.y, robot.yaw + pose.yaw});
   }
-  buffer.insert(buffer.end(), points.begin() + joint_, points.end());
+  buffer.insert(buffer.end(), points.begin() + joint, points.end());
   buffer.back() = guide.goal();
-  end_ = guide.step() * static_cast<double>(points.size() - 1 - joint_);
+  end_ = guide.step() * static_cast<double>(points.size() - 1 - joint);
   guide.set(buffer, turns_on_the_spot(options_.base));
   begin_ = guide.remaining();
   return true;
@@ -113,7 +135,7 @@ bool Approach::join(PathGuide& guide, const maps::Pose& robot, const Costmap& co
 void Approach::face_goal(PathGuide& guide, const Costmap& costmap, std::vector<maps::Pose>& buffer) noexcept {
   const auto points = guide.points();
   const maps::Pose& goal = guide.goal();
-  const std::size_t most = guide.points_for(longest_change), last = points.size() - 1;
+  const std::size_t most = guide.points_for(longest_change()), last = points.size() - 1;
   const auto legs = guide.legs();
   const maps::PathLeg& arrival = legs[legs.size() - (legs.back().turns && legs.size() > 1 ? 2 : 1)];
   const std::size_t first = std::max({arrival.first, guide.nearest(), last > most ? last - most : 0});
@@ -144,33 +166,22 @@ void Approach::place(PathGuide& guide, const maps::Pose& robot, const Costmap& c
   guide.place(position(robot));
   if (guide.remaining() <= options_.goal_distance &&
       distance(position(robot), position(guide.goal())) <= options_.goal_distance) {
-    // Near its end a path has no direction.
+    // Near its end a path has no direction: the turn is left.
+    buffer.assign({guide.goal()});
+    if (turns_on_the_spot(options_.base)) return guide.set(buffer, true);
     while (!guide.on_last_leg()) guide.next_leg();
-    if (turns_on_the_spot(options_.base) && !guide.leg().turns &&
-        std::abs(maps::wrap_angle(guide.goal().yaw - robot.yaw)) > options_.goal_angle)
-      guide.turn_first(guide.goal().yaw);
     return;
   }
   if (options_.base.kind == BaseKind::omnidirectional || options_.base.max_turn == 0) return;
   // The direction of the path a little ahead.
-  const auto direction = [&] {
-    const std::size_t ahead = std::min(guide.nearest() + guide.points_for(length_of(footprint_) / 3),
-                                       std::max(guide.leg().last, std::size_t{1}) - 1);
-    return guide.points()[std::max(ahead, guide.leg().first)].yaw;
-  };
-  const auto faces_away = [&] {
-    return !guide.leg().turns && std::abs(maps::wrap_angle(direction() - robot.yaw)) > wrong_way;
-  };
-  const bool turns = turns_on_the_spot(options_.base);
-  if (faces_away() && !(turns && free_turn(robot, direction(), costmap) != 0)) {
-    join(guide, robot, costmap, buffer);
-    guide.place(position(robot));
-  }
-  if (turns && faces_away() && free_turn(robot, direction(), costmap) != 0) guide.turn_first(direction());
-  if (options_.base.kind == BaseKind::ackermann &&
-      std::abs(maps::wrap_angle(guide.goal().yaw - guide.legs().back().yaw)) > 0.5 * options_.goal_angle) {
-    face_goal(guide, costmap, buffer);
-  }
+  const std::size_t ahead =
+      std::min(guide.nearest() + guide.points_for(0.7 * footprint_.circumscribed_radius()),
+               std::max(guide.leg().last, std::size_t{1}) - 1);
+  const double direction = guide.points()[std::max(ahead, guide.leg().first)].yaw;
+  if (guide.leg().turns || std::abs(maps::wrap_angle(direction - robot.yaw)) <= wrong_way) return;
+  if (turns_on_the_spot(options_.base) && free_turn(robot, direction, costmap) != 0)
+    return guide.turn_first(direction);
+  if (join(guide, robot, costmap, buffer)) guide.place(position(robot));
 }
 
 }  // namespace slalom::navigation::detail

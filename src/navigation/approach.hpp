@@ -10,39 +10,42 @@ namespace slalom::navigation::detail {
 /// into the heading at the goal.
 class Approach {
  public:
-  static constexpr double longest_change = 3;  ///< m of path that a manoeuvre may replace
-
   Approach(const NavigatorOptions& options, const Footprint& footprint);
 
   /// Places the robot on a new path. `buffer` holds poses meanwhile; paths that do not fit in it are not
   /// changed.
   void place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
              std::vector<maps::Pose>& buffer) noexcept;
-  /// The turn (rad) on the spot to a yaw: the shorter one if the body is free on both or on neither. A robot
-  /// that turns already (rad/s) goes on if the other way is hardly shorter.
-  double turn_to(const maps::Pose& robot, double yaw, const Costmap& costmap, double rate) const noexcept;
-  /// Whether there is room for a turn on the spot to a yaw.
-  bool has_room_to_turn(const maps::Pose& robot, double yaw, const Costmap& costmap) const noexcept {
-    return free_turn(robot, yaw, costmap) != 0;
-  }
+  /// The turn (rad) on the spot to a yaw on which the body is free, the shorter one if both are; 0 if neither
+  /// is. A robot that turns already (rad/s) goes on if the other way is hardly shorter.
+  double free_turn(const maps::Pose& robot, double yaw, const Costmap& costmap,
+                   double rate = 0) const noexcept;
   /// Goes to a point of the path ahead by a manoeuvre. Returns whether there is one.
   bool join(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
             std::vector<maps::Pose>& buffer) noexcept;
+  /// Goes into the pose of the goal anew, by a manoeuvre that ends straight. Returns false if there is none,
+  /// or room to turn to the goal.
+  bool dock(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
+            std::vector<maps::Pose>& buffer) noexcept;
   /// Replaces the end of the path by a manoeuvre into the goal's heading, if there is one.
   void face_goal(PathGuide& guide, const Costmap& costmap, std::vector<maps::Pose>& buffer) noexcept;
-  /// Whether the part of the path around the robot is a manoeuvre, which has to be followed exactly.
-  bool manoeuvres(const PathGuide& guide) const noexcept {
-    return guide.remaining() <= begin_ && guide.remaining() >= end_;
+  /// The length of path that a manoeuvre may replace, m.
+  double longest_change() const noexcept {
+    return 7 * footprint_.circumscribed_radius() + 2 * search_.options().radius;
   }
+  void forget() noexcept { begin_ = -1; }  ///< no part of a new path is a manoeuvre
+  /// Whether the path with so much left (m) is a manoeuvre, which has to be followed exactly.
+  bool manoeuvres(double left) const noexcept { return left <= begin_ && left >= end_; }
 
  private:
-  double free_turn(const maps::Pose& robot, double yaw, const Costmap& costmap,
-                   double rate = 0) const noexcept;
+  bool lead(PathGuide& guide, const maps::Pose& robot, std::size_t joint,
+            std::vector<maps::Pose>& buffer) noexcept;
+  bool search(const maps::Pose& start, bool backward_in_time, const Costmap& costmap) noexcept;
   bool search(const PathGuide& guide, const maps::Pose& from, std::size_t first, std::size_t last,
               bool backward_in_time, const Costmap& costmap) noexcept;
 
   NavigatorOptions options_;
-  Footprint footprint_;
+  Footprint footprint_, enlarged_;
   maps::ManoeuvreSearch search_;
   ReservedVector<maps::ManoeuvreGoal> goals_;
   double begin_ = -1, end_ = 0;  ///< m of path left at the begin and at the end of the last manoeuvre

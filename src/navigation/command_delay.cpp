@@ -3,21 +3,12 @@
 namespace slalom::navigation::detail {
 
 CommandDelay::CommandDelay(const BaseOptions& base) noexcept
-    : forward_(base.delay_forward), left_(base.delay_sideways), turn_(base.delay_turn) {
+    : base_(base), forward_(base.delay_forward), left_(base.delay_sideways), turn_(base.delay_turn) {
   longest_ = std::max(forward_, turn_);
   if (base.kind == BaseKind::omnidirectional) longest_ = std::max(longest_, left_);
   estimates_ = longest_ == 0;
   per_speed_ = 1 / base.max_forward;
   per_turn_ = 1 / std::max(base.max_turn, 0.01);
-}
-
-void CommandDelay::clear() noexcept {
-  count_ = 0;
-  decided_ = likely_ = {};
-  axes_.fill({});
-  errors_.fill(0);
-  motion_ = 0;
-  if (estimates_) longest_ = 0;
 }
 
 void CommandDelay::pass(const Velocity& measured, double elapsed) noexcept {

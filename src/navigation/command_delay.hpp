@@ -14,7 +14,7 @@ class CommandDelay {
 
   double longest() const noexcept { return longest_; }  ///< s until a decision takes effect
   const Velocity& decided() const noexcept { return decided_; }
-  void clear() noexcept;
+  void clear() noexcept { *this = CommandDelay(base_); }
 
   /// The last decision was in force for so long (s), and now the robot has this velocity.
   void pass(const Velocity& measured, double elapsed) noexcept;
@@ -48,6 +48,7 @@ class CommandDelay {
   static constexpr double clear_share = 0.5;    ///< largest share of the error without a delay
   static constexpr double least_error = 0.01;   ///< s, of a squared share of the limits
 
+  BaseOptions base_;
   double forward_, left_, turn_, longest_;
   bool estimates_ = false;
   double per_speed_ = 1, per_turn_ = 1;

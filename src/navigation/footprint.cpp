@@ -1,7 +1,6 @@
 #include "slalom/navigation/footprint.hpp"
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 #include "slalom/core/numbers/count.hpp"
@@ -33,12 +32,11 @@ void check_vertices(std::span<const Point> vertices) {
   if (count < 3 || count > Footprint::max_vertices)
     throw std::invalid_argument("footprint: " + std::to_string(count) + " vertices, must be 3 to 32");
   for (std::size_t i = 0; i < count; ++i) {
-    const double extent = std::hypot(vertices[i].x, vertices[i].y);
-    if (extent <= Footprint::max_extent) continue;
-    std::ostringstream text;
-    text << "footprint: vertex " << i << " at (" << vertices[i].x << ", " << vertices[i].y
-         << "): must be finite and within 100 m of the origin";
-    throw std::invalid_argument(text.str());
+    const auto [x, y] = vertices[i];
+    if (!(std::hypot(x, y) <= Footprint::max_extent))
+      throw std::invalid_argument("footprint: vertex " + std::to_string(i) + " at (" + std::to_string(x) +
+                                  ", " + std::to_string(y) +
+                                  "): must be finite and within 100 m of the origin");
   }
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = i + 2; k < count; ++k)
@@ -150,11 +148,11 @@ Footprint Footprint::without_rim(double rim) const {
                  b = std::atan2(after.y - here.y, after.x - here.x);
     // Both sides that meet here move to their left, or to their right.
     const double half = 0.5 * maps::wrap_angle(b - a), middle = a + half,
-                 way = std::copysign(rim, area) / std::max(std::cos(half), 0.2);
+                 way = rim * std::copysign(1.0, area) / std::max(std::cos(half), 0.2);
     inner[i] = {here.x - way * std::sin(middle), here.y + way * std::cos(middle)};
   }
   const bool turned_over = std::any_of(inner.begin(), inner.end(), [&](const Point& p) {
-    return !contains(p) || distance_to_outline(p) < 0.99 * rim;
+    return rim > 0 && (!contains(p) || distance_to_outline(p) < 0.99 * rim);
   });
   if (!turned_over) {
     try {
@@ -162,7 +160,7 @@ Footprint Footprint::without_rim(double rim) const {
     } catch (const std::invalid_argument&) {  // nothing is left around the origin
     }
   }
-  const double share = std::max(1 - rim / half_width_, 0.2);
+  const double share = std::clamp(1 - rim / half_width_, 0.2, 1.0);
   for (std::size_t i = 0; i < n; ++i) inner[i] = {share * vertices_[i].x, share * vertices_[i].y};
   return Footprint(inner);
 }

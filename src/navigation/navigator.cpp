@@ -180,8 +180,7 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
                                                   double elapsed) const noexcept {
   NavigationResult result;
   result.status = status;
-  if (!plausible(velocity)) return result;
-  result.command = braked(velocity, options_.base, elapsed);
+  if (plausible(velocity)) result.command = braked(velocity, options_.base, elapsed);
   return result;
 }
 

@@ -9,10 +9,6 @@ constexpr double margin = 0.4;      // m of it beyond the reach of plans
 constexpr double least_way = 1e-3;  // m between poses, below which there is no direction
 constexpr double aligned = 0.5;     // cosine of the largest angle between yaws that count and the path
 
-bool is_way(const maps::Pose& a, const maps::Pose& b) {
-  return std::hypot(b.x - a.x, b.y - a.y) > least_way;
-}
-
 double direction(const maps::Pose& a, const maps::Pose& b) {
   return std::atan2(b.y - a.y, b.x - a.x);
 }
@@ -31,7 +27,9 @@ bool yaws_count(std::span<const maps::Pose> path) {
   const auto differs = [&](const maps::Pose& pose) { return pose.yaw != path.front().yaw; };
   if (std::none_of(path.begin(), path.end() - 1, differs)) return false;
   for (std::size_t i = 0; i + 1 < path.size(); ++i)
-    if (is_way(path[i], path[i + 1]) && std::abs(agreement(path, i)) < aligned) return false;
+    if (distance(position(path[i]), position(path[i + 1])) > least_way &&
+        std::abs(agreement(path, i)) < aligned)
+      return false;
   return true;
 }
 
@@ -43,7 +41,7 @@ void set_yaws(std::span<maps::Pose> path, const BaseOptions& base) noexcept {
   bool backward = false, begun = false;
   double before = 0;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (is_way(path[i], path[i + 1])) {
+    if (distance(position(path[i]), position(path[i + 1])) > least_way) {
       const double along = direction(path[i], path[i + 1]);
       if (given) {
         backward = agreement(path, i) < 0;

@@ -25,6 +25,7 @@ class PathGuide : public maps::PathCurve {
  public:
   /// For plans that reach so far (m).
   explicit PathGuide(double reach);
+  double reach() const noexcept { return reach_; }  ///< m, of plans
 
   /// Sets the part of the leg around the robot in `maps`, with its end; it ends at the point `stop` at the
   /// latest. Of a turn `left` (rad) is left.

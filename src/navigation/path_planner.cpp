@@ -148,8 +148,7 @@ std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footp
   while (kept > 1 && from_goal(kept - 1) < straight) --kept;
   for (std::size_t i = kept; i < path.size(); ++i) {
     const double share = static_cast<double>(i - kept + 1) / static_cast<double>(path.size() - kept + 1);
-    path[i] = {path[kept - 1].x + share * (goal.x - path[kept - 1].x),
-               path[kept - 1].y + share * (goal.y - path[kept - 1].y), 0};
+    path[i] = {std::lerp(path[kept - 1].x, goal.x, share), std::lerp(path[kept - 1].y, goal.y, share), 0};
   }
   path.push_back(goal);
   for (std::size_t i = 0; i + 1 < path.size(); ++i)

@@ -11,23 +11,14 @@ constexpr double search_period = 0.1;   // s between searches while there is no 
 constexpr int cells_of_update = 60000;  // cells that an update searches; the next goes on
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
-constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place
 constexpr double around_joint = 0.2;    // m behind the end of a detour, where the path may have a corner
 constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
 constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
 
-maps::LegOptions leg_options(const NavigatorOptions& options) {
-  return {.near = 0.75 * options.goal_distance,
-          .beside = options.goal_distance,
-          .standing = 0.02,
-          .standing_turn = 0.05,
-          .stops = false};
-}
-
 /// A robot without progress tries another way, five times. Then it stands for a while.
-maps::RecoveryLengths recovery_lengths(const NavigatorOptions& options) {
-  return {.progress = 0.1,
-          .relief = 0.5,
+maps::RecoveryLengths recovery_lengths(const NavigatorOptions& options, const Footprint& footprint) {
+  return {.progress = options.goal_distance,
+          .relief = footprint.circumscribed_radius(),
           .jump = std::numeric_limits<double>::infinity(),
           .standing = 0.02,
           .stand_still = 0.5 * options.stuck_after,
@@ -57,14 +48,29 @@ Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps
       guide_(reach),
       planner_(geometry, footprint.half_width()),
       approach_(options, footprint),
-      legs_(leg_options(options)),
-      recovery_(recovery_lengths(options)) {}
+      legs_({.near = 0.75 * options.goal_distance,
+             .beside = options.goal_distance,
+             .standing = 0.02,
+             .standing_turn = 0.05,
+             .stops = false}),
+      recovery_(recovery_lengths(options, footprint)) {
+  const BaseOptions& base = options.base;  // the way to brake, too
+  options_.look_ahead += base.max_forward * base.max_forward / (2 * axis_limits(base)[0].deceleration);
+}
 
 void Way::advance(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap,
                   double elapsed) noexcept {
   const auto turn = [&] {
-    return guide_.leg().turns ? approach_.turn_to(robot, guide_.leg().yaw, costmap, velocity.turn) : 0;
+    if (!guide_.leg().turns) return 0.0;
+    const double free = approach_.free_turn(robot, guide_.leg().yaw, costmap, velocity.turn);
+    return free != 0 ? free : maps::wrap_angle(guide_.leg().yaw - robot.yaw);
   };
+  if (!waiting_.empty() && !(waits_ && approach_.manoeuvres(remaining()))) {
+    set_yaws(waiting_, options_.base);
+    follow(waiting_);
+    waiting_.clear();
+    detour_left_ = infinity;
+  }
   if (std::exchange(is_new_, false)) {
     approach_.place(guide_, robot, costmap, poses_);
     legs_.begin(robot, turn());
@@ -77,21 +83,25 @@ void Way::advance(const maps::Pose& robot, const Velocity& velocity, const Costm
 }
 
 /// Where there is no room for the next turn on the spot, the robot drives past the corner without it, and
-/// into the goal's heading by a manoeuvre.
+/// into the goal's heading by a manoeuvre, as an Ackermann base always does.
 void Way::make_room_for_turn(const Costmap& costmap) noexcept {
+  if (options_.base.kind == BaseKind::ackermann) {
+    if (checked_ == no_stop && remaining() < approach_.longest_change() + guide_.reach() &&
+        !approach_.manoeuvres(remaining())) {
+      checked_ = guide_.nearest();
+      const double error = maps::wrap_angle(guide_.goal().yaw - guide_.legs().back().yaw);
+      if (std::abs(error) > 0.5 * options_.goal_angle) approach_.face_goal(guide_, costmap, poses_);
+    }
+    return;
+  }
   const auto next = guide_.legs().subspan(&guide_.leg() - guide_.legs().data()).subspan(1);
   if (next.empty() || !next[0].turns || next[0].first == checked_ ||
-      guide_.step() * (next[0].first - guide_.nearest()) > Approach::longest_change)
+      guide_.step() * (next[0].first - guide_.nearest()) > approach_.longest_change())
     return;
   checked_ = next[0].first;
   const maps::Pose& corner = guide_.points()[checked_];
-  if (approach_.has_room_to_turn({corner.x, corner.y, guide_.leg().yaw}, next[0].yaw, costmap)) return;
+  if (approach_.free_turn({corner.x, corner.y, guide_.leg().yaw}, next[0].yaw, costmap) != 0) return;
   if (!guide_.join_legs()) approach_.face_goal(guide_, costmap, poses_);
-}
-
-bool Way::has_ended(const maps::Pose& robot) noexcept {
-  is_done_ = ends_at(robot);
-  return is_done_;
 }
 
 void Way::set_path(std::span<const maps::Pose> path) {
@@ -108,6 +118,8 @@ void Way::set_path(std::span<const maps::Pose> path) {
   given.reserve(most);
   given.set(path, false);
   if (is_followed(given)) return;
+  waits_ = !guide_.empty() && !is_stuck() && !is_done_ && approach_.manoeuvres(remaining()) &&
+           is_goal(given.goal());
   given_ = std::move(given);
   const bool goes_on =
       !guide_.empty() && distance(position(guide_.goal()), position(path.back())) <= min_rejoin;
@@ -121,21 +133,24 @@ void Way::set_path(std::span<const maps::Pose> path) {
   guide_.reserve(most);
   poses_.reserve(most);
   chosen_.reserve(most);
+  waiting_.reserve(most);
+  waiting_.assign(path.begin(), path.end());
   is_done_ = false;
-  poses_.assign(path.begin(), path.end());
-  set_yaws(poses_, options_.base);
-  follow(poses_);
-  detour_left_ = infinity;
+}
+
+/// Whether a pose is the end of the path that was given.
+bool Way::is_goal(const maps::Pose& pose) const noexcept {
+  return distance(position(pose), position(given_.goal())) <= 0.1 * options_.goal_distance &&
+         std::abs(maps::wrap_angle(pose.yaw - given_.goal().yaw)) <= 0.2 * options_.goal_angle;
 }
 
 /// Whether a path changes nothing: it ends like the one that was given, or the robot is at its end, where no
 /// way is left to decide about.
 bool Way::is_followed(const maps::PathCurve& path) const noexcept {
-  if (guide_.empty() || is_stuck() || (is_done_ && stands())) return false;
-  const double near = 2 * options_.goal_distance;
-  if (distance(position(path.goal()), position(given_.goal())) > 0.1 * options_.goal_distance ||
-      std::abs(maps::wrap_angle(path.goal().yaw - given_.goal().yaw)) > 0.2 * options_.goal_angle)
+  if (guide_.empty() || is_stuck() || (is_done_ && speed_ < recovery_.lengths().standing) ||
+      !is_goal(path.goal()))
     return false;
+  const double near = 2 * options_.goal_distance;
   return (guide_.remaining() <= near && distance(position_, position(guide_.goal())) <= near) ||
          ends_alike(path, given_, std::max(0.5 * options_.goal_distance, PathGuide::spacing));
 }
@@ -143,6 +158,7 @@ bool Way::is_followed(const maps::PathCurve& path) const noexcept {
 void Way::clear() noexcept {
   guide_.clear();
   given_.clear();
+  waiting_.clear();
   chosen_.clear();
   closed_.forget_dead_ends();
   planner_.cancel();
@@ -155,7 +171,8 @@ void Way::clear() noexcept {
 /// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth` m.
 void Way::follow(std::span<const maps::Pose> path, double smooth) noexcept {
   guide_.set(path, turns_on_the_spot(options_.base), smooth);
-  is_new_ = is_other_ = true;
+  approach_.forget();
+  is_new_ = true;
   checked_ = stop_ = no_stop;
 }
 
@@ -167,30 +184,24 @@ bool Way::ends_at(const maps::Pose& pose) const noexcept {
           std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle);
 }
 
-/// The first closed point of the path within `look_ahead`; the number of points if there is none.
-std::size_t Way::first_closed(const Costmap& costmap) const noexcept {
+/// The first closed point of a part of the path (m); the number of points if there is none.
+std::size_t Way::first_closed(const Costmap& costmap, std::size_t first, double length) const noexcept {
   const std::size_t count = guide_.points().size();
-  const double braking = options_.base.max_forward * options_.base.max_forward /
-                         (2 * axis_limits(options_.base)[0].deceleration);
-  const std::size_t last =
-      std::min(count - 1, guide_.nearest() + guide_.points_for(options_.look_ahead + braking));
-  for (std::size_t i = guide_.nearest(); i <= last; ++i)
+  const std::size_t end = std::min(count, first + guide_.points_for(length) + 1);
+  for (std::size_t i = first; i < end; ++i)
     if (is_closed(costmap, i)) return i;
   return count;
 }
 
-/// Whether a point is closed: the body has no room there, or it is in a closed place.
+/// Whether a point is closed: the body has no room there, in a manoeuvre at just this yaw, or it is in a
+/// closed place.
 bool Way::is_closed(const Costmap& costmap, std::size_t point) const noexcept {
-  const maps::Point place = position(guide_.points()[point]);
-  return (planner_.knows(costmap, place) && !planner_.has_room(costmap, place)) || closed_.contain(place);
-}
-
-/// Whether a detour may end at a point: the path is open from there on for a while, or to its end.
-bool Way::can_rejoin(const Costmap& costmap, std::size_t point) const noexcept {
-  const std::size_t last = std::min(guide_.points().size() - 1, point + guide_.points_for(min_rejoin));
-  for (std::size_t i = point; i <= last; ++i)
-    if (is_closed(costmap, i)) return false;
-  return true;
+  const maps::Pose& pose = guide_.points()[point];
+  const maps::Point place = position(pose);
+  if (closed_.contain(place)) return true;
+  const double left = guide_.step() * static_cast<double>(guide_.points().size() - 1 - point);
+  return planner_.knows(costmap, place) && (approach_.manoeuvres(left) ? costmap.collides(footprint_, pose)
+                                                                       : !planner_.has_room(costmap, place));
 }
 
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
@@ -209,13 +220,15 @@ bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t c
   for (std::size_t i = closed + 1; i < path.size(); ++i) {
     const double left = guide_.step() * (path.size() - 1 - i);
     const maps::Point here = position(path[i]);
-    if (left >= least || !can_rejoin(costmap, i)) continue;
+    if (left >= least || first_closed(costmap, i, min_rejoin) < path.size()) continue;
     const bool is_seen = planner_.knows(costmap, here);
     if (!is_seen && (++unseen > most_unseen || unseen % unseen_stride != 1)) continue;
     const auto way = is_seen ? PathPlanner::Way{here, planner_.cost_to(here)}
                              : planner_.way_off(costmap, here, least - left);
-    if (way.cost + left >= least) continue;
-    least = way.cost + left;
+    // The path is followed in order: what is left out, beside the place that is closed, counts twice.
+    const double left_out = std::max(guide_.step() * (i - closed) - 0.5 * options_.look_ahead, 0.0);
+    if (way.cost + left + 2 * left_out >= least) continue;
+    least = way.cost + left + 2 * left_out;
     best = i;
     end = way.end;
   }
@@ -248,7 +261,7 @@ void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Ot
   if (!place) return planner_.cancel();
   since_meeting_ = 0;
   closed_.begin_meeting(*place);
-  const std::size_t closed = first_closed(costmap);
+  const std::size_t closed = first_closed(costmap, guide_.nearest(), options_.look_ahead);
   if (closed < guide_.points().size()) find_way(pose, costmap, closed, guide_.remaining() + longest_way_past);
   closed_.end_meeting();
 }
@@ -258,23 +271,20 @@ bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& oth
   watch_progress(pose, costmap, others, elapsed);
   stop_ = no_stop;
   if (!options_.find_detours) return true;
-  const std::size_t closed = first_closed(costmap);
+  const std::size_t closed = first_closed(costmap, guide_.nearest(), options_.look_ahead);
   if (closed == guide_.points().size()) {
     without_way_ = 0;
     avoid_meeting(pose, costmap, others, elapsed);
     return true;
   }
   since_search_ += elapsed;
+  bool found = false;
   if (planner_.is_searching() || without_way_ == 0 || since_search_ >= search_period) {
     if (!planner_.is_searching()) since_search_ = 0;
-    const bool found = find_way(pose, costmap, closed, infinity);
+    found = find_way(pose, costmap, closed, infinity);
     if (!planner_.is_searching()) since_search_ = -since_search_;  // rests for as long as the search took
-    if (found) {
-      without_way_ = 0;
-      return true;
-    }
   }
-  if (waits_at_goal(costmap, closed)) {
+  if (found || waits_at_goal(costmap, closed)) {
     without_way_ = 0;
     return true;
   }
@@ -295,7 +305,8 @@ bool Way::waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept {
 void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
                          double elapsed) noexcept {
   const double left = guide_.remaining() + progress_turn * std::abs(legs_.turn_left());
-  if (std::exchange(is_other_, false)) other_ += left - left_;  // the progress goes on
+  const std::size_t count = guide_.points().size();
+  if (std::exchange(count_, count) != count) other_ += left - left_;  // another path: the progress goes on
   left_ = left;
   recovery_.update({.arc = other_ - left,
                     .speed = speed_,
@@ -307,20 +318,21 @@ void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const 
 /// Where the robot makes no progress, it searches a manoeuvre onto the path ahead; the next time, it takes
 /// the place ahead for a dead end. Where there is no way, those that were dead ends may be open.
 void Way::try_another_way(const maps::Pose& robot, const Costmap& costmap) noexcept {
+  const double size = footprint_.circumscribed_radius();
   if (without_way_ > 0) {
     closed_.forget_dead_ends();
     without_way_ = 0;
-  } else if (guide_.remaining() < 2 * footprint_.circumscribed_radius()) {
+  } else if (guide_.remaining() < 2 * size) {
+    is_new_ = true;
+    if (approach_.dock(guide_, robot, costmap, poses_)) return;
     poses_.assign({robot, guide_.goal()});
     set_yaws(poses_, options_.base);
     follow(poses_);
   } else if ((manoeuvres_ = !manoeuvres_) && approach_.join(guide_, robot, costmap, poses_)) {
-    is_new_ = is_other_ = true;
+    is_new_ = true;
   } else {
-    const std::size_t ahead =
-        guide_.nearest() + guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);
-    if (ahead < guide_.points().size())
-      closed_.add_dead_end({position(guide_.points()[ahead]), PathPlanner::dead_end_radius});
+    const std::size_t ahead = guide_.nearest() + guide_.points_for(1.5 * size);
+    if (ahead < guide_.points().size()) closed_.add_dead_end({position(guide_.points()[ahead]), size});
   }
 }
 

@@ -20,7 +20,7 @@ class Way {
 
   void set_path(std::span<const maps::Pose> path);  ///< as Navigator::set_path
   void clear() noexcept;
-  bool empty() const noexcept { return guide_.empty(); }
+  bool empty() const noexcept { return guide_.empty() && waiting_.empty(); }
 
   /// Moves on along the path.
   void advance(const maps::Pose& robot, const Velocity& velocity, const Costmap& costmap,
@@ -29,7 +29,7 @@ class Way {
   bool keep(const maps::Pose& robot, const Costmap& costmap, const Others& others, double elapsed) noexcept;
 
   /// Whether the robot is at the end of the path, within the tolerances. Then the same path may be set again.
-  bool has_ended(const maps::Pose& robot) noexcept;
+  bool has_ended(const maps::Pose& robot) noexcept { return is_done_ = ends_at(robot); }
   bool ends_at(const maps::Pose& robot) const noexcept;  ///< whether a robot there would be
   /// Whether the robot has made no progress for so long that it stands for a while before it tries again.
   bool is_stuck() const noexcept { return recovery_.state() == maps::DriveState::stuck; }
@@ -44,16 +44,15 @@ class Way {
   /// Sets the part of the path around the robot in `maps`.
   void write(const maps::Pose& robot, NavigationMaps& maps) noexcept {
     guide_.write(robot, legs_.turn_left(), stop_, maps);
-    maps.manoeuvres = approach_.manoeuvres(guide_);
+    maps.manoeuvres = approach_.manoeuvres(remaining());
   }
 
  private:
-  std::size_t first_closed(const Costmap& costmap) const noexcept;
+  std::size_t first_closed(const Costmap& costmap, std::size_t first, double length) const noexcept;
   bool is_closed(const Costmap& costmap, std::size_t point) const noexcept;
-  bool can_rejoin(const Costmap& costmap, std::size_t point) const noexcept;
   void make_room_for_turn(const Costmap& costmap) noexcept;
   bool is_followed(const maps::PathCurve& path) const noexcept;
-  bool stands() const noexcept { return speed_ < recovery_.lengths().standing; }
+  bool is_goal(const maps::Pose& pose) const noexcept;
   void follow(std::span<const maps::Pose> path, double smooth = 0) noexcept;
   bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
   void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
@@ -72,16 +71,18 @@ class Way {
   Approach approach_;
   maps::LegFollower legs_;
   maps::Recovery recovery_;
-  maps::PathCurve given_;              ///< the path that was set
-  ReservedVector<maps::Pose> poses_;   ///< a path that is being made
-  ReservedVector<maps::Pose> chosen_;  ///< the last detour, which later searches prefer
+  maps::PathCurve given_;               ///< the path that was set
+  ReservedVector<maps::Pose> poses_;    ///< a path that is being made
+  ReservedVector<maps::Pose> waiting_;  ///< a new path, which the next update takes up, or
+  bool waits_ = false;                  ///< only at the end of the present manoeuvre, to the same goal
+  ReservedVector<maps::Pose> chosen_;   ///< the last detour, which later searches prefer
   maps::ClosedDiscs closed_;
   double detour_left_ = infinity;  ///< m of path left where the detour ends
   double without_way_ = 0;         ///< s since the path is blocked and no way round was found
   double since_search_ = 0;        ///< s
   double since_meeting_ = 0;       ///< s
   bool is_new_ = true;             ///< the next update places the robot on the path
-  bool is_other_ = true;           ///< the path is another one than at the last look for progress
+  std::size_t count_ = 0;          ///< points of the path at the last look for progress
   double left_ = 0, other_ = 0;    ///< m left of the path then; m by which it was longer than the first
   bool is_done_ = false;           ///< whether the end was reached
   double speed_ = 0;               ///< m/s, of the robot; in a turn, too

@@ -243,6 +243,7 @@ TEST(Footprint, WithoutARimEverySideIsAsMuchNearer) {
   EXPECT_NEAR(inner.half_width(), 0.19, 1e-12);
   EXPECT_NEAR(inner.circumscribed_radius(), std::hypot(0.84, 0.19), 1e-12);
   EXPECT_NEAR(long_nose.without_rim(1).half_width(), 0.05, 1e-12);
+  EXPECT_NEAR(long_nose.without_rim(-0.06).half_width(), 0.31, 1e-12);
   RandomStream random({2, 0});
   for (int shape = 0; shape < 100; ++shape) {
     const Footprint body = random_footprint(random);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "navigation/drive.hpp"
+#include "slalom/navigation/path_planner.hpp"
 
 /// Places where a robot would stand for ever if it only followed its plans.
 namespace slalom::navigation::getting_on_test {
@@ -26,6 +27,22 @@ TEST(GettingOn, TurnsWhereThereIsRoomAndReversesToAGoalBesideAWall) {
   EXPECT_EQ(drive.drive(40), NavigationStatus::goal_reached);
   EXPECT_GT(drive.reversals, 0);
   EXPECT_FALSE(drive.collided);
+}
+
+TEST(GettingOn, ASmallSlowRobotAndALargeOnePassADoor) {
+  for (const double scale : {0.4, 6.0}) {
+    maps::OccupancyGrid floor = free_grid(0, 0, scale < 1 ? 6.4 : 24, scale < 1 ? 3.2 : 12);
+    floor.resolution = scale < 1 ? 0.025 : 0.1;
+    Drive drive({.base = {.max_forward = scale < 1 ? 0.24 : 1, .max_turn = 1}}, floor, 0.25 * scale,
+                0.34 * scale);
+    drive.block(4 * scale, 0, 4.2 * scale, 2.2 * scale);
+    drive.block(4 * scale, 2.7 * scale, 4.2 * scale, 4 * scale);
+    drive.restart_fast();
+    const maps::Pose from{1.5 * scale, 1.3 * scale, 0}, goal{6.5 * scale, 2.9 * scale, 0};
+    drive.start(from, plan_path(drive.costmap, drive.body, from, goal));
+    EXPECT_EQ(drive.drive(60), NavigationStatus::goal_reached) << scale;
+    EXPECT_FALSE(drive.collided) << scale;
+  }
 }
 
 TEST(GettingOn, LeavesACellUnderItsBody) {

@@ -39,30 +39,9 @@ struct CheckedDrive : Drive {
     EXPECT_TRUE(v.left == 0 || base.kind == BaseKind::omnidirectional);
     return result;
   }
-  /// Drives until one of these or for so long (s); the last status.
-  NavigationStatus drive(double duration) {
-    NavigationStatus status = NavigationStatus::following;
-    for (time = 0;
-         time < duration && status != NavigationStatus::goal_reached && status != NavigationStatus::blocked;
-         time += period)
-      status = step().status;
-    return status;
-  }
 };
 
 const maps::Pose straight[] = {{1, 0, 0}, {6, 0, 0}};
-
-TEST(Navigator, AnAckermannBaseKeepsItsTurningRadius) {
-  NavigatorOptions options{.base = {.kind = BaseKind::ackermann, .min_turning_radius = 0.8}};
-  CheckedDrive drive(options);
-  const maps::Pose path[] = {{1, 0, 0}, {3, 0, 0}, {3.5, 1.2, 0}, {6, 1.2, 0}};
-  drive.navigator->set_path(path);
-  for (int i = 0; i < 200; ++i) {
-    const Velocity v = drive.step().command;
-    EXPECT_LE(std::abs(v.turn), std::abs(v.forward) / 0.8 + 1e-6);
-  }
-  EXPECT_GT(drive.pose.x, 3);
-}
 
 TEST(Navigator, PassesAPalletOnThePathWithoutChangingItsSide) {
   CheckedDrive drive;
@@ -113,14 +92,11 @@ NavigationStatus drive_with_a_moving_costmap(CheckedDrive& drive, double side, d
 }
 
 // At first the costmap shows where the pallet begins and not where it ends.
-TEST(Navigator, GoesOnWhileTheEndOfAnObstacleIsOffTheCostmap) {
-  CheckedDrive drive;
-  EXPECT_EQ(drive_with_a_moving_costmap(drive, 6, 4.5, -0.5, 5.5, 0.5), NavigationStatus::goal_reached);
-}
-
 TEST(Navigator, ADetourMayEndAtTheEdgeOfTheCostmap) {
-  CheckedDrive drive;
-  EXPECT_EQ(drive_with_a_moving_costmap(drive, 3, 4.5, -0.8, 5.5, 0.9), NavigationStatus::goal_reached);
+  for (const double side : {6.0, 3.0}) {
+    CheckedDrive drive;
+    EXPECT_EQ(drive_with_a_moving_costmap(drive, side, 4.5, -0.8, 5.5, 0.9), NavigationStatus::goal_reached);
+  }
 }
 
 TEST(Navigator, IsBlockedByAWallThatIsLongerThanTheCostmapShows) {
@@ -141,19 +117,6 @@ TEST(Navigator, ASearchOverALargeCostmapTakesSeveralUpdates) {
   EXPECT_EQ(drive.step().status, NavigationStatus::detour);
   EXPECT_GT(updates, 10);
   EXPECT_LT(updates, 40);
-  EXPECT_FALSE(drive.collided);
-}
-
-TEST(Navigator, WithoutDetoursItReportsNone) {
-  NavigatorOptions options{.find_detours = false};
-  CheckedDrive drive(options);
-  drive.block(4, -2, 4.3, 2);
-  drive.navigator->set_path(straight);
-  for (int i = 0; i < 200; ++i) {
-    const NavigationResult result = drive.step();
-    EXPECT_TRUE(result.status == NavigationStatus::following || result.status == NavigationStatus::braking);
-    EXPECT_NEAR(result.path.back().x, 6, 1e-9);
-  }
   EXPECT_FALSE(drive.collided);
 }
 
@@ -181,6 +144,8 @@ TEST(Navigator, StandsWhereItCannotDrive) {
   };
   EXPECT_EQ(update({nan, 0, 0}, drive.velocity, drive.costmap, period).status, NavigationStatus::bad_input);
   EXPECT_EQ(update(drive.pose, {nan, 0, 0}, drive.costmap, period).status, NavigationStatus::bad_input);
+  for (const double speed : {101.0, -4132.0, 1e300})  // no robot has
+    EXPECT_EQ(update(drive.pose, {speed, 0, 0}, drive.costmap, period).status, NavigationStatus::bad_input);
   EXPECT_EQ(update(drive.pose, drive.velocity, drive.costmap, -1).status, NavigationStatus::bad_input);
   EXPECT_EQ(update(drive.pose, drive.velocity, drive.costmap, nan).status, NavigationStatus::bad_input);
   EXPECT_EQ(update(drive.pose, drive.velocity, other, period).status, NavigationStatus::bad_input);
@@ -192,7 +157,8 @@ TEST(Navigator, StandsWhereItCannotDrive) {
 }
 
 TEST(Navigator, RejectsInvalidOptionsAndPaths) {
-  NavigatorOptions options{.base = {.max_forward = -1}};
+  NavigatorOptions options;
+  options.base.max_forward = -1;
   const Costmap costmap(50, 50, 0.05);
   EXPECT_THROW(Navigator(body, options, costmap), std::invalid_argument);
   EXPECT_THROW(Navigator(Footprint::rectangle(20, 20, 1), {}, costmap), std::invalid_argument);
@@ -205,34 +171,24 @@ TEST(Navigator, RejectsInvalidOptionsAndPaths) {
             "path: 1000400 m in steps of 0.05 m must be at most 10500 m, 210000 steps");
 }
 
-TEST(Navigator, UpdatesAllocateNothing) {
-  CheckedDrive drive;
-  drive.block(3, -0.6, 4, 0.7);
-  drive.navigator->set_path(straight);
-  const long before = testing::allocations();
-  bool detour = false;
-  for (int i = 0; i < 40; ++i)
-    detour = drive.navigator->update({1 + 0.02 * i, 0, 0}, {0.4, 0, 0}, drive.costmap, period).status ==
-                 NavigationStatus::detour ||
-             detour;
-  EXPECT_EQ(testing::allocations(), before);
-  EXPECT_TRUE(detour);
-}
-
 TEST(Navigator, ACopyDrivesOnLikeTheOriginalAndAllocatesNothing) {
   CheckedDrive drive;
   drive.block(3, -0.6, 4, 0.7);
   drive.navigator->set_path(straight);
-  for (int i = 0; i < 10; ++i) drive.step();
   Navigator copy = *drive.navigator;
-  for (int i = 0; i < 30; ++i) {
+  NavigationStatus status = NavigationStatus::following;
+  for (int i = 0; i < 40; ++i) {
+    if (i == 10) copy = *drive.navigator;
     const long before = testing::allocations();
-    const Velocity of_copy = copy.update(drive.pose, drive.velocity, drive.costmap, period).command;
+    const NavigationResult result = copy.update(drive.pose, drive.velocity, drive.costmap, period);
     EXPECT_EQ(testing::allocations(), before);
+    const Velocity of_copy = result.command;
+    status = result.status;
     const Velocity of_original = drive.step().command;
     ASSERT_EQ(of_copy.forward, of_original.forward) << i;
     ASSERT_EQ(of_copy.turn, of_original.turn) << i;
   }
+  EXPECT_EQ(status, NavigationStatus::detour);
 }
 
 TEST(Navigator, TheSameSeedGivesTheSameCommandsOnAnyNumberOfThreads) {
@@ -278,17 +234,6 @@ TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
 }
 
 const maps::Pose hall_path[] = {{-1.5, 0, 0}, {1.5, 0, 0}};
-
-TEST(NavigatorCheck, IgnoresAVelocityThatNoRobotHas) {
-  const Hall hall;
-  Navigator navigator = make_navigator({}, hall.costmap);
-  navigator.set_path(hall_path);
-  for (const double speed : {101.0, -4132.0, 1e300}) {
-    const NavigationResult result = navigator.update({-1.5, 0, 0}, {.forward = speed}, hall.costmap, period);
-    EXPECT_EQ(result.status, NavigationStatus::bad_input) << speed;
-    EXPECT_EQ(result.command.forward, 0) << speed;
-  }
-}
 
 TEST(NavigatorCheck, ALongPathWithManyCornersIsTakenInAnUpdate) {
   const Hall hall;

@@ -79,7 +79,7 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   };
   EXPECT_LT(crossed({}, {}), 2) << "the other one is nearer now";
   EXPECT_GT(crossed(chosen, {}), 4);
-  const maps::ClosedDisc dead_end[] = {{{4, 4.5}, PathPlanner::dead_end_radius}};
+  const maps::ClosedDisc dead_end[] = {{{4, 4.5}, 0.5}};
   EXPECT_LT(crossed(chosen, dead_end), 2);
 }
 

@@ -53,5 +53,36 @@ TEST(Replanning, ARobotThatTurnsAtItsGoalIsThereAsSoonWithNewPaths) {
   }
 }
 
+TEST(Replanning, ACarDrivesAManoeuvreToItsEndAndKeepsItsTurningRadius) {
+  for (const double heading : {1.57, pi}) {
+    Drive car({.base = {.kind = BaseKind::ackermann, .max_forward = 1.5, .min_turning_radius = 1}},
+              free_grid(0, 0, 14, 8));
+    car.restart_fast();
+    const maps::Pose goal{11, 4, heading};
+    car.start({2, 4, 0}, {{2, 4, 0}, goal});
+    NavigationStatus status{};
+    for (int i = 0; i < 500 && status != NavigationStatus::goal_reached; ++i) {
+      if (i % 10 == 0) car.navigator->set_path(plan_path(car.costmap, car.body, car.pose, goal));
+      status = car.step();
+      EXPECT_LE(std::abs(car.velocity.turn), std::abs(car.velocity.forward) + 1e-6) << "radius 1 m";
+    }
+    EXPECT_EQ(status, NavigationStatus::goal_reached) << heading;
+    EXPECT_LE(car.reversals, 4) << heading;
+  }
+}
+
+TEST(Replanning, AfterADetourThePathIsFollowedInOrder) {
+  Drive drive(BaseKind::differential);
+  drive.block(4, 1.6, 4.4, 2.2);
+  drive.restart_fast();
+  drive.start({1, 2, 0}, {{1, 2, 0}, {8, 2, 0}, {8, 2.6, pi}, {1, 2.6, pi}});
+  double farthest = 0;
+  for (int i = 0; i < 900 && drive.step() != NavigationStatus::goal_reached; ++i)
+    farthest = std::max(farthest, drive.pose.x);
+  EXPECT_LT(drive.goal_distance(), 0.11);
+  EXPECT_GT(farthest, 7.9);
+  EXPECT_FALSE(drive.collided);
+}
+
 }  // namespace
 }  // namespace slalom::navigation::replanning_test

@@ -106,43 +106,36 @@ inline std::array<AxisLimits, 3> axis_limits(const BaseOptions& base) noexcept {
             base.dead_band_turn}}};
 }
 
-/// The inputs of a differential base: speed (m/s) and yaw rate (rad/s).
-struct DifferentialBase {
-  static constexpr int inputs = 2;  ///< inputs of a step
+/// The inputs of a base that turns on the spot: speed forward, with three inputs also to the left (m/s), and
+/// yaw rate (rad/s).
+template <int count>
+struct TurningBase {
+  static constexpr int inputs = count;  ///< inputs of a step
   /// Does not use the limits: the problem takes them as bounds of the inputs.
-  explicit DifferentialBase(const BaseOptions&) {}
+  explicit TurningBase(const BaseOptions&) {}
   /// The velocity of an input.
   template <class T>
-  SLALOM_INLINE_CALLS VelocityOf<T> velocity(const Input<T, 2>& u) const {
-    return {u[0], T(0), u[1]};
+  SLALOM_INLINE_CALLS VelocityOf<T> velocity(const Input<T, count>& u) const {
+    return {u[0], count == 3 ? u[1] : T(0), u[count - 1]};
   }
   /// The input of a velocity.
-  static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
+  static Input<double, count> input(const Velocity& v) {
+    if constexpr (count == 3)
+      return {{v.forward, v.left, v.turn}};
+    else
+      return {{v.forward, v.turn}};
+  }
   /// Selects the values of the inputs from those of the axes forward, sideways and turning.
   template <class Value>
-  static std::array<Value, 2> per_input(const Value& forward, const Value&, const Value& turn) {
-    return {forward, turn};
+  static std::array<Value, count> per_input(const Value& forward, const Value& left, const Value& turn) {
+    if constexpr (count == 3)
+      return {forward, left, turn};
+    else
+      return {forward, turn};
   }
 };
-
-/// The inputs of an omnidirectional base: speeds forward and to the left (m/s) and yaw rate (rad/s).
-struct OmnidirectionalBase {
-  static constexpr int inputs = 3;  ///< inputs of a step
-  /// Does not use the limits: the problem takes them as bounds of the inputs.
-  explicit OmnidirectionalBase(const BaseOptions&) {}
-  /// The velocity of an input.
-  template <class T>
-  SLALOM_INLINE_CALLS VelocityOf<T> velocity(const Input<T, 3>& u) const {
-    return {u[0], u[1], u[2]};
-  }
-  /// The input of a velocity.
-  static Input<double, 3> input(const Velocity& v) { return {{v.forward, v.left, v.turn}}; }
-  /// Selects the values of the inputs from those of the axes forward, sideways and turning.
-  template <class Value>
-  static std::array<Value, 3> per_input(const Value& forward, const Value& left, const Value& turn) {
-    return {forward, left, turn};
-  }
-};
+using DifferentialBase = TurningBase<2>;     ///< forward, back, and turning
+using OmnidirectionalBase = TurningBase<3>;  ///< sideways, too
 
 /// The inputs of an Ackermann base: speed (m/s) and yaw rate (rad/s). The smallest turning radius limits the
 /// yaw rate at each speed.

@@ -30,8 +30,9 @@ class Footprint {
   /// A rectangle: `front` and `rear` (m) are the distances from the origin to its front and rear side.
   static Footprint rectangle(double front, double rear, double width);
 
-  /// The outline moved inward by `rim` (m). Where that leaves nothing around the origin: the same shape,
-  /// smaller around the origin, whose half width is less by `rim`, but at least a fifth.
+  /// The outline moved inward by `rim` (m), or outward if it is below 0. Where that leaves nothing around the
+  /// origin: the same shape, smaller around the origin, whose half width is less by `rim`, but at least a
+  /// fifth.
   Footprint without_rim(double rim) const;
   /// The body, those without a rim of 1, 2, ... 7 steps (m), and a small core.
   std::vector<Footprint> without_rims(double step) const;

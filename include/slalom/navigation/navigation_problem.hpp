@@ -11,11 +11,9 @@
 namespace slalom::navigation {
 
 /// Checks a body against the distances of a costmap, for rollouts. The parts of the footprint decide first:
-/// no obstacle is near a part, or one is inside. Where neither is certain for a lane, it looks up the points
-/// of the outline of that part, which are at most the edge of a cell apart; the body collides where one of
-/// them is in an obstacle cell. So every overlap deeper than half a cell is found, with one exception: a
-/// single cell that lies within the body and does not touch its outline. As long as a step is shorter than a
-/// cell, a body meets such a cell with its outline first.
+/// no obstacle is near a part, or one is inside. Where neither is certain, the points of the outline of that
+/// part do, at most a cell apart. So every overlap deeper than half a cell is found but a single cell that
+/// does not touch the outline, which a body in steps shorter than a cell meets with its outline first.
 class BodyCheck {
  public:
   static constexpr std::size_t max_points = 512;  ///< most points of an outline
@@ -140,7 +138,7 @@ class NavigationProblem {
         input_min(Base::per_input(-limits.max_reverse, -limits.max_sideways, -limits.max_turn)),
         input_max(Base::per_input(limits.max_forward, limits.max_sideways, limits.max_turn)),
         base_(limits),
-        costs_(costs, step),
+        costs_(costs, step, std::min(per_usual_speed * limits.max_forward, 1.0)),
         step_(step),
         reach_(farthest_projection * step *
                std::max({limits.max_forward, limits.max_reverse, limits.max_sideways})) {
@@ -196,6 +194,7 @@ class NavigationProblem {
     const bool exact = (steers<Base> && maps.ends_leg) || maps.manoeuvres;
     path_weight_ = exact ? exact_path * static_cast<double>(costs_.path) : static_cast<double>(costs_.path);
     heading_weight_ = maps.turns ? 0.0 : (exact ? exact_heading : 1.0) * static_cast<double>(costs_.heading);
+    clearance_weight_ = maps.manoeuvres ? Coefficient(0) : costs_.clearance;  // it was found to be free
     turning_weight_ = (exact ? 0.0 : 1.0) * static_cast<double>(costs_.turning);
     const double pull = maps.turns ? on_the_spot : 1.0;
     progress_weight_ = pull * static_cast<double>(costs_.progress);
@@ -265,7 +264,7 @@ class NavigationProblem {
     return {
         {T(progress_weight_) * left(seen), T(path_weight_) * min(square(seen.aside), T(costs_.max_squared)),
          T(heading_weight_) * (T(1) - facing) * heading_error,
-         T(costs_.clearance) * (T(1) - near) * hurry *
+         T(clearance_weight_) * (T(1) - near) * hurry *
              exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
          moving, (T(turn_weight_) + T(costs_.facing) * facing) * turn_left,
          select(seen.obstacle.collided, T(costs_.collision), T(0)), met.value},
@@ -291,13 +290,14 @@ class NavigationProblem {
 
   /// Weights times the duration of a step, as rollouts use them.
   struct Weights {
-    Weights(const CostOptions& o, double step)
+    /// The clearance costs a slow robot as much on its way as a faster one.
+    Weights(const CostOptions& o, double step, double share_of_usual_speed)
         : progress(o.progress * step),
           final_progress(o.final_progress),
           path(o.path * step),
           max_squared(o.path_reach * o.path_reach),
           heading(o.heading * step),
-          clearance(o.clearance * step),
+          clearance(o.clearance * step * share_of_usual_speed),
           falloff(-o.clearance_falloff),
           reverse(o.reverse * step),
           sideways(o.sideways * step),
@@ -334,7 +334,8 @@ class NavigationProblem {
   GridView<4> path_;
   maps::MovingObstaclesView others_;
   Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, progress_weight_, final_weight_,
-      path_weight_, heading_weight_, turning_weight_, drift_weight_, turn_weight_, stop_weight_, near_goal_;
+      path_weight_, heading_weight_, clearance_weight_, turning_weight_, drift_weight_, turn_weight_,
+      stop_weight_, near_goal_;
   Coefficient moves_ = 1;  ///< 0 in the turn at the goal, in which speeds are braked to 0
 };
 

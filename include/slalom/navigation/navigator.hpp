@@ -73,8 +73,7 @@ enum class NavigationStatus {
   blocked,           ///< the path is blocked and there is no way round: the robot stands
   goal_occupied,     ///< something is on the goal: the robot has driven up to it, and stands
   stuck,             ///< no progress for five times `stuck_after`: the robot stands for 10 s, and tries again
-  commands_ignored,  ///< the velocity stays near 0 although the commands do not: the robot or its odometry
-                     ///< stands
+  commands_ignored,  ///< the velocity stays near 0 although the commands do not
   goal_reached,      ///< the robot stands at the goal
   no_path,           ///< no path was set, or the robot is off the costmap: the robot stands
   bad_input,  ///< a pose or velocity is not finite or absurdly large, a time is negative or not finite, or
@@ -149,8 +148,9 @@ class Navigator {
   /// reverses after cusps. The robot stops at cusps, and at corners of more than 60 degrees, where it turns
   /// on the spot if it can. The goal is the end of the path, even if the path passes there before. A path
   /// that ends like the one that is followed, to half of goal_distance, changes nothing, and neither does one
-  /// to the same goal once the robot is there. Throws std::invalid_argument unless there is at least one
-  /// pose, all are within maps::PoseLimits, and the path is at most 10 km long.
+  /// to the same goal once the robot is there. One to the same goal in a manoeuvre waits until that ends.
+  /// Throws std::invalid_argument unless there is at least one pose, all are within maps::PoseLimits, and the
+  /// path is at most 10 km long.
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time

@@ -12,7 +12,6 @@ class PathPlanner {
  public:
   static constexpr std::size_t max_points = 4000;  ///< most points of a path, unless more are asked for
   static constexpr double spacing = 0.05;          ///< m, between the points of a path
-  static constexpr double dead_end_radius = 0.5;   ///< m, round a dead end, where no way leads
 
   /// For costmaps of this size, and a body with this half width (m).
   PathPlanner(const maps::GridGeometry& geometry, double half_width, std::size_t most_points = max_points);
