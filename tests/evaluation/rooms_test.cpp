@@ -163,7 +163,8 @@ TEST(MoverWatch, PredictsSomebodyWhoWalks) {
 }
 
 TEST(MoverWatch, PalletsAndWallsDoNotMove) {
-  Scanner scanner{.room = {.walls = {{{4, 4, 0}, 0.2, 3}}}};
+  Scanner scanner;
+  scanner.room.walls = {{{4, 4, 0}, 0.2, 3}};
   for (int i = 0; i < 200; ++i) {
     const double turn = 0.4 * std::sin(0.05 * i);
     EXPECT_TRUE(scanner.look({1 + 0.025 * i, 2.5 - 0.5 * std::sin(0.02 * i), turn}).empty()) << i;
