@@ -68,9 +68,7 @@ OvertakingFigures summarise_overtaking(const std::vector<const LapRow*>& rows) {
 
 ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index,
                                const Experiment& experiment) {
-  ExperimentResult r;
-  r.experiment = index;
-  r.laps = static_cast<int>(rows.size());
+  ExperimentResult r{.experiment = index, .laps = static_cast<int>(rows.size())};
   if (rows.empty()) return r;
   int successes = 0;
   for (const LapRow* row : rows) {

@@ -121,10 +121,9 @@ TEST(CountFits, ComparesTheNumberOfRangesWithTheAngles) {
 }
 
 vehicle::LocaliserOutput estimate(bool usable, double health) {
-  vehicle::LocaliserOutput made;
-  made.status = usable ? vehicle::LocaliserStatus::ok : vehicle::LocaliserStatus::odometry_jump;
-  made.health = health;
-  return made;
+  return {.status = usable ? vehicle::LocaliserStatus::ok : vehicle::LocaliserStatus::odometry_jump,
+          .pose = {},
+          .health = health};
 }
 
 TEST(PoseTrust, ComesBackAfterConsecutiveGoodScans) {

@@ -11,16 +11,12 @@ using Problem = FollowerAnswer::Problem;
 constexpr double period = 0.05;  // s
 constexpr unsigned char lethal = 254, inscribed = 253, unknown = 255;
 
-/// A costmap of 0.05 m whose lower left corner lies at the origin unless it is moved.
+/// A costmap of 8 x 4 m with cells of 0.05 m whose lower left corner lies at the origin.
 struct Room {
-  Room(double length_x, double length_y)
-      : width(static_cast<int>(std::lround(length_x / 0.05))),
-        height(static_cast<int>(std::lround(length_y / 0.05))),
-        costs(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0) {}
+  static constexpr std::size_t width = 160, height = 80;
   /// The middle of a cell.
-  maps::Point middle(std::size_t cell) const {
-    const int row = static_cast<int>(cell) / width, column = static_cast<int>(cell) % width;
-    return {x + (column + 0.5) * 0.05, y + (row + 0.5) * 0.05};
+  static maps::Point middle(std::size_t cell) {
+    return {0.05 * (cell % width + 0.5), 0.05 * (cell / width + 0.5)};
   }
   void fill(double x0, double y0, double x1, double y1, unsigned char cost = lethal) {
     for (std::size_t i = 0; i < costs.size(); ++i)
@@ -32,11 +28,9 @@ struct Room {
       if (costs[i] == lethal && maps::distance(middle(i), {pose.x, pose.y}) < distance) return true;
     return false;
   }
-  CostGrid grid() const { return {width, height, 0.05, x, y, costs.data()}; }
+  CostGrid grid() const { return {width, height, 0.05, 0, 0, costs.data()}; }
 
-  int width, height;
-  double x = 0, y = 0;  // m
-  std::vector<unsigned char> costs;
+  std::vector<unsigned char> costs = std::vector<unsigned char>(width * height);
 };
 
 std::vector<maps::Pose> line(double x0, double y0, double x1, double y1) {
@@ -84,7 +78,7 @@ struct Drive {
   }
   double distance_to(double x, double y) const { return std::hypot(input.pose.x - x, input.pose.y - y); }
 
-  Room room{8, 4};
+  Room room;
   PathFollower follower;
   FollowerInput input{{1, 2, 0}, {}, 100, {}, {}};
   double fastest = 0;
@@ -233,6 +227,17 @@ TEST(PathFollower, TellsTheCostOfItsPlanByTermsAndItsSamples) {
   drive.room.fill(3, 2.3, 7, 4);
   drive.step();
   EXPECT_GT(drive.follower.cost_terms()[3].value, 0.1);
+}
+
+TEST(PathFollower, KeepsToOneSideOfItsPathByACostOfOnesOwn) {
+  StraightDrive drive;
+  drive.follower.add_cost("keep_left", [](const navigation::RolloutStates& states, std::span<double> costs) {
+    for (std::size_t i = 0; i < costs.size(); ++i) costs[i] += 5 * std::max(2.3 - states.y[i], 0.0);
+  });
+  EXPECT_EQ(drive.drive(30, {7, 2, 0}, 1).problem, Problem::none);
+  EXPECT_NEAR(drive.input.pose.y, 2.3, 0.1);
+  EXPECT_STREQ(drive.follower.cost_terms().back().name, "keep_left");
+  EXPECT_GT(drive.follower.cost_terms().back().value, 0.05);
 }
 
 TEST(PathFollower, BrakesWhenItIsCancelled) {

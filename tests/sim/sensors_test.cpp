@@ -96,8 +96,7 @@ struct Driven {
 };
 Driven drive(const WheelOdometryOptions& options, double steering) {
   const CarParameters car;
-  PlantOptions plant_options;
-  plant_options.dynamics.model = Model::kinematic;
+  PlantOptions plant_options{.dynamics = {.model = Model::kinematic}};
   Plant plant(car, plant_options, time_step);
   plant.reset({});
   WheelOdometry odometry(car, options);

@@ -119,8 +119,7 @@ TEST_P(EveryModel, ReversingIsStable) {
 }
 
 TEST(WorldProperty, GripCanBeExceeded) {
-  PlantOptions options;
-  options.dynamics.model = Model::saturating;
+  PlantOptions options{.dynamics = {.model = Model::saturating}};
   Plant plant({}, options, 0.01);
   plant.reset({.speed = 8});
   double most = 0;

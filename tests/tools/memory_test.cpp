@@ -26,8 +26,7 @@ TEST_F(Memory, OfRacesAndOfDrivesThatAreRecordedIsBounded) {
 }
 
 TEST_F(Memory, OfAMinuteOnThePageIsBounded) {
-  view::SessionOptions options;
-  options.choices.methods = {"svg_mppi", "mppi"};
+  view::SessionOptions options{.choices = {.methods = {"svg_mppi", "mppi"}}};
   const auto fox =
       evaluation::load_environment(SLALOM_COURSES "/fox", evaluation::Protocol::true_physics, {});
   const auto configuration = vehicle::load_configuration(SLALOM_CONFIGS "/default.yaml");

@@ -22,8 +22,7 @@ std::vector<maps::Point> ring(double radius, int count, int way = 1) {
 
 /// A circle of `radius` (m) at `speed` (m/s) in a free square map of 20 m.
 Course circle(double radius, double speed) {
-  Course course;
-  course.map = {200, 200, 0.1, {-10, -10, 0}, {}};
+  Course course{.map = {200, 200, 0.1, {-10, -10, 0}, {}}};
   course.map.cells.assign(40000, maps::Occupancy::free);
   for (const maps::Point& point : ring(radius, 200))
     course.waypoints.push_back({point.x, point.y, 0, speed, 0});

@@ -48,9 +48,7 @@ TEST(ObstacleCost, LooksAheadOfTheRearAxleWithDiscsOnly) {
 }
 
 TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
-  PathTrackingOptions options;
-  options.time_step = 0.001;
-  options.speed = SpeedModel::constant;
+  PathTrackingOptions options{.time_step = 0.001, .speed = SpeedModel::constant};
   const Maps maps;
   const KinematicProblem car = on(maps, options);
   const double steer = 0.3, radius = 0.3302 / std::tan(steer);
@@ -63,8 +61,7 @@ TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
 }
 
 TEST(TrackingCost, ForTheLapTimeSpeedAboveThePathsIsTimeWon) {
-  PathTrackingOptions options;
-  options.cost.speed_weight = 30;
+  PathTrackingOptions options{.cost = {.speed_weight = 30}};
   const auto lost = [&](bool lap_time, double speed, double outside) {
     TrackingCost cost(options);
     if (lap_time) cost.set_lap_time();
@@ -89,9 +86,7 @@ TEST(PublishedVehicle, YawGainIsTooHighBy42Percent) {
     return (car.step(s, car.look_up(s), Input<double, 1>{{0}}, 0).yaw - s.yaw) /
            (car.options().time_step * s.speed * s.steer);
   };
-  PathTrackingOptions lengths;
-  lengths.front_length = 0.189;
-  lengths.rear_length = 0.135;
+  PathTrackingOptions lengths{.front_length = 0.189, .rear_length = 0.135};
   EXPECT_NEAR(yaw_gain(published::OneTrajectory(lengths, published::ModelOptions::published())), 4.32, 0.005);
   EXPECT_NEAR(yaw_gain(KinematicProblem(PathTrackingOptions{})), 3.03, 0.005);
 }
@@ -117,9 +112,7 @@ TEST(PathTracking, CostIsThatOfDistanceYawAndCollision) {
 }
 
 TEST(PathTracking, SpeedFollowsTheReferenceWithinItsLimits) {
-  PathTrackingOptions options;
-  options.max_acceleration = 4;
-  options.max_deceleration = 2;
+  PathTrackingOptions options{.max_acceleration = 4, .max_deceleration = 2};
   const Maps maps;
   const KinematicProblem car = on(maps, options);
   const auto next_speed = [&](double speed) {
@@ -163,8 +156,7 @@ TEST(PathTracking, AccelerationAsAnInputStaysWithinTheCarsLimitsAndThePathsSpeed
 TEST(PathTracking, LocalPositionIsThatInTheRobotsFrame) {
   Maps maps;
   maps.obstacles[3 * 16 + 4] = 100;  // x in (1, 2], y in (0, 1], robot frame
-  PathTrackingOptions options;
-  options.body.model = BodyModel::box;
+  PathTrackingOptions options{.body = {.model = BodyModel::box}};
   KinematicProblem car(options);
   maps.give_to(car, 10, -5, std::acos(-1.0) / 2);  // the robot looks along +y of the map
   const KinematicProblem::State<double> hit{10 - 0.5, -5 + 1.5, 0, 1, 0, 0},
@@ -178,10 +170,7 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
   // Distances instead of costs: 2 m everywhere, but none where x in (1, 2], y in (0, 1].
   for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : 2.0f;
   maps.obstacles[3 * 16 + 4] = 0;
-  PathTrackingOptions options;
-  options.body.model = BodyModel::discs;
-  options.body.front = 1.2;
-  options.body.rear = 0;
+  PathTrackingOptions options{.body = {.model = BodyModel::discs, .front = 1.2, .rear = 0}};
   const KinematicProblem car = on(maps, options);
   const KinematicProblem::State<double> towards{0.5, 0.5, 0, 1, 0, 0},
       away{0.5, 0.5, std::acos(-1.0), 1, 0, 0};
@@ -193,9 +182,7 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
 }
 
 TEST(PathTracking, SmallClearanceCostsBeforeACollision) {
-  PathTrackingOptions options;
-  options.body.model = BodyModel::discs;
-  options.body.soft_cost = 8;
+  PathTrackingOptions options{.body = {.model = BodyModel::discs, .soft_cost = 8}};
   const double radius = std::hypot((options.body.front + options.body.rear) / 6, options.body.width / 2);
   const auto value_at = [&](double clearance) {
     Maps maps;

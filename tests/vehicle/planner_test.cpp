@@ -149,8 +149,7 @@ TEST(Planner, CommandsAnglesAtWhichTheSteeringSettles) {
   method.variance = {0.03, 4};
   method.input_min = {-0.4, -6};
   method.input_max = {0.4, 6};
-  PlannerOptions options;
-  options.steer_resolution = 0.05;
+  PlannerOptions options{.steer_resolution = 0.05};
   Planner planner(options, make_vehicle_model(car), lane, make_solver(method, 2));
   double largest = 0;
   const testing::LaneScan scan = corridor(100, 1.5, 0.5);
@@ -165,8 +164,7 @@ TEST(Planner, CommandsAnglesAtWhichTheSteeringSettles) {
 
 TEST(Planner, ReversesFromAnObstacleInCollision) {
   for (const bool back_up : {true, false}) {
-    PlannerOptions options;
-    options.back_up = back_up;
+    PlannerOptions options{.back_up = back_up};
     Planner planner = make_planner(options);
     const testing::LaneScan scan = corridor(0.48);
     double slowest = 100;
@@ -262,8 +260,7 @@ TEST(Planner, RejectsInvalidArguments) {
   EXPECT_EQ(refusal({}, nullptr, lane, solver(1)), "planner: model must not be null");
   EXPECT_EQ(refusal({}, car(), lane, solver(2)),
             "planner: solver has 2 inputs per step, must have 1, like the vehicle model");
-  PlannerOptions slow;
-  slow.latency = 0.9;
+  PlannerOptions slow{.latency = 0.9};
   EXPECT_EQ(refusal(slow, car(), lane, solver(1)),
             "planner.latency: together with vehicle.dead_time must be at most 32 control periods");
   EXPECT_NE(refusal({}, car(), {}, solver(1)), "accepted");

@@ -16,9 +16,9 @@ struct Case {
   int id = 0, parameters = 0;
   std::string map;
   double start[5] = {};
-  std::vector<double> inputs;
+  std::vector<double> inputs{};
   double state_cost = 0, collision_cost = 0, sample_cost = 0;
-  std::vector<std::vector<double>> states;  // 15 x {x, y, yaw, vel, steer, lx, ly, lyaw, lvel, lsteer}
+  std::vector<std::vector<double>> states{};  // 15 x {x, y, yaw, vel, steer, lx, ly, lyaw, lvel, lsteer}
 };
 
 inline std::vector<std::string> split(const std::string& line) {
@@ -36,10 +36,7 @@ inline std::vector<Case> load_cases(const std::filesystem::path& folder) {
   std::getline(stream, line);
   while (std::getline(stream, line)) {
     const auto cell = split(line);
-    Case c;
-    c.id = std::stoi(cell.at(0));
-    c.map = cell[1];
-    c.parameters = std::stoi(cell[2]);
+    Case c{.id = std::stoi(cell.at(0)), .parameters = std::stoi(cell[2]), .map = cell[1]};
     for (std::size_t i = 0; i < 5; ++i) c.start[i] = std::stod(cell[3 + i]);
     for (std::size_t i = 0; i < 14; ++i) c.inputs.push_back(std::stod(cell[8 + i]));
     c.state_cost = std::stod(cell[22]);

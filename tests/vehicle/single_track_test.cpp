@@ -15,10 +15,7 @@ namespace slalom::vehicle {
 namespace {
 
 PathTrackingOptions car_options() {
-  PathTrackingOptions options;
-  options.steer_time_constant = 1e-3;
-  options.max_acceleration = options.max_deceleration = 9.51;
-  return options;
+  return {.steer_time_constant = 1e-3, .max_acceleration = 9.51, .max_deceleration = 9.51};
 }
 
 struct Drive {

@@ -148,8 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(TrackGenerator, RepeatsForASeedAndDiffersBetweenSeeds) {
-  TrackGeneratorOptions options;
-  options.seed = 7;
+  TrackGeneratorOptions options{.seed = 7};
   const GeneratedTrack first = generate_track(options), again = generate_track(options);
   options.seed = 8;
   const GeneratedTrack other = generate_track(options);

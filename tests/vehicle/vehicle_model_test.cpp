@@ -43,11 +43,7 @@ class VehicleModelContract : public ::testing::TestWithParam<std::string> {
 
   maps::ReferenceField field_;
   maps::ClearanceMap clearance_;
-  maps::LocalCostMap inflated_{[] {
-    maps::LocalCostMapOptions options;
-    options.outside = -1;
-    return options;
-  }()};
+  maps::LocalCostMap inflated_{maps::LocalCostMapOptions{.outside = -1}};
   std::unique_ptr<VehicleModel> model_;
 };
 
@@ -184,12 +180,7 @@ struct Trolley {
   double collision_part(NoLookUp, bool) const { return 0; }
   double distance_part(NoLookUp, bool) const { return 0; }
   VehicleTraits traits() const {
-    VehicleTraits traits;
-    traits.time_step = dt;
-    traits.wheelbase = 1;
-    traits.max_deceleration = 1;
-    traits.speed.planned = true;
-    return traits;
+    return {.time_step = dt, .wheelbase = 1, .max_deceleration = 1, .speed = {.planned = true}};
   }
 };
 static_assert(VehicleProblem<Trolley>);

@@ -43,9 +43,8 @@ vehicle::GuideLine read_guide(const std::string& file) {
 }
 
 RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
-  vehicle::RaceCourseOptions options;
-  options.reverse = arguments.reverse;
-  options.narrowest = arguments.narrowest.value_or(0);
+  vehicle::RaceCourseOptions options{.reverse = arguments.reverse,
+                                     .narrowest = arguments.narrowest.value_or(0)};
   if (!arguments.start.empty()) options.start = parse_pose("--start", arguments.start);
   if (!is_csv(arguments.input)) {
     std::vector<std::string> notes;

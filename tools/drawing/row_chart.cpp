@@ -143,12 +143,10 @@ void draw_key(Pen& pen, const RowChart& chart) {
 
 Drawing draw_chart(const RowChart& chart) {
   const auto rows = chart.names.size(), panels = chart.panels.size();
-  Drawing drawing;
-  drawing.width = 2 * margin + names_width + static_cast<double>(panels) * panel_width +
-                  static_cast<double>(panels - 1) * panel_gap;
+  const double width = 2 * margin + names_width + static_cast<double>(panels) * panel_width +
+                       static_cast<double>(panels - 1) * panel_gap;
   constexpr double heading = 44;
-  drawing.height = heading + top + row_height * static_cast<double>(rows) + bottom;
-  drawing.draw = [chart, rows, panels, width = drawing.width](Pen& pen) {
+  const auto draw = [chart, rows, panels, width](Pen& pen) {
     pen.text(margin, 30, 17, chart.title, ink, 0, true);
     pen.text(width - margin, 30, 12, chart.note, faint_ink, 1);
     pen.shift(0, heading);
@@ -162,7 +160,7 @@ Drawing draw_chart(const RowChart& chart) {
                  margin + names_width + static_cast<double>(p) * (panel_width + panel_gap), rows);
     if (!chart.their_key.empty()) draw_key(pen, chart);
   };
-  return drawing;
+  return {width, heading + top + row_height * static_cast<double>(rows) + bottom, draw};
 }
 
 }  // namespace slalom::tools

@@ -40,9 +40,7 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
                 {"seed0", arguments.seed0},
                 {"experiments", list},
                 {"options", options}};
-  if (arguments.scenario.hardware) settings["hardware"] = true;
-  if (const std::string folder = folder_without_name(scenario); !folder.empty())
-    settings["course_folder"] = folder;
+  add_conditions(settings, arguments.scenario, scenario);
   return settings;
 }
 

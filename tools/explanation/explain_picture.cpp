@@ -213,10 +213,7 @@ void draw_title(Pen& pen, double left, double width, const std::string& title) {
 }
 
 Drawing draw_explanation(const Explanation& explanation, const std::string& title) {
-  Drawing drawing;
-  drawing.width = 2 * margin + cell_width;
-  drawing.height = header + cell_height + margin * 0.6;
-  drawing.draw = [explanation, title](Pen& pen) {
+  const auto draw = [explanation, title](Pen& pen) {
     draw_title(pen, margin, cell_width, title);
     draw_key(pen, !explanation.guides.empty());
     const Cell cell{explanation, margin + axis_left, header + caption};
@@ -224,7 +221,7 @@ Drawing draw_explanation(const Explanation& explanation, const std::string& titl
     draw_density(pen, cell);
     draw_caption(pen, cell);
   };
-  return drawing;
+  return {2 * margin + cell_width, header + cell_height + margin * 0.6, draw};
 }
 
 }  // namespace slalom::tools

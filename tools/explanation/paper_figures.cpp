@@ -22,10 +22,7 @@ struct Curve {
 
 /// A plot of densities with its key above it.
 Drawing draw_plot(const std::string& title, const std::string& label, const std::vector<Curve>& curves) {
-  Drawing drawing;
-  drawing.width = left + plot_width + 24;
-  drawing.height = top + plot_height + 44;
-  drawing.draw = [=](Pen& pen) {
+  const auto draw = [=](Pen& pen) {
     double low = 1e300, high = -1e300, highest = 0;
     for (const Curve& curve : curves)
       for (const auto& [x, y] : curve.points) {
@@ -60,7 +57,7 @@ Drawing draw_plot(const std::string& title, const std::string& label, const std:
     pen.text(left + plot_width / 2, top + plot_height + 34, 12, label, faint_ink, 0.5);
     pen.text(left, top - 6, 11, "density", faint_ink);
   };
-  return drawing;
+  return {left + plot_width + 24, top + plot_height + 44, draw};
 }
 
 struct Gaussian {

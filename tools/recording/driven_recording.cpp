@@ -118,8 +118,7 @@ DrivenRecording read_drive(const std::string& recording, Wanted wanted) {
 }
 
 vehicle::GuideLine driven_line(const std::string& file) {
-  vehicle::GuideLine line;
-  line.closed = false;
+  vehicle::GuideLine line{.closed = false};
   std::vector<double> times;  // s, of the points
   double driven = 0, nearest = meeting;
   std::size_t lap = 0;  // points of the first lap, if one was driven

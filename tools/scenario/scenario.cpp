@@ -205,10 +205,11 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   return scenario;
 }
 
-std::string folder_without_name(const Scenario& scenario) {
+void add_conditions(Json& settings, const ScenarioArguments& arguments, const Scenario& scenario) {
+  if (arguments.hardware) settings["hardware"] = true;
   for (const fs::path& root : vehicle::course_roots(program_folder()))
-    if (std::error_code failed; fs::equivalent(scenario.folder.parent_path(), root, failed)) return {};
-  return fs::weakly_canonical(scenario.folder).string();
+    if (std::error_code failed; fs::equivalent(scenario.folder.parent_path(), root, failed)) return;
+  settings["course_folder"] = fs::weakly_canonical(scenario.folder).string();
 }
 
 maps::OccupancyGrid map_of(const Scenario& scenario) {
@@ -256,9 +257,7 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
   if (origin.x != 0 || origin.y != 0) settings["origin"] = {origin.x, origin.y};
   for (const maps::Pose& place : scenario.lap.parked)
     settings["obstacle_places"].push_back({place.x + origin.x, place.y + origin.y, place.yaw});
-  if (arguments.hardware) settings["hardware"] = true;
-  if (const std::string folder = folder_without_name(scenario); !folder.empty())
-    settings["course_folder"] = folder;
+  add_conditions(settings, arguments, scenario);
   return settings;
 }
 

@@ -62,9 +62,10 @@ struct Scenario {
   std::vector<std::string> notes;  ///< about the course, one sentence each: what its files and its line lack
 };
 
-/// The absolute folder of a course that is in none of the folders where courses are searched by name; else
-/// empty. Results name it, so that a replay finds the course again.
-std::string folder_without_name(const Scenario& scenario);
+/// Adds `hardware` if it is asked for, and `course_folder`, so that a replay finds the course again: the
+/// absolute folder of a course that is in none of the folders where courses are searched by name.
+void add_conditions(nlohmann::ordered_json& settings, const ScenarioArguments& arguments,
+                    const Scenario& scenario);
 
 /// The map of the course for a picture, in the frame of the environment. Cells that the published evaluation
 /// treats as free are unknown, as in the file. Throws IoError.

@@ -64,6 +64,11 @@ void PathFollower::change(const Changes& changes) {
   find_share();
 }
 
+void PathFollower::add_cost(const std::string& name, nav::StateCost cost) {
+  own_costs_.emplace_back(name, std::move(cost));
+  navigator_.reset();
+}
+
 void PathFollower::use_footprint(const std::vector<maps::Point>& vertices) {
   const auto same = [](const maps::Point& a, const maps::Point& b) { return a.x == b.x && a.y == b.y; };
   if (footprint_ && std::equal(vertices.begin(), vertices.end(), vertices_.begin(), vertices_.end(), same))
@@ -185,6 +190,10 @@ void PathFollower::make_navigator(const std::optional<GoalTolerance>& told) {
   if (told)
     options.goal_angle = told->angle > 0 ? std::clamp(told->angle, least, options.goal_angle) : every_heading;
   navigator_.emplace(*footprint_, options, settings_.solver(share_), *costmap_);
+  if (!own_costs_.empty())
+    navigator_->set_cost([terms = own_costs_](const nav::RolloutStates& states, std::span<double> costs) {
+      for (const auto& [name, add] : terms) add(states, costs);
+    });
   tolerance_ = told;
   placed_frame_.reset();
 }
@@ -244,7 +253,17 @@ std::vector<CostTerm> PathFollower::cost_terms() const {
   const auto none = detail::cost_terms_of<nav::NavigationProblem<nav::DifferentialBase>>();
   std::vector<CostTerm> terms(none.begin(), none.end());
   const Trajectories plan = navigator_->roll_out(navigator_->solution().inputs);
-  for (std::size_t i = 0; i < plan.costs.size(); ++i) terms[i % terms.size()].value += plan.costs[i];
+  for (std::size_t i = 0; i < plan.costs.size(); ++i) terms[i % none.size()].value += plan.costs[i];
+  for (const auto& [name, add] : own_costs_) {
+    double cost = 0;
+    for (int k = 0; k + 1 < static_cast<int>(predicted_.size()); ++k) {
+      const std::span at = std::span(plan.states).subspan(6 * static_cast<std::size_t>(k), 12);
+      add({k, at.first(1), at.subspan(1, 1), at.subspan(2, 1), at.subspan(9, 1), at.subspan(10, 1),
+           at.last(1)},
+          {&cost, 1});
+    }
+    terms.push_back({name.c_str(), settings_.navigator(1).time_step * cost});
+  }
   return terms;
 }
 

@@ -67,6 +67,8 @@ class PathFollower {
   /// Sets options; takes effect with the next update. Throws std::exception with name, value and rule.
   void change(const Changes& changes);
 
+  /// Adds a term of one's own to the cost of plans.
+  void add_cost(const std::string& name, navigation::StateCost cost);
   /// Takes the outline of the robot: its vertices in order. Throws std::exception with the rule unless they
   /// are a simple polygon of 3 to 32 vertices around the origin.
   void use_footprint(const std::vector<maps::Point>& vertices);
@@ -89,7 +91,8 @@ class PathFollower {
   FollowerAnswer update(const FollowerInput& input);
   /// The poses of the last plan of the solver, frame of the costmap.
   const std::vector<maps::Pose>& predicted() const { return predicted_; }
-  /// The parts of the cost of that plan by name, which sum to it; empty where there is no plan. Allocates.
+  /// The parts of the cost of that plan by name, those of `add_cost` at the end; they sum to it. Empty where
+  /// there is no plan. Allocates.
   std::vector<CostTerm> cost_terms() const;
   /// About `most` samples of that plan as lines from each point to the next, frame of the costmap: two points
   /// for each. Allocates.
@@ -107,6 +110,7 @@ class PathFollower {
   void find_share();
 
   FollowerSettings settings_;
+  std::vector<std::pair<std::string, navigation::StateCost>> own_costs_;
   std::optional<navigation::Footprint> footprint_;
   std::vector<maps::Point> vertices_;  ///< vertices of the footprint
   maps::OccupancyGrid grid_;

@@ -31,10 +31,10 @@ struct RacingLap {
   bool standing = true;                  ///< the car starts at rest; else the lap is a flying one
   std::uint64_t seed = 0;                ///< seed of the standing start that this lap begins with or follows
   RacingEnd end = RacingEnd::completed;  ///< how it ended
-  std::array<double, racing_sectors> sector;  ///< s, of each sector; NaN where the lap ended before its end
+  std::array<double, racing_sectors> sector{};  ///< s, of each sector; NaN where the lap ended before its end
   /// From the start, at distance and time 0, to the end of the lap, where a completed one has its whole
   /// length.
-  std::vector<RacingSample> samples;
+  std::vector<RacingSample> samples{};
 
   double time() const noexcept { return samples.back().time; }  ///< s; at the end, complete or not
 };

@@ -16,23 +16,23 @@ struct ExperimentResult {
   int laps = 0, finished = 0, timeouts = 0;             ///< numbers of laps
   int collisions = 0;                                   ///< as the protocol counts them
   double ms_mean = 0;                                   ///< MS: mean over laps of the mean sequence cost
-  Interval ms_ci;                                       ///< bootstrap over laps; see fewest_laps
+  Interval ms_ci{};                                     ///< bootstrap over laps; see fewest_laps
   double state_cost_mean = 0, collision_cost_mean = 0;  ///< over laps
-  std::optional<double> collision_rate;       ///< collisions / (obstacles x laps); none without obstacles
-  std::optional<Interval> collision_rate_ci;  ///< Wilson
-  std::optional<Interval> collision_rate_bootstrap_ci;  ///< over laps
-  double success_rate = 0;                              ///< finished laps without a collision
-  Interval success_rate_ci;                             ///< Wilson
-  double time_mean = 0;                                 ///< s, of finished laps; NaN without any
-  Interval time_ci;                                     ///< bootstrap over finished laps; see fewest_laps
+  std::optional<double> collision_rate{};       ///< collisions / (obstacles x laps); none without obstacles
+  std::optional<Interval> collision_rate_ci{};  ///< Wilson
+  std::optional<Interval> collision_rate_bootstrap_ci{};  ///< over laps
+  double success_rate = 0;                                ///< finished laps without a collision
+  Interval success_rate_ci{};                             ///< Wilson
+  double time_mean = 0;                                   ///< s, of finished laps; NaN without any
+  Interval time_ci{};                                     ///< bootstrap over finished laps; see fewest_laps
   /// Wall-clock times, ms: means over the laps of each lap's mean, median and 99th percentile, and the
   /// longest.
   double solve_mean = 0, solve_p50 = 0, solve_p99 = 0, solve_max = 0;  ///< mean, median, 99 %, longest
   /// Sums over laps; errors are root mean squares over all detections, `update_p99` (ms) the mean over the
   /// laps. None without `world.tracking`.
-  std::optional<TrackingFigures> tracking;
+  std::optional<TrackingFigures> tracking{};
   /// Sums over laps; `duration` (s) is the mean over all opponents overtaken. None without `world.opponents`.
-  std::optional<OvertakingFigures> overtaking;
+  std::optional<OvertakingFigures> overtaking{};
 };
 
 /// The laps of two experiments, a and b. With the same seeds lap k of both has the same obstacles: the laps

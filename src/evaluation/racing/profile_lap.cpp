@@ -73,8 +73,7 @@ RacingLap profile_lap(const LapSetup& setup, bool standing, double grip) {
   const maps::Pose start = setup.start();
   auto points = points_from(environment.course, *environment.track->lap_path(), start, length);
   if (standing) start_from_rest(points, grip);
-  RacingLap lap;
-  lap.standing = standing;
+  RacingLap lap{.standing = standing};
   lap.samples.push_back({.distance = 0, .time = 0, .speed = points.front().speed});
   for (std::size_t i = 1; i < points.size(); ++i) {
     const ProfilePoint &a = points[i - 1], &b = points[i];

@@ -27,10 +27,7 @@ void Track::make_clearance() {
   // outlines of two cells lies one cell less along each axis than between their centres. That is the distance
   // to the set of walls grown by one cell each way.
   const int width = grid_.width + 2, height = grid_.height + 2;
-  maps::OccupancyGrid grown;
-  grown.width = width;
-  grown.height = height;
-  grown.resolution = 1;
+  maps::OccupancyGrid grown{width, height, 1, {}, {}};
   grown.cells.assign(static_cast<std::size_t>(width) * height, maps::Occupancy::free);
   const auto outside = [&](int c, int r) { return c < 0 || r < 0 || c >= grid_.width || r >= grid_.height; };
   const auto stops = [&](int c, int r) {

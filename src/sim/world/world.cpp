@@ -16,12 +16,10 @@ void require_plausible(const CarState& state) {
 }  // namespace
 
 WorldOptions WorldOptions::gym_compatible() {
-  WorldOptions o;
-  o.plant.dynamics.substeps = 1;
-  o.plant.dynamics.gym = o.plant.actuation.gym = o.plant.gym = o.lidar.gym = o.gym = true;
-  o.lidar.mount = {};
-  o.body_response = CollisionResponse::count_only;
-  return o;
+  return {.plant = {.dynamics = {.substeps = 1, .gym = true}, .actuation = {.gym = true}, .gym = true},
+          .lidar = {.mount = {}, .gym = true},
+          .body_response = CollisionResponse::count_only,
+          .gym = true};
 }
 
 void WorldOptions::validate() const {

@@ -189,8 +189,7 @@ void complete_course(Course& course, std::optional<bool> closed) {
 Course load_course(const fs::path& folder, maps::MapRule rule) {
   if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is not a folder");
   const fs::path paths = path_folder(folder);
-  Course course;
-  course.name = fs::weakly_canonical(folder).filename().string();
+  Course course{.name = fs::weakly_canonical(folder).filename().string()};
   course.map = maps::load_ros_map(find_map(folder, course.notes), rule, &course.notes);
   detail::CsvForm form = detail::CsvForm::other;
   const fs::path line = find_waypoints(paths, form, course.notes);

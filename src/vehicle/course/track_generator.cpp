@@ -187,8 +187,7 @@ double path_length(const GeneratedTrack& track) {
 
 GeneratedTrack generate_track(const TrackGeneratorOptions& options) {
   validate(options);
-  GeneratedTrack track;
-  track.options = options;
+  GeneratedTrack track{.options = options};
   Curve centre_line = detail::make_centre_line(options);
   Curve line = make_raceline(centre_line, options);
   track.raceline = with_profile(line, options.limits, track.lap_time);

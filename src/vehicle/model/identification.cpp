@@ -138,8 +138,7 @@ Identification identify(std::span<const DrivenSample> samples, const Identificat
   const auto residuals = [&](std::span<const double> p, std::vector<double>& out) {
     predict(samples, turns, p, out);
   };
-  detail::Fit best;
-  best.sum = INFINITY;
+  detail::Fit best{.sum = INFINITY};
   for (const double delay : {0.0, 0.05, 0.1, 0.2}) {
     const detail::Fit fit =
         detail::least_squares(residuals, sought, {1, 0, delay, 0.08, given ? options.wheelbase : 0.33, 0.0});

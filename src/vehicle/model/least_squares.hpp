@@ -29,9 +29,9 @@ using Residuals = std::function<void(std::span<const double> parameters, std::ve
 
 /// A minimum of the sum of squared residuals.
 struct Fit {
-  std::vector<double> values;  ///< values of the parameters
-  Eigen::MatrixXd normal;      ///< J^T J
-  double sum = 0;              ///< sum of squared residuals
+  std::vector<double> values{};  ///< values of the parameters
+  Eigen::MatrixXd normal{};      ///< J^T J
+  double sum = 0;                ///< sum of squared residuals
 };
 
 /// The minimum near `start`, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963) with slopes from

@@ -226,8 +226,7 @@ detail::Fit best_fit(const Drive& drive, const Deviations& deviations,
   const auto residuals = [&](std::span<const double> p, std::vector<double>& out) {
     drive.residuals(p, deviations.yaw, deviations.sideways, out);
   };
-  detail::Fit best;
-  best.sum = INFINITY;
+  detail::Fit best{.sum = INFINITY};
   for (const auto& start : starts) {
     const detail::Fit found = detail::least_squares(residuals, tyre_parameters, {start.begin(), start.end()});
     if (found.sum < best.sum) best = found;

@@ -11,8 +11,7 @@ constexpr double spacing = 0.1;          // m between points and side of a cell,
 constexpr std::size_t max_points = 240;  // points of the path
 
 maps::ReferenceFieldOptions field_options(double scale) {
-  maps::ReferenceFieldOptions options;
-  options.length_x = options.length_y = 14 * scale;
+  maps::ReferenceFieldOptions options{.length_x = 14 * scale, .length_y = 14 * scale};
   options.resolution *= scale;
   options.points = static_cast<int>(max_points);
   options.points_behind = 10;

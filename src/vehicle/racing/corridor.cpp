@@ -26,9 +26,7 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
   if (!(length > 0)) throw std::invalid_argument("centre_line: all points are the same");
   count(length, step, 1e5, "centre_line");
   const detail::Resampling places = detail::divided_by_step(points, closed, step);
-  Corridor corridor;
-  corridor.closed = closed;
-  corridor.centre_line = places.points;
+  Corridor corridor{.centre_line = places.points, .closed = closed};
   for (std::size_t k = 0; k < places.points.size(); ++k) {
     const std::size_t row = places.row[k], next = (row + 1) % n;
     const double t = places.share[k];

@@ -97,9 +97,7 @@ void check_place(const FreeSpace& space, const std::vector<maps::Point>& line) {
 
 Corridor measured_corridor(const FreeSpace& space, const std::vector<maps::Point>& line, bool closed,
                            const CorridorMeasure& measure) {
-  Corridor corridor;
-  corridor.closed = closed;
-  corridor.centre_line = divided_by_step(line, closed, measure.step).points;
+  Corridor corridor{.centre_line = divided_by_step(line, closed, measure.step).points, .closed = closed};
   corridor.normal = normals(corridor.centre_line, closed);
   const Rays rays{space, corridor, measure};
   for (std::size_t i = 0; i < corridor.centre_line.size(); ++i) {

@@ -165,8 +165,7 @@ Raceline with_speeds(const std::vector<maps::Point>& line, bool closed, const Ra
   const std::size_t n = line.size();
   const PathGeometry geometry = geometry_of(line, closed);
   const auto speed = racing_speeds(geometry.curvature, geometry.step, closed, car);
-  Raceline result;
-  result.closed = closed;
+  Raceline result{.closed = closed};
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t next = closed || i + 1 < n ? (i + 1) % n : i;
     const std::size_t before = closed || i > 0 ? (i + n - 1) % n : i;

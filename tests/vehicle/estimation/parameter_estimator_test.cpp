@@ -18,11 +18,7 @@ namespace {
 constexpr double period = 0.025, time_step = 0.005;  // s
 
 PathTrackingOptions car_options() {
-  PathTrackingOptions options;
-  options.steer_time_constant = 0.05;
-  options.dead_time = 0.025;
-  options.max_acceleration = options.max_deceleration = 9;
-  return options;
+  return {.steer_time_constant = 0.05, .dead_time = 0.025, .max_acceleration = 9, .max_deceleration = 9};
 }
 
 /// A drive of a simulated car and what its estimator was given.

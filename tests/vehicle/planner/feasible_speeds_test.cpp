@@ -125,8 +125,7 @@ TEST(LimitedPath, AnOpenPathEndsWithAStop) {
     const double angle = 2 * 3.14159265358979 * i / 101;
     circle.push_back({5 * std::cos(angle), 5 * std::sin(angle), 0, 5});
   }
-  VehicleTraits traits;
-  traits.max_deceleration = 8;
+  VehicleTraits traits{.max_deceleration = 8};
   PlannerOptions options;
   const auto open = limited_path(line, options, traits);
   EXPECT_EQ(open.back().speed, 0);

@@ -89,8 +89,7 @@ double lead_after_following(double time_behind, std::uint64_t seed) {
   method.input_max = {0.4, 9};
   VehicleOptions car;
   car.model = vehicle_model("single_track");
-  PlannerOptions options;
-  options.time_behind = time_behind;
+  PlannerOptions options{.time_behind = time_behind};
   Planner planner(options, make_vehicle_model(car), testing::lane(speed), make_solver(method, 2));
   planner.reset(seed);
   double sum = 0;  // m
@@ -152,8 +151,7 @@ TEST(PlannerAmongOthers, KeepsMoreDistanceToThemThanToWalls) {
 
 TEST(PlannerAmongOthers, WithoutPredictionTheyAreWhatTheScanSees) {
   const auto wide = scan_of_lane(1.5, 1.5);
-  PlannerOptions options;
-  options.predict_others = false;
+  PlannerOptions options{.predict_others = false};
   Planner one = make_planner(options), other = make_planner();
   const Other ahead(5 + 1.5, 1);
   Other unusable(5 + 1.5, 1);

@@ -12,8 +12,7 @@ namespace slalom::vehicle::planner_check_test {
 namespace {
 
 Planner make_planner(double max_speed) {
-  PlannerOptions options;
-  options.max_speed = max_speed;
+  PlannerOptions options{.max_speed = max_speed};
   return {options, make_vehicle_model({}), testing::lane(3),
           make_solver(testing::few_samples("svg_mppi"), 1)};
 }

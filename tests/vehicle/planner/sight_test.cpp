@@ -37,10 +37,7 @@ testing::LaneScan scan_of(const std::vector<Box>& boxes, double first = -2.35) {
 
 /// Of a car that is `size` times as long as that of 1/10 scale.
 Sight sight(double reach = 12, double size = 1) {
-  PlannerOptions options;
-  options.laser_x = laser_x;
-  options.control_period = period;
-  options.sight_deceleration = 6;
+  PlannerOptions options{.control_period = period, .laser_x = laser_x, .sight_deceleration = 6};
   BodyOptions body;
   body.rear = size * (body.front + body.rear) - front;
   body.front = front;

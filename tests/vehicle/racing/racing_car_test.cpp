@@ -7,9 +7,7 @@ namespace slalom::vehicle::racing_car_test {
 namespace {
 
 TEST(RacingSpeeds, AreInsideTheEllipseThroughoutAndNearFeasibleSpeeds) {
-  RacingCar car;
-  car.limits = {7, 5, 3, 4};
-  car.max_steering_rate = 1e9;
+  RacingCar car{.max_steering_rate = 1e9, .limits = {7, 5, 3, 4}};
   constexpr std::size_t count = 300;
   std::vector<double> curvature, step;
   for (std::size_t i = 0; i < count; ++i) {
@@ -42,10 +40,7 @@ TEST(RacingSpeeds, AreInsideTheEllipseThroughoutAndNearFeasibleSpeeds) {
 
 TEST(RacingSpeeds, PowerLimitsTheGainOfEnergy) {
   // One slow point on a straight: the kinetic energy per mass, v^2 / 2, grows by power in time.
-  RacingCar car;
-  car.limits = {60, 9, 9, 9};
-  car.power = 40;
-  car.max_steering_rate = 1e9;
+  RacingCar car{.max_steering_rate = 1e9, .limits = {60, 9, 9, 9}, .power = 40};
   std::vector<double> curvature(4000, 0.0), step(4000, 0.05);
   curvature[0] = 9;
   const auto v = racing_speeds(curvature, step, false, car);

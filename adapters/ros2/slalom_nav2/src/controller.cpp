@@ -4,10 +4,12 @@
 
 #include <nav2_core/controller_exceptions.hpp>
 #include <pluginlib/class_list_macros.hpp>
+#include <pluginlib/class_loader.hpp>
 #include <slalom_msgs/msg/cost_terms.hpp>
 #include <visualization_msgs/msg/marker.hpp>
 
 #include "option_parameters.hpp"
+#include "slalom_nav2/cost_term.hpp"
 #include "tracked_objects.hpp"
 
 namespace slalom_nav2 {
@@ -34,6 +36,23 @@ std::string setting(Controller::Node& node, const std::string& name, const std::
   if (!node.has_parameter(name))
     node.declare_parameter<std::string>(name, value, slalom_ros::fixed(description));
   return node.get_parameter(name).as_string();
+}
+
+/// Adds the plugins of `cost_plugins` in their order, each under its name.
+void add_costs(Controller::Node& node, const std::string& prefix, slalom::nodes::PathFollower& follower) {
+  const auto loader =
+      std::make_shared<pluginlib::ClassLoader<CostTerm>>("slalom_nav2", "slalom_nav2::CostTerm");
+  const std::string names = prefix + "cost_plugins";
+  if (!node.has_parameter(names)) node.declare_parameter(names, std::vector<std::string>{});
+  for (const std::string& name : node.get_parameter(names).as_string_array()) {
+    const std::string section = prefix + name + ".";
+    const auto term =
+        loader->createSharedInstance(setting(node, section + "plugin", "", "class of the term"));
+    term->configure(node, section);
+    follower.add_cost(name, [loader, term](const auto& states, std::span<double> costs) {
+      term->add(states, costs);  // the loader keeps its code
+    });
+  }
 }
 
 }  // namespace
@@ -88,6 +107,7 @@ void Controller::configure(const ServerNode::WeakPtr& parent, std::string name,
   const std::string prefix = name + ".";
   follower_ = std::make_unique<slalom::nodes::PathFollower>(
       setting(*node, prefix + "method", "svg_mppi", "method that plans; `slalom options` lists them"));
+  add_costs(*node, prefix, *follower_);
   parameters_ = std::make_shared<slalom_ros::OptionParameters>(
       *node,
       [this] {

@@ -32,18 +32,18 @@ struct Waypoint {
 /// The program of Honda et al. (ICRA 2024) has its files in two folders: a map in `map/NAME`, the CSV files
 /// in `reference_path/NAME`. There, `map/NAME` is the folder of the course.
 struct Course {
-  std::string name;         ///< the name
-  std::string description;  ///< one sentence
-  maps::Point origin;       ///< m, map frame; origin of the coordinates below
-  maps::OccupancyGrid map;  ///< the map
+  std::string name{};         ///< the name
+  std::string description{};  ///< one sentence
+  maps::Point origin{};       ///< m, map frame; origin of the coordinates below
+  maps::OccupancyGrid map{};  ///< the map
   /// At least 3; successive ones differ, and the first is not repeated at the end.
-  std::vector<Waypoint> waypoints;
-  std::vector<maps::Point> obstacle_path;  ///< where obstacles are placed; without a file the waypoints
-  maps::Pose start;  ///< pose of the centre of gravity: course.yaml has it, else the first waypoint
-  std::optional<double> timeout;   ///< s per lap, if course.yaml gives one
-  bool closed = true;              ///< the path continues from the last waypoint to the first
-  double length = 0;               ///< m along the waypoints, with the closing stretch if closed
-  std::vector<std::string> notes;  ///< things that were ignored and why, one sentence each
+  std::vector<Waypoint> waypoints{};
+  std::vector<maps::Point> obstacle_path{};  ///< where obstacles are placed; without a file the waypoints
+  maps::Pose start{};  ///< pose of the centre of gravity: course.yaml has it, else the first waypoint
+  std::optional<double> timeout{};   ///< s per lap, if course.yaml gives one
+  bool closed = true;                ///< the path continues from the last waypoint to the first
+  double length = 0;                 ///< m along the waypoints, with the closing stretch if closed
+  std::vector<std::string> notes{};  ///< things that were ignored and why, one sentence each
 };
 
 /// Loads and checks the course in `folder`; `reading` has the options for its map. Throws IoError naming

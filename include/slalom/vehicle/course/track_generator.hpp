@@ -26,7 +26,7 @@ struct TrackGeneratorOptions {
   double wall = 0.2;          ///< thickness of the walls, m, 0.1..1, at least 2 cells
   double resolution = 0.05;   ///< size of a cell of the map, m, 0.02..0.1
   double wall_margin = 0.45;  ///< the raceline keeps this far from the walls, m, 0.3.. width / 2 - 0.1
-  SpeedLimits limits;         ///< for the speed profile
+  SpeedLimits limits{};       ///< for the speed profile
 };
 
 /// Throws std::invalid_argument that names the option, its value and the rule.
@@ -50,11 +50,12 @@ struct RacelinePoint {
 /// A closed track. It starts at the first point of the raceline, which is the origin of the map frame.
 struct GeneratedTrack {
   TrackGeneratorOptions options;           ///< from which it was generated
-  std::vector<maps::Point> centre_line;    ///< equal steps of about 0.1 m
-  std::vector<RacelinePoint> raceline;     ///< equal steps of about 0.11 m
-  std::vector<maps::Point> obstacle_path;  ///< path on which a parked car leaves room to pass it on one side
-  maps::OccupancyGrid map;                 ///< free between the walls, occupied inside them, unknown beyond
-  double lap_time = 0;                     ///< s, at the raceline's speeds
+  std::vector<maps::Point> centre_line{};  ///< equal steps of about 0.1 m
+  std::vector<RacelinePoint> raceline{};   ///< equal steps of about 0.11 m
+  std::vector<maps::Point>
+      obstacle_path{};        ///< path on which a parked car leaves room to pass it on one side
+  maps::OccupancyGrid map{};  ///< free between the walls, occupied inside them, unknown beyond
+  double lap_time = 0;        ///< s, at the raceline's speeds
 };
 
 /// Makes a track; the same options give the same track.

@@ -70,8 +70,8 @@ struct PathTrackingOptions {
   /// commands sent, and the rollout has no dead time.
   bool hold_first_input = false;
   bool localisation_less = false;
-  TrackingCostOptions cost;  ///< weights of the cost
-  BodyOptions body;          ///< dimensions of the body
+  TrackingCostOptions cost{};  ///< weights of the cost
+  BodyOptions body{};          ///< dimensions of the body
 
   /// Wheelbase, m.
   double wheelbase() const noexcept { return front_length + rear_length; }

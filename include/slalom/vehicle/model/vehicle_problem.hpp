@@ -114,10 +114,10 @@ struct VehicleTraits {
   double rear_length = 0;       ///< m, centre of gravity to rear axle
   double max_acceleration = 0;  ///< m/s^2, of the predicted speed
   double max_deceleration = 0;  ///< m/s^2, of a braking car
-  BodyOptions body;             ///< the body that must not collide
-  ObstacleTraits obstacles;     ///< for the maps of obstacles
-  SpeedTraits speed;            ///< for a planner without tyre slip
-  TyreTraits tyres;             ///< for a planner with tyre slip
+  BodyOptions body{};           ///< the body that must not collide
+  ObstacleTraits obstacles{};   ///< for the maps of obstacles
+  SpeedTraits speed{};          ///< for a planner without tyre slip
+  TyreTraits tyres{};           ///< for a planner with tyre slip
 };
 
 /// Returns the traits of a model that uses these options unchanged.

@@ -9,8 +9,8 @@ namespace slalom::vehicle {
 /// The free space along a line: at each point how far it is to the walls on both sides.
 struct Corridor {
   std::vector<maps::Point> centre_line;  ///< m; of a closed corridor the first is not repeated at the end
-  std::vector<maps::Point> normal;       ///< unit vectors to the left, a point each
-  std::vector<double> left, right;       ///< m from the point to the wall along the normal, a point each
+  std::vector<maps::Point> normal{};     ///< unit vectors to the left, a point each
+  std::vector<double> left{}, right{};   ///< m from the point to the wall along the normal, a point each
   bool closed = true;                    ///< whether the first point follows the last one
 };
 

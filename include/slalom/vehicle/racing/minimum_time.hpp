@@ -8,10 +8,10 @@ namespace slalom::vehicle {
 
 /// A line with its speeds.
 struct Raceline {
-  std::vector<RacelinePoint> points;  ///< one for each point of the corridor
-  double length = 0;                  ///< m, along the points, and back to the first if the line is closed
-  double time = 0;                    ///< s, along the points, and back to the first if the line is closed
-  bool closed = true;                 ///< whether the first point follows the last one
+  std::vector<RacelinePoint> points{};  ///< one for each point of the corridor
+  double length = 0;                    ///< m, along the points, and back to the first if the line is closed
+  double time = 0;                      ///< s, along the points, and back to the first if the line is closed
+  bool closed = true;                   ///< whether the first point follows the last one
   double curvature_limit = 0;  ///< 1/m, that the line obeys: max_curvature() of the car, or more where the
                                ///< corridor forces it to turn more tightly
 };

@@ -14,16 +14,16 @@ struct RaceCourseOptions {
   /// Start pose of the car, for closed courses. Without one, a course that is found in a map starts at the
   /// origin of the map frame if it passes there within 0.6 rad of +x; else it is driven counter-clockwise. A
   /// course without a start begins in the middle of its fastest part.
-  std::optional<maps::Pose> start;
+  std::optional<maps::Pose> start{};
   bool reverse = false;  ///< the other way round; not with a start
   double narrowest = 0;  ///< m, of the gaps through which a loop is searched; 0: as narrow as the car fits
 };
 
 /// A line to drive along, and whether it is closed.
 struct GuideLine {
-  std::vector<maps::Point> points;  ///< m, map frame, in the direction of driving
-  bool closed = true;               ///< whether the first point follows the last one
-  std::string note{};               ///< points that were left out, and why; empty without any
+  std::vector<maps::Point> points{};  ///< m, map frame, in the direction of driving
+  bool closed = true;                 ///< whether the first point follows the last one
+  std::string note{};                 ///< points that were left out, and why; empty without any
 };
 
 /// A course made for a car.
