@@ -57,9 +57,8 @@ struct SequenceCostMeter::Implementation {
   std::vector<PredictedState> states;  ///< predicted states, as many as a cost needs
   std::vector<float> inputs;
   maps::Pose robot;
-  GridView<1> obstacles;    ///< obstacles of this cost map or of the caller's
-  maps::Point low, high;    ///< m, the part of the field that is up to date, map frame
-  bool everywhere = false;  ///< whether the whole field is up to date
+  GridView<1> obstacles;  ///< obstacles of this cost map or of the caller's
+  double reach = 0;       ///< m, how far along either axis the field is up to date
 
   Implementation(std::span<const maps::ReferencePoint> along, const VehicleOptions& m)
       : path(along.begin(), along.end()),
@@ -77,33 +76,22 @@ struct SequenceCostMeter::Implementation {
     return {both.value - collision, collision};
   }
 
-  /// Updates the field where these states are and `margin` (m) around them, unless it is up to date at the
-  /// states.
-  void make_field(std::span<const PredictedState> sequence, double margin) noexcept {
-    if (everywhere) return;
-    maps::Point from{robot.x, robot.y}, to{robot.x, robot.y};
-    for (const PredictedState& state : sequence) {
-      from = {std::min(from.x, state.pose.x), std::min(from.y, state.pose.y)};
-      to = {std::max(to.x, state.pose.x), std::max(to.y, state.pose.y)};
-    }
-    if (from.x >= low.x && from.y >= low.y && to.x <= high.x && to.y <= high.y) return;
-    low = {std::min(low.x, from.x - margin), std::min(low.y, from.y - margin)};
-    high = {std::max(high.x, to.x + margin), std::max(high.y, to.y + margin)};
-    field.update(robot, low, high);
+  /// m, along either axis, from the robot to the farthest of these states.
+  double extent(std::span<const PredictedState> sequence) const noexcept {
+    double most = 0;
+    for (const PredictedState& state : sequence)
+      most = std::max({most, std::abs(state.pose.x - robot.x), std::abs(state.pose.y - robot.y)});
+    return most;
   }
-  void make_field_everywhere() noexcept {
-    if (!everywhere) field.update(robot);
-    everywhere = true;
-  }
-  bool covers(std::span<const PredictedState> sequence) const noexcept {
-    return everywhere || std::all_of(sequence.begin(), sequence.end(), [&](const PredictedState& state) {
-             return state.pose.x >= low.x && state.pose.x <= high.x && state.pose.y >= low.y &&
-                    state.pose.y <= high.y;
-           });
+  /// Updates the field as far as `needed` and `margin` (m) more, unless it is up to date that far.
+  void make_field(double needed, double margin) noexcept {
+    if (needed <= reach) return;
+    reach = needed + margin;
+    field.update(robot, reach);
   }
 
   Cost cost_of(const MeasuredStates& sequence) noexcept {
-    make_field(sequence, 0.2);
+    make_field(extent(sequence), 0.2);
     Cost sum;
     for (int k = 0; k <= steps; ++k) {
       const Cost cost = cost_of(sequence[static_cast<std::size_t>(k)], k == steps);
@@ -123,13 +111,13 @@ struct SequenceCostMeter::Implementation {
                   &inputs[k * width]);
     // The states are not known in advance. They are usually close to the planner's own prediction; if not,
     // the prediction is repeated with the whole field.
-    make_field(output.predicted, 0.5);
+    make_field(extent(output.predicted), 0.5);
     while (true) {
       rollout->set_maps({field.view(), obstacles, robot});
       rollout->set_start({first.pose, first.speed, first.steer}, field.at(first.pose.x, first.pose.y).speed);
       rollout->predict(inputs, states);
-      if (covers(states)) return resampled(states, model.time_step);
-      make_field_everywhere();
+      if (extent(states) <= reach) return resampled(states, model.time_step);
+      make_field(std::numeric_limits<double>::infinity(), 0);
     }
   }
 };
@@ -152,10 +140,8 @@ void SequenceCostMeter::observe(const maps::LaserScanView& scan, const maps::Pos
   m.robot = robot;
   if (!made) m.cost_map.update(scan);
   m.obstacles = made ? made->view() : m.cost_map.view();
-  m.low = {robot.x - about_the_car, robot.y - about_the_car};
-  m.high = {robot.x + about_the_car, robot.y + about_the_car};
-  m.everywhere = false;
-  m.field.update(robot, m.low, m.high);
+  m.reach = about_the_car;
+  m.field.update(robot, m.reach);
   m.problem.set_maps({m.field.view(), m.obstacles, robot});
 }
 

@@ -65,15 +65,6 @@ bool ReferenceField::begin(const Pose& robot) noexcept {
   return true;
 }
 
-void ReferenceField::make_cells(int row_begin, int row_end, int column_begin, int column_end) noexcept {
-  column_begin = std::max(column_begin, 0);
-  column_end = std::min(column_end, geometry_.columns);
-  for (int row = std::max(row_begin, 0); row < std::min(row_end, geometry_.rows); ++row) {
-    const int parabolas = build_envelope(geometry_.cell_x(row));
-    write_row(row, column_begin, column_end, parabolas);
-  }
-}
-
 bool ReferenceField::update(const Pose& robot, double reach, double seconds) noexcept {
   if (!begin(robot)) return false;
   reach_ = reach;
@@ -85,21 +76,11 @@ bool ReferenceField::update(const Pose& robot, double reach, double seconds) noe
   }
   const double cells = std::clamp(reach_ / geometry_.resolution, 0.0, 1e6);
   const int half = saturate_cast<int>(cells) + 2;
-  make_cells(geometry_.rows / 2 - half, geometry_.rows / 2 + half, geometry_.columns / 2 - half,
-             geometry_.columns / 2 + half);
-  return true;
-}
-
-bool ReferenceField::update(const Pose& robot, const Point& low, const Point& high) noexcept {
-  if (!begin(robot)) return false;
-  reach_ = 0;
-  // Rows and columns run against x and y. One more on each side covers rounding.
-  const auto index = [&](double from, double to) {
-    return saturate_cast<int>(std::clamp((from - to) / geometry_.resolution, -1e6, 1e6));
-  };
-  const double first_x = geometry_.cell_x(0), first_y = geometry_.cell_y(0);
-  make_cells(index(first_x, high.x) - 1, index(first_x, low.x) + 3, index(first_y, high.y) - 1,
-             index(first_y, low.y) + 3);
+  const int rows = geometry_.rows / 2, columns = geometry_.columns / 2;
+  for (int row = std::max(rows - half, 0); row < std::min(rows + half, geometry_.rows); ++row) {
+    const int parabolas = build_envelope(geometry_.cell_x(row));
+    write_row(row, std::max(columns - half, 0), std::min(columns + half, geometry_.columns), parabolas);
+  }
   return true;
 }
 

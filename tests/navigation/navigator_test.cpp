@@ -263,6 +263,44 @@ TEST(NavigatorCheck, BrakesToTheLimitsOfTheBase) {
       << "once is an error of the odometry";
 }
 
+TEST(Navigator, WithoutDetoursItReportsNone) {
+  NavigatorOptions options{.find_detours = false};
+  CheckedDrive drive(options);
+  drive.block(4, -2, 4.3, 2);
+  drive.navigator->set_path(straight);
+  for (int i = 0; i < 200; ++i) {
+    const NavigationResult result = drive.step();
+    EXPECT_TRUE(result.status == NavigationStatus::following || result.status == NavigationStatus::braking);
+    EXPECT_NEAR(result.path.back().x, 6, 1e-9);
+  }
+  EXPECT_FALSE(drive.collided);
+}
+
+TEST(Navigator, UpdatesAllocateNothing) {
+  CheckedDrive drive;
+  drive.block(3, -0.6, 4, 0.7);
+  drive.navigator->set_path(straight);
+  const long before = testing::allocations();
+  bool detour = false;
+  for (int i = 0; i < 40; ++i)
+    detour = drive.navigator->update({1 + 0.02 * i, 0, 0}, {0.4, 0, 0}, drive.costmap, period).status ==
+                 NavigationStatus::detour ||
+             detour;
+  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_TRUE(detour);
+}
+
+TEST(NavigatorCheck, IgnoresAVelocityThatNoRobotHas) {
+  const Hall hall;
+  Navigator navigator = make_navigator({}, hall.costmap);
+  navigator.set_path(hall_path);
+  for (const double speed : {101.0, -4132.0, 1e300}) {
+    const NavigationResult result = navigator.update({-1.5, 0, 0}, {.forward = speed}, hall.costmap, period);
+    EXPECT_EQ(result.status, NavigationStatus::bad_input) << speed;
+    EXPECT_EQ(result.command.forward, 0) << speed;
+  }
+}
+
 TEST(AllocationFailure, ANavigatorIsMadeAndTakesAPathOrThrows) {
   const Hall hall;
   EXPECT_GT(testing::fail_every_allocation([&] {

@@ -66,8 +66,6 @@ class ReferenceField {
   /// not finite.
   bool update(const Pose& robot, double reach = std::numeric_limits<double>::infinity(),
               double seconds = 0) noexcept;
-  /// Computes only the cells of the box from `low` to `high` (m, map frame).
-  bool update(const Pose& robot, const Point& low, const Point& high) noexcept;
 
   /// Forgets where the robot was.
   void reset() noexcept { is_placed_ = false; }
@@ -106,7 +104,7 @@ class ReferenceField {
   /// Index of the path's point at which the robot was at the last update.
   int nearest() const noexcept { return nearest_; }
 
-  /// How far the last update made the map, m along each axis; 0 after one with a box.
+  /// How far the last update made the map, m along each axis.
   double reach() const noexcept { return reach_; }
 
   /// The window's points of the last update as indices into the path, in the path's order.
@@ -135,7 +133,6 @@ class ReferenceField {
   };
 
   bool begin(const Pose& robot) noexcept;
-  void make_cells(int row_begin, int row_end, int column_begin, int column_end) noexcept;
   int place_of(const Pose& robot) const noexcept;
   void choose_window() noexcept;
   void make_sites() noexcept;
