@@ -41,8 +41,6 @@ class RacingLine {
   Point at(double arc) const noexcept;
   /// m from arc length `from` to `to` along the path, in [-length / 2, length / 2).
   double between(double from, double to) const noexcept;
-  /// Whether the line keeps less than the margins, or leads through parked bodies.
-  bool narrow() const noexcept { return narrow_; }
 
  private:
   std::vector<std::uint8_t> free_cells(const Track& track, const CarParameters& car,
@@ -56,7 +54,6 @@ class RacingLine {
   LapPath path_;
   std::vector<Point> points_;
   double spacing_ = 0;  ///< m
-  bool narrow_ = false;
 };
 
 }  // namespace slalom::sim

@@ -70,7 +70,6 @@ RacingLine::RacingLine(std::span<const PathPoint> path, const Track& track, cons
   }
   for (const double share : {1.0, 0.6, 0.3, 0.0}) {
     const auto free = free_cells(track, car, parked, share * wall_margin, share * parked_margin);
-    narrow_ = share < 1;
     if (!find_way(free)) continue;
     find_room(free);
     break;
