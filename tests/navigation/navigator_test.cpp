@@ -263,19 +263,6 @@ TEST(NavigatorCheck, BrakesToTheLimitsOfTheBase) {
       << "once is an error of the odometry";
 }
 
-TEST(Navigator, WithoutDetoursItReportsNone) {
-  NavigatorOptions options{.find_detours = false};
-  CheckedDrive drive(options);
-  drive.block(4, -2, 4.3, 2);
-  drive.navigator->set_path(straight);
-  for (int i = 0; i < 200; ++i) {
-    const NavigationResult result = drive.step();
-    EXPECT_TRUE(result.status == NavigationStatus::following || result.status == NavigationStatus::braking);
-    EXPECT_NEAR(result.path.back().x, 6, 1e-9);
-  }
-  EXPECT_FALSE(drive.collided);
-}
-
 TEST(Navigator, UpdatesAllocateNothing) {
   CheckedDrive drive;
   drive.block(3, -0.6, 4, 0.7);
