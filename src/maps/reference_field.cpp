@@ -53,7 +53,7 @@ ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const Refer
   reset();
 }
 
-bool ReferenceField::begin(const Pose& robot) noexcept {
+bool ReferenceField::update(const Pose& robot, double reach, double seconds) noexcept {
   if (!std::isfinite(robot.x + robot.y + robot.yaw)) return false;
   geometry_.center_x = robot.x;
   geometry_.center_y = robot.y;
@@ -62,11 +62,6 @@ bool ReferenceField::begin(const Pose& robot) noexcept {
   choose_window();
   make_sites();
   for (int column = 0; column < geometry_.columns; ++column) column_y_[column] = geometry_.cell_y(column);
-  return true;
-}
-
-bool ReferenceField::update(const Pose& robot, double reach, double seconds) noexcept {
-  if (!begin(robot)) return false;
   reach_ = reach;
   if (seconds > 0) {
     double speed = std::abs(options_.outside.speed);

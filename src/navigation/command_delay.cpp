@@ -1,5 +1,7 @@
 #include "navigation/command_delay.hpp"
 
+#include <utility>
+
 namespace slalom::navigation::detail {
 
 CommandDelay::CommandDelay(const BaseOptions& base) noexcept

@@ -132,7 +132,6 @@ class ReferenceField {
     const Site* site = nullptr;
   };
 
-  bool begin(const Pose& robot) noexcept;
   int place_of(const Pose& robot) const noexcept;
   void choose_window() noexcept;
   void make_sites() noexcept;
