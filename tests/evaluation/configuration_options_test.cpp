@@ -14,9 +14,8 @@ namespace {
 
 const std::string method = "svg_mppi";
 
-/// Options that change nothing in a configuration. A row that is no longer true fails. With one guide, there
-/// are no others; the variance of the samples is adapted; q* of `paper` has the temperature of the samples;
-/// the few samples of this test have at most one guide.
+/// Options that change nothing in a configuration. A row that is no longer true fails. With one guide, as with
+/// the few samples here, there are no others; the variance is adapted; q* of `paper` has their temperature.
 const std::map<std::string, std::set<std::string>> inert = {
     {"paper", {"restart_guides", "fit_all_guides", "variance", "fit_temperature"}},
     {"published", {"restart_guides", "fit_all_guides", "variance"}},
