@@ -14,8 +14,8 @@ namespace {
 
 const std::string method = "svg_mppi";
 
-/// Options that change nothing in a configuration. A row that is no longer true fails. With one guide, as with
-/// the few samples here, there are no others; the variance is adapted; q* of `paper` has their temperature.
+/// Options that change nothing in a configuration. A row that is no longer true fails. With one guide, as of
+/// few samples, there are no others; the variance is adapted; q* of `paper` has the temperature of samples.
 const std::map<std::string, std::set<std::string>> inert = {
     {"paper", {"restart_guides", "fit_all_guides", "variance", "fit_temperature"}},
     {"published", {"restart_guides", "fit_all_guides", "variance"}},
