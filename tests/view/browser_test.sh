@@ -1,7 +1,6 @@
 #!/bin/sh
-# Checks or tests the page: browser_test.sh PAGE_FOLDER check, or browser_test.sh PAGE_FOLDER TEST.mjs
-# PROGRAMS. Needs Node 18 or later and the packages that `script/bootstrap` installs; without, it ends with 77:
-# skipped.
+# Checks or tests the page: browser_test.sh PAGE_FOLDER check, or browser_test.sh PAGE_FOLDER TEST.mjs PROGRAMS.
+# Needs Node 18 or later and the packages that `script/bootstrap` installs; without, it ends with 77: skipped.
 set -eu
 cd "$1"
 command -v npm >/dev/null || { echo "skipped: node is not installed"; exit 77; }

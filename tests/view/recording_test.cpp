@@ -7,7 +7,6 @@
 #include "view/recording/encodings.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
-#include "view/recording/small_frame.hpp"
 
 namespace slalom::view {
 namespace {

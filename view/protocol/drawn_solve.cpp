@@ -32,7 +32,7 @@ void DrawnSolve::take(const SolveResult& from, bool draws_spread) {
 
 /// Adds samples that are evenly spread over the batch, so that the picture is as dense in every region.
 void DrawnSolve::add_candidates(const SolveResult& from) {
-  constexpr std::size_t most = 160, least = 20, most_points = 50000;  // of all candidates
+  constexpr std::size_t most = 160, least = 20, most_points = 50000;  // number in all candidates
   const SequenceBatch* const batch = from.samples;
   if (!batch || from.costs.empty()) return;
   const auto all = static_cast<std::size_t>(samples);

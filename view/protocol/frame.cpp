@@ -1,10 +1,62 @@
 #include "view/protocol/frame.hpp"
 
-#include "view/protocol/blocks.hpp"
 #include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {
 namespace {
+
+/// The number of a shape's kind in the block `bodies`.
+int kind_of(const Shape& shape) {
+  switch (shape.kind) {
+    case ShapeKind::parked_car:
+      return 1;
+    case ShapeKind::opponent:
+      return 4;
+    case ShapeKind::mover:
+      return 5;
+    case ShapeKind::goal:
+      return 6;
+    case ShapeKind::obstacle:
+      break;
+  }
+  return shape.is_disc ? 3 : 2;
+}
+
+void put_body(FrameWriter& to, std::size_t id, int kind, const Shape& shape) {
+  to.put(static_cast<std::uint16_t>(id));
+  to.put(static_cast<std::uint8_t>(kind));
+  to.put(static_cast<std::uint8_t>(shape.touched));
+  to.put_f32({shape.pose.x, shape.pose.y, shape.pose.yaw, shape.length, shape.width});
+}
+
+void put_lines(FrameWriter& to, Block block, const std::vector<Line>& lines) {
+  if (lines.empty()) return;
+  to.begin(block);
+  to.put(static_cast<std::uint32_t>(lines.size()));
+  for (const Line& line : lines) {
+    to.put(static_cast<std::uint32_t>(line.size()));
+    for (const maps::Point& p : line) to.put_f32({p.x, p.y});
+  }
+  to.end();
+}
+
+/// Writes the body, 0, and the shapes, whose numbers are their indices + 1; polygons apart.
+void put_bodies(FrameWriter& to, const Shape& body, const std::vector<Shape>& shapes) {
+  std::vector<Line> polygons;
+  to.begin(Block::bodies);
+  const auto count =
+      std::count_if(shapes.begin(), shapes.end(), [](const Shape& s) { return s.corners.empty(); });
+  to.put(static_cast<std::uint32_t>(1 + count));
+  put_body(to, 0, 0, body);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (shapes[i].corners.empty())
+      put_body(to, i + 1, kind_of(shapes[i]), shapes[i]);
+    else
+      polygons.push_back(shapes[i].corners);
+  }
+  to.end();
+  put_lines(to, Block::polygons, polygons);
+}
 
 constexpr double course_room = 1.5;  // m beside the line of a course
 
@@ -24,6 +76,17 @@ void put_points(FrameWriter& to, Poses poses, double most) {
   const double reach = std::min(reach_of(poses), most);
   to.begin_points({poses.front().x, poses.front().y}, std::max(reach / 32000, std::min(0.001, reach / 2000)));
   for (const maps::Pose& p : poses) to.put_point({p.x, p.y});
+}
+
+void put_scan(FrameWriter& to, const SeenScan& scan) {
+  to.begin(Block::scan);
+  to.put_pose(scan.sensor);
+  to.put(static_cast<std::uint32_t>(scan.ranges.size()));
+  for (const float range : scan.ranges) {
+    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
+    to.put(static_cast<std::uint16_t>(millimetres));
+  }
+  to.end();
 }
 
 /// Encodes one control step. Its control sequences are rolled out together.
@@ -51,6 +114,7 @@ class StepEncoder {
     const std::vector<Line> figure = source_.figure(step_.state), lines = source_.lines();
     find_bounds(shapes, figure, lines);
     put_scalars();
+    if (const std::optional<SeenScan> scan = source_.scan()) put_scan(to_, *scan);
     to_.append(source_.blocks());
     const Shape body{
         .pose = now_, .length = facts_.length, .width = facts_.width, .touched = frame_.collides};
@@ -254,6 +318,28 @@ Frame encode_frame(FrameSource& source, const SolveResult& solve, const StepFact
 
 Frame encode_frame(FrameSource& source, const DrawnSolve& solve, const StepFacts& step) {
   return StepEncoder(source, solve, step).encode();
+}
+
+std::string encode_ghost_frame(std::string_view frame) {
+  FrameWriter to;
+  to.begin(Block::ghost_frame);
+  to.append(frame);
+  to.end();
+  return to.take_blocks();
+}
+
+std::string encode_scene(const SubjectFacts& facts) {
+  if (!facts.map && facts.course.empty()) return {};
+  FrameWriter to;
+  if (facts.map) to.put_grid(*facts.map);
+  if (!facts.course.empty()) {
+    to.begin(Block::path);
+    to.put(static_cast<std::uint32_t>(facts.course.size()));
+    to.put(static_cast<std::uint32_t>(facts.is_closed));
+    for (const maps::ReferencePoint& p : facts.course) to.put_f32({p.x, p.y, p.speed});
+    to.end();
+  }
+  return to.take();
 }
 
 }  // namespace slalom::view

@@ -75,7 +75,7 @@ struct MonitorPage::Implementation {
         [this](auto client, const auto& what, const Json& command) { obey(client, what, command); });
     try {
       if (const WatchedStep* step = source->take()) keep(*step);
-    } catch (const std::exception& error) {  // of a function of the drawing
+    } catch (const std::exception& error) {  // the drawing of a user failed
       if (std::exchange(told_error, error.what()) != error.what())
         audience.tell(0, {{"type", "error"}, {"message", told_error}});
     }

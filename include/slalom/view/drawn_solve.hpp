@@ -17,8 +17,8 @@ struct DrawnSolve {
   std::size_t candidates = 0, guides = 0;  ///< sequences of each; guides in all iterations
   std::size_t guides_at_once = 1;          ///< guides of an iteration
   int samples = 0;                         ///< samples of which the candidates are some
-  std::vector<float> costs, weights;       ///< of the candidates
-  std::vector<std::uint8_t> collided;      ///< of the candidates
+  std::vector<float> costs, weights;       ///< those of the candidates
+  std::vector<std::uint8_t> collided;      ///< 1 for each candidate that collides
   std::vector<float> variances;            ///< as in SolveResult
 
   /// Copies from a result. Allocates only where no earlier result had as many sequences.

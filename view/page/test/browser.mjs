@@ -2,7 +2,8 @@
 // SLALOM_SUITES=drive,save runs only these suites, SLALOM_TEST=TEXT only tests whose name contains the text.
 import { chromiumPath, Harness } from "./harness.mjs";
 
-const suites = "introduction drive compare panes problem room monitor save names layout accessible pages".split(" ");
+const suites =
+  "introduction drive compare panes problem room monitor save names layout accessible pages".split(" ");
 const chosen = process.env.SLALOM_SUITES?.split(",") ?? suites;
 const program = process.argv[2];
 if (!program) {

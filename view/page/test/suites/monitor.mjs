@@ -11,7 +11,12 @@ export default async function (h) {
   await h.test("a running controller is shown with its samples and its options", async () => {
     const shown = await page.evaluate(() => {
       const { candidates, guides, plan, bodies } = slalom.frame;
-      return { candidates: candidates.count, guides: guides.guides, plan: plan.length, bodies: bodies.length };
+      return {
+        candidates: candidates.count,
+        guides: guides.guides,
+        plan: plan.length,
+        bodies: bodies.length,
+      };
     });
     assert.ok(shown.candidates > 50 && shown.guides > 0, JSON.stringify(shown));
     assert.deepEqual([shown.plan, shown.bodies], [41, 5]);
@@ -37,18 +42,21 @@ export default async function (h) {
     assert.equal(await page.evaluate(() => document.getElementById("scene").style.cursor), "default");
   });
 
-  await h.test("the page pauses and shows what was planned before, while the controller goes on", async () => {
-    await page.click("#play");
-    await look.isPaused();
-    const { newest } = await look.state();
-    await look.seek(3);
-    assert.match(await page.textContent("#play"), /^Play$/);
-    await look.until((tick) => slalom.state.newest > tick + 5, newest);
-    assert.equal(await look.scalar("tick"), 3);
-    if (process.env.SLALOM_SCREENSHOT) await page.screenshot({ path: process.env.SLALOM_SCREENSHOT });
-    await page.click("#play");
-    await look.until((tick) => slalom.scalar("tick") > tick, newest);
-  });
+  await h.test(
+    "the page pauses and shows what was planned before, while the controller goes on",
+    async () => {
+      await page.click("#play");
+      await look.isPaused();
+      const { newest } = await look.state();
+      await look.seek(3);
+      assert.match(await page.textContent("#play"), /^Play$/);
+      await look.until((tick) => slalom.state.newest > tick + 5, newest);
+      assert.equal(await look.scalar("tick"), 3);
+      if (process.env.SLALOM_SCREENSHOT) await page.screenshot({ path: process.env.SLALOM_SCREENSHOT });
+      await page.click("#play");
+      await look.until((tick) => slalom.scalar("tick") > tick, newest);
+    },
+  );
 
   await page.close();
   await server.stop();
