@@ -86,9 +86,10 @@ TEST_F(IdentifyCommand, RejectsInvalidInput) {
 class ExplainCommand : public testing::ProgramTest {};
 
 TEST_F(ExplainCommand, DrawsFiguresOfThePaper) {
-  const testing::Run python = testing::run_shell(
-      "PYTHONPATH=$(dirname '" SLALOM_PROGRAM "')/../adapters/python /usr/bin/python3 -c 'import slalom, matplotlib'",
-      folder_.string());
+  const testing::Run python =
+      testing::run_shell("PYTHONPATH=$(dirname '" SLALOM_PROGRAM
+                         "')/../adapters/python /usr/bin/python3 -c 'import slalom, matplotlib'",
+                         folder_.string());
   if (python.status != 0) GTEST_SKIP() << "the Python package or matplotlib is missing: " << python.output;
   std::set<std::string> pictures;
   for (const std::string figure : {"1", "3", "4"}) {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Checks or tests the page: browser_test.sh PAGE_FOLDER check, or browser_test.sh PAGE_FOLDER TEST.mjs PROGRAMS.
+# Checks or tests the page: browser_test.sh PAGE_FOLDER check, or browser_test.sh PAGE_FOLDER TEST.mjs PROGRAM
 # Needs Node 18 or later and the packages that `script/bootstrap` installs; without, it ends with 77: skipped.
 set -eu
 cd "$1"
