@@ -22,10 +22,7 @@ const std::map<std::string, std::set<std::string>> inert = {
     {"hardware", {"restart_guides", "fit_all_guides", "variance"}},
     {"default_kinematic", {"variance"}},
     {"default_speed", {"variance"}},
-    {"race", {"guides"}},
-    {"race_obstacles", {"guides"}},
-    {"racing_benchmark", {"guides"}},
-    {"passenger_car", {"guides"}}};
+    {"race", {"guides"}}};
 
 /// Options that act only where a guide leaves its bounds, all its samples are bad, or a limit is reached.
 const std::set<std::string> seldom = {"clamp_guides", "subtract_minimum", "gradient_floor", "variance_min",
