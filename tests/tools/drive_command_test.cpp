@@ -7,11 +7,6 @@
 namespace slalom::tools {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using testing::content;
-using testing::run_program;
-
 class DriveCommand : public testing::ProgramTest {
  protected:
   /// Drives on the smallest course with few samples, unless the arguments say otherwise.
