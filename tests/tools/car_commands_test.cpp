@@ -102,8 +102,6 @@ TEST_F(ExplainCommand, NamesMistakes) {
   expect_refused("explain --figure 3", {"--plot: is required"}, 2);
 }
 
-using testing::expect_says;
-
 class NavigateCommand : public testing::ProgramTest {};
 
 TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
@@ -149,10 +147,6 @@ TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
   expect_refused("navigate --scenario no-way --json /no/such/folder/out.json",
                  {"out.json", "cannot be written"});
 }
-
-using testing::content;
-using testing::expect_says;
-using testing::run_shell;
 
 class ExportCommand : public testing::ProgramTest {
  protected:
