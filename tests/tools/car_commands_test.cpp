@@ -100,6 +100,10 @@ TEST_F(ExplainCommand, DrawsFiguresOfThePaper) {
 TEST_F(ExplainCommand, NamesMistakes) {
   expect_refused("explain --figure 2 --plot f.svg", {"'2' must be 1, 3 or 4"}, 2);
   expect_refused("explain --figure 3", {"--plot: is required"}, 2);
+  const std::string words =
+      "cp '" SLALOM_PROGRAM "' . && PYTHONPATH= ./slalom explain --figure 3 --plot f.svg";
+  const std::string alone = testing::run_shell(words, folder_.string()).output;
+  EXPECT_NE(alone.find(" needs the package slalom; SLALOM_PYTHON names another"), std::string::npos) << alone;
 }
 
 class NavigateCommand : public testing::ProgramTest {};

@@ -254,8 +254,7 @@ void declare_compare(Subcommand& command) {
                  {.required = true});
   command.option(
       "second", arguments->second,
-      "Output folder of the other evaluation, or a folder of several; evaluations of equal name are "
-      "compared",
+      "Output folder of the other evaluation, or a folder of several; evaluations of equal name are compared",
       {.required = true});
   command.json(arguments->json, "the comparison");
   command.examples({"compare BEFORE AFTER", "compare BEFORE AFTER --json compared.json"});

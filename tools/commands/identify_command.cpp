@@ -65,8 +65,7 @@ void advise(std::FILE* out, const Identification& found) {
   if (!wheelbase_known)
     std::fprintf(out,
                  "This drive determines only the ratio of gain and wheelbase, %.3f 1/m. Measure the "
-                 "wheelbase and give "
-                 "it with --wheelbase.\n\n",
+                 "wheelbase and give it with --wheelbase.\n\n",
                  ratio);
   advise_steering(out, found);
   if (wheelbase_known)

@@ -255,8 +255,7 @@ void declare_racing_benchmark(Subcommand& command) {
   command.option("--set", arguments->scenario.set, "section.option=value; may be repeated");
   command.option(
       "--margin", arguments->margin,
-      "Distance that the car on the raceline keeps from walls, m; in narrow places less, down to 0.4 "
-      "of it",
+      "Distance that the car on the raceline keeps from walls, m; in narrow places less, down to 0.4 of it",
       {0, 10});
   command.option("--car", arguments->car, car_help);
   command.flag("--quick", arguments->quick, "Drive one lap of each map instead of ten");

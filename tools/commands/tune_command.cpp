@@ -24,7 +24,10 @@ void become_python(const std::string& module) {
                            (others ? ":" + std::string(others) : "");
   ::setenv("PYTHONPATH", path.c_str(), 1);
   ::setenv("SLALOM_PROGRAM", program.c_str(), 1);
-  std::vector<std::string> words{python, "-c", "from slalom import study; study.end_with('." + module + "')"};
+  std::vector<std::string> words{python, "-c", R"(import sys
+try: from slalom import study
+except ImportError as e: sys.exit(f"slalom: {e}: {sys.executable} needs the package slalom; SLALOM_PYTHON names another")
+study.end_with('.)" + module + "')"};
   std::ifstream line("/proc/self/cmdline", std::ios::binary);
   int index = 0;
   for (std::string word; std::getline(line, word, '\0');)

@@ -56,8 +56,7 @@ void print_tracking(const std::string& label, const TrackingFigures& t, int laps
   const auto percent = [](int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; };
   std::fprintf(out,
                "%s: of cars in view within 8 m %.2f %% detected, after 0.2 s in view %.2f %%; %.2f false "
-               "objects a lap; error "
-               "%.3f m, %.2f m/s, %.3f rad (root mean square); update p99 %.2f ms\n",
+               "objects a lap; error %.3f m, %.2f m/s, %.3f rad (root mean square); update p99 %.2f ms\n",
                label.c_str(), percent(t.detected, t.in_view), percent(t.long_detected, t.long_in_view),
                static_cast<double>(t.false_objects) / std::max(laps, 1), t.position_error, t.speed_error,
                t.yaw_error, t.update_p99);

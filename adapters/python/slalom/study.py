@@ -74,7 +74,8 @@ def needed(module: str, package: str = "") -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise ImportError(f"{error}: install python3-{module} (Debian), or {package or module} of the index") from None
+        name = module.partition(".")[0]
+        raise ImportError(f"{error}: install python3-{name} (Debian), or {package or name} of the index") from None
 
 
 def keep(file: Path, settings: str) -> None:

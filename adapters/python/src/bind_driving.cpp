@@ -109,8 +109,7 @@ void bind_planner(py::module_& module) {
           "[n, 2] (m), relative to the car. `imu`: yaw rate, and acceleration forward and to the left. "
           "`others`: PredictedObstacle of other cars. `obeyed`: steer and speed, if the car obeys another "
           "command. `goal_speed`: m/s, at most planner.max_speed. Returns status, steer (rad), speed (m/s), "
-          "predicted [n, 4], "
-          "tick_time (s) and corrections, the number of values that the final check changed.")
+          "predicted [n, 4], tick_time (s) and corrections, how many values the final check changed.")
       .def("reset", &vehicle::Planner::reset, "seed"_a = 0,
            "Discards all state and starts the random numbers from `seed`.");
 }
@@ -251,8 +250,7 @@ void bind_simulated_world(py::module_& module) {
             if (steps < 0) throw py::value_error("steps: " + std::to_string(steps) + " must be at least 0");
             std::vector<slalom::Command> all;
             for (const auto& c : commands) {
-              if (!std::isfinite(c[0]) || !std::isfinite(c[1]))
-                throw py::value_error("commands: must be finite");
+              check_finite("commands", c);
               all.push_back({c[0], c[1]});
             }
             const py::gil_scoped_release unlock;
@@ -285,8 +283,8 @@ PYBIND11_MODULE(_driving, module) {
   module.doc() = "Courses, simulator and planner of cars, and the navigator of mobile robots.";
   pybind11::module_::import("slalom._slalom");  // registers the exceptions
   slalom::python::bind_world(module);
+  slalom::python::bind_tracking(module);  // before the signatures that name its classes
   slalom::python::bind_planner(module);
   slalom::python::bind_laps(module);
   slalom::python::bind_navigation(module);
-  slalom::python::bind_tracking(module);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "slalom/maps/pose_limits.hpp"
 #include "slalom/navigation/navigator.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "slalom/tracking/people.hpp"
@@ -116,10 +117,8 @@ struct PythonNavigator : Navigator {
   using Navigator::Navigator;
   void set_term(const py::object& function) {
     cost = function.is_none() ? nullptr : std::make_shared<PythonCost>(PythonCost{py::function(function)});
-    if (cost)
-      set_cost([term = cost](const auto& states, std::span<double> costs) { term->add(states, costs); });
-    else
-      set_cost({});
+    set_cost({});
+    if (cost) set_cost([term = cost](const auto& states, auto costs) { term->add(states, costs); });
   }
   void check_term() const {
     if (cost && cost->error) std::rethrow_exception(std::exchange(cost->error, nullptr));
@@ -196,10 +195,14 @@ Options options_of(bool people, const Options& of_people, const py::kwargs& keyw
 
 Prediction make_prediction(const Numbers& poses, double length, double width, double interval,
                            const std::vector<double>& weights, int id) {
-  const auto count = static_cast<py::ssize_t>(weights.size());
-  if (poses.ndim() != 3 || poses.shape(2) != 5 || poses.shape(0) != count || poses.shape(1) < 1 ||
-      count < 1 || count > maps::PredictedObstacle::max_hypotheses)
-    throw py::value_error("PredictedObstacle.poses: must have shape (n, times, 5), with n weights, 1 to 4");
+  const auto count = static_cast<py::ssize_t>(weights.size()), axes = poses.ndim();
+  if (axes < 2 || axes > 3 || (axes == 3 ? poses.shape(0) : 1) != count || poses.shape(axes - 1) != 5 ||
+      poses.shape(axes - 2) < 1 || count < 1 || count > maps::PredictedObstacle::max_hypotheses)
+    throw py::value_error("PredictedObstacle.poses: shape must be (times, 5) or (1 to 4 weights, times, 5)");
+  check_finite("PredictedObstacle.poses", {poses.data(), static_cast<std::size_t>(poses.size())});
+  check_finite("PredictedObstacle.weights", weights);
+  check_finite("PredictedObstacle: length, width, interval", std::array{length, width, interval});
+  if (interval <= 0) throw py::value_error("PredictedObstacle.interval: must be positive");
   Prediction made;
   maps::PredictedObstacle& each = made.obstacle;
   each.id = id, each.length = length, each.width = width, each.interval = interval;
@@ -218,6 +221,9 @@ void bind_objects(py::module_& module) {
                          double length, double width, const Covariance& covariance) {
                TrackedObject made{id, to_pose(pose), speed, yaw_rate, length, width};
                std::memcpy(made.covariance, covariance.data(), sizeof made.covariance);
+               maps::check_pose("TrackedObject.pose", made.pose);
+               check_finite("TrackedObject: sizes and speeds", std::array{length, width, speed, yaw_rate});
+               check_finite("TrackedObject.covariance", {&made.covariance[0][0], 25});
                return made;
              }),
              "id"_a, "pose"_a, py::kw_only(), "speed"_a, "yaw_rate"_a = 0.0, "length"_a = 0.5,
@@ -238,7 +244,7 @@ void bind_objects(py::module_& module) {
   py::class_<Prediction> predicted(
       module, "PredictedObstacle", guarded(),
       "A box that moves, in hypotheses with probabilities `weights`. `poses` [hypothesis, time, 5]: x, y, "
-      "yaw, and standard deviations along and across it (m, rad), now and every `interval` s.");
+      "yaw, standard deviations along and across (m, rad), now and every `interval` s. Of one: [time, 5].");
   predicted.def(py::init(&make_prediction), "poses"_a, py::kw_only(), "length"_a, "width"_a,
                 "interval"_a = 0.1, "weights"_a = std::vector<double>{1}, "id"_a = 0);
   const auto read_of = reader(predicted);

@@ -46,6 +46,12 @@ inline py::array_t<double> rows_of(std::span<const maps::Pose> poses) {
   return rows_of(poses, [](const maps::Pose& pose) { return std::array{pose.x, pose.y, pose.yaw}; });
 }
 
+/// Throws ValueError that names `what` unless all numbers are finite.
+inline void check_finite(const char* what, std::span<const double> numbers) {
+  if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
+    throw py::value_error(std::string(what) + ": must be finite");
+}
+
 /// The prediction of a moving obstacle, with its poses.
 struct Prediction {
   maps::PredictedObstacle obstacle;

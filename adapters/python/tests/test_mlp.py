@@ -36,18 +36,16 @@ def test_a_network_is_stored_and_read(tmp_path):
 
 
 def test_mistakes_are_named():
-    with pytest.raises(ValueError, match="'sine' must be one of tanh, relu, softplus, silu"):
-        Mlp([(np.zeros((1, 1)), np.zeros(1))], "sine")
-    with pytest.raises(ValueError, match=r"inputs \(3, 1\) and outputs \(2, 1\) must be arrays"):
-        train_mlp(np.zeros((3, 1)), np.zeros((2, 1)))
-    with pytest.raises(ValueError, match="must be finite"):
-        train_mlp(np.full((3, 1), np.nan), np.zeros((3, 1)))
+    for call, words in [(lambda: Mlp([(np.zeros((1, 1)), np.zeros(1))], "sine"), "'sine' must be one of tanh, relu, softplus, silu"),
+                        (lambda: train_mlp(np.zeros((3, 1)), np.zeros((2, 1))), r"inputs \(3, 1\) and outputs \(2, 1\) must be arrays"),
+                        (lambda: train_mlp(np.full((3, 1), np.nan), np.zeros((3, 1))), "must be finite"),
+                        (lambda: train_mlp(np.zeros((3, 1)), np.zeros((3, 2)), residual=True), "residual")]:
+        with pytest.raises(ValueError, match=words):
+            call()
     for mistake in [{"hidden": (0,)}, {"hidden": (8, -1)}, {"learning_rate": math.nan}, {"learning_rate": 0}, {"batch": 0},
                     {"epochs": 1.5}]:
         with pytest.raises(ValueError, match=f"train_mlp: {next(iter(mistake))}: .* must be"):
             train_mlp(np.zeros((3, 1)), np.zeros((3, 1)), **mistake)
-    with pytest.raises(ValueError, match="residual"):
-        train_mlp(np.zeros((3, 1)), np.zeros((3, 2)), residual=True)
 
 
 def points():

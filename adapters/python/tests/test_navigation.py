@@ -75,10 +75,22 @@ def test_people_in_scans_are_tracked_and_predicted():
     assert seen["status"] == "ok" and seen["pose"] == tuple(pose) and found.unseen == 0 and 0.4 < found.width < 0.6
     assert np.hypot(*(found.pose[:2] - person)) < 0.1 and found.speed == pytest.approx(0.6, abs=0.1) and found.covariance[3, 3] > 0
     assert np.allclose(other.poses[np.argmax(other.weights), 10, :2], person + [0, 0.6], atol=0.15), "a second later"
-    for call, words in [(lambda: slalom.PredictedObstacle(np.zeros((1, 3, 2)), length=1, width=1), "must have shape"),
-                        (lambda: slalom.ObjectTracker(gate=0), "gate: '0' must be in"), (lambda: slalom.Predictor([(0, 0, 0, 1)]), "path")]:
+    with pytest.raises(TypeError, match="others: .*_driving.PredictedObstacle"):
+        slalom.Navigator.update(others=seen["objects"])
+    thing, box = {"id": 1, "pose": (0, 0, 0), "speed": 1}, {"poses": np.zeros((3, 5)), "length": 1, "width": 1}
+    assert slalom.PredictedObstacle(**box).poses.shape == (1, 3, 5) and slalom.TrackedObject(**thing).id == 1
+    for make, given, words in [
+            (slalom.PredictedObstacle, {**box, "poses": np.zeros((1, 3, 2))}, "shape must be"),
+            (slalom.PredictedObstacle, {**box, "poses": np.full((3, 5), np.nan)}, "poses: must be finite"),
+            (slalom.PredictedObstacle, {**box, "weights": [np.inf]}, "weights: must be finite"),
+            (slalom.PredictedObstacle, {**box, "width": np.nan}, "width, interval: must be finite"),
+            (slalom.PredictedObstacle, {**box, "interval": 0}, "must be positive"),
+            (slalom.TrackedObject, {**thing, "pose": (0, np.nan, 0)}, "TrackedObject.pose"),
+            (slalom.TrackedObject, {**thing, "speed": np.nan}, "sizes and speeds: must be finite"),
+            (slalom.TrackedObject, {**thing, "covariance": np.full((5, 5), np.nan)}, "covariance: must be finite"),
+            (slalom.ObjectTracker, {"gate": 0}, "gate: '0' must be in"), (slalom.Predictor, {"course": [(0, 0, 0, 1)]}, "path")]:
         with pytest.raises(ValueError, match=words):
-            call()
+            make(**given)
 
 
 def test_errors_of_a_cost_reach_the_caller():

@@ -11,6 +11,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch_ros.actions import LoadComposableNodes, Node
 from launch_ros.descriptions import ComposableNode
 
+TOPICS = ("scan", "odom", "imu", "drive", "executed", "goal_speed", "obstacle_points", "reference_waypoint", "tracked_objects")
 ARGUMENTS = (
     ("course", "", "a name or a folder; empty: map and path are topics"),
     ("configuration", "default", "a name or a file"),
@@ -22,10 +23,8 @@ ARGUMENTS = (
     ("pose_file", os.path.join(os.path.expanduser("~"), ".ros", "slalom_pose"),
      "from which a localiser that is restarted continues"),
     ("namespace", "", "of the nodes"),
-    ("scan", "scan", "topic"),
-    ("odom", "odom", "topic"),
-    ("imu", "imu", "topic"),
-    ("drive", "drive", "topic"),
+    *((topic, topic, "topic") for topic in TOPICS),
+    ("others", "none", "where the planner learns of other cars: none, scan or topic"),
     ("map_frame", "map", ""),
     ("base_frame", "base_link", "x ahead, y to the left"),
     ("rear_axle", "0.0", "m, x of the middle of the rear axle in the base frame"),
@@ -38,24 +37,14 @@ ARGUMENTS = (
 
 def nodes(context):
     given = {name: context.launch_configurations[name] for name, _, _ in ARGUMENTS}
-    common = {
-        "autostart": True,
-        "course": given["course"],
-        "map_frame": given["map_frame"],
-        "base_frame": given["base_frame"],
-        "rear_axle": float(given["rear_axle"]),
-        "use_sim_time": given["use_sim_time"] == "true",
-    }
-    planner = {
-        "configuration": given["configuration"],
-        "method": given["method"],
-        "planner.max_speed": float(given["max_speed"]),
-        "scan_interval": float(given["scan_interval"]),
-        "view_port": int(given["view_port"]),
-    }
+    common = {"autostart": True, "course": given["course"], "map_frame": given["map_frame"], "base_frame": given["base_frame"],
+              "rear_axle": float(given["rear_axle"]), "use_sim_time": given["use_sim_time"] == "true"}
+    planner = {"configuration": given["configuration"], "method": given["method"], "others": given["others"],
+               "planner.max_speed": float(given["max_speed"]), "scan_interval": float(given["scan_interval"]),
+               "view_port": int(given["view_port"])}
     localiser = {"everywhere": given["everywhere"] == "true", "pose_file": given["pose_file"]}
     file = [given["params"]] if given["params"] else []
-    remappings = [(topic, given[topic]) for topic in ("scan", "odom", "imu", "drive") if given[topic] != topic]
+    remappings = [(topic, given[topic]) for topic in TOPICS if given[topic] != topic]
     wanted = [("planner", "PlannerNode", planner)]
     if given["localise"] == "true":
         os.makedirs(os.path.dirname(given["pose_file"]) or ".", exist_ok=True)
