@@ -18,8 +18,7 @@ const Target configuration_target(
     []() -> Seeds {
       return {vehicle::to_yaml({}),
               "base: other\nsvg_mppi:\n  samples: 4000\n  variance: [0.1]\nplanner:\n  max_speed: "
-              "6\nvehicle:\n  model: "
-              "kinematic\n",
+              "6\nvehicle:\n  model: kinematic\n",
               "mppi: {temperature: 0.5, input_min: -.inf}\nplanner: {stop_when_blocked: true}\n"};
     },
     [](std::string_view bytes) {

@@ -66,8 +66,7 @@ def test_parameters_of_a_compiled_problem():
                                                             "input_min": -5, "input_max": 5, "input_levels": 3}
     controller = slalom.Mppi(pendulum, horizon=20, temperature=0.1, variance=16)
     plans = [controller.solve([0.3, 0], elapsed=0.01).inputs.copy() for _ in range(3)]
-    assert np.isin(plans, [-5, 0, 5]).all() and len(np.unique(plans)) > 1
-    assert controller.options["variance"] == 16
+    assert np.isin(plans, [-5, 0, 5]).all() and len(np.unique(plans)) > 1 and controller.options["variance"] == 16
     controller.problem.pair = [3, 4]
     assert controller.problem.pair == [3, 4] and pendulum.pair == [1, 2]
     assert isinstance(controller.problem, slalom.CompiledProblem) and "weight" in dir(controller.problem)
@@ -128,8 +127,7 @@ def test_a_network_as_a_problem_is_that_of_callables(activation):
                                states=2, inputs=1, dt=0.1, input_min=-2, input_max=2)
     compiled = slalom.MlpProblem(mlp, **PARTS)
     plans = [slalom.Mppi(p, horizon=12, samples=200).solve([0.2, -0.3]) for p in (compiled, callables)]
-    assert np.allclose(plans[0].costs, plans[1].costs, rtol=1e-4)
-    assert np.allclose(plans[0].inputs, plans[1].inputs, atol=1e-4)
+    assert np.allclose(plans[0].costs, plans[1].costs, rtol=1e-4) and np.allclose(plans[0].inputs, plans[1].inputs, atol=1e-4)
     assert plans[0].cost == pytest.approx(plans[1].cost, rel=1e-5)
     assert np.allclose(compiled.step([0.2, -0.3], [1]), callables.step([0.2, -0.3], [1]), atol=1e-5)
 
@@ -234,12 +232,11 @@ def test_a_batch_of_solves_gives_the_plans_of_single_solves():
             plans = slalom.solve_batch(batch, states, elapsed=0.02, threads=threads)
             for plan, controller, x in zip(plans, single, states):
                 assert np.array_equal(plan.inputs, controller.solve(x, elapsed=0.02).inputs)
-    with pytest.raises(ValueError, match="states: has 1 states, must have 7, one for each controller"):
-        slalom.solve_batch(batch, states[:1])
-    with pytest.raises(ValueError, match="elapsed: -1.* must be finite"):
-        slalom.solve_batch(batch, states, elapsed=-1)
-    with pytest.raises(RuntimeError, match="another thread is using it"):
-        slalom.solve_batch([one, one], states[:2])
+    for many, error, words in [((batch, states[:1], 0), ValueError, "states: has 1 states, must have 7, one for each controller"),
+                               ((batch, states, -1), ValueError, "elapsed: -1.* must be finite"),
+                               (([one, one], states[:2], 0), RuntimeError, "another thread is using it")]:
+        with pytest.raises(error, match=words):
+            slalom.solve_batch(*many)
 
 
 def test_callables_of_a_batch_run_on_one_thread_and_their_exceptions_leave_it():

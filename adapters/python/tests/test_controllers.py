@@ -28,8 +28,7 @@ def test_every_option_is_a_keyword_with_its_default():
         for option in slalom.options(method):
             assert controller.options[option["name"]] == option["default"]
             again = cls(slalom.Pendulum(), **{option["name"]: option["default"]})
-            assert again.options == controller.options
-            assert option["name"] in cls.__doc__
+            assert again.options == controller.options and option["name"] in cls.__doc__
 
 
 @pytest.mark.parametrize("make, error, text", [
@@ -77,8 +76,7 @@ def test_results_are_views_of_the_controller():
     for name, shape in shapes.items():
         array = getattr(plan, name)
         assert array.shape == shape and array.base is not None and not array.flags.writeable, name
-    assert plan.weights.sum() == pytest.approx(1, abs=1e-4)
-    assert plan.samples[:, 0, 0].std() > 0
+    assert plan.weights.sum() == pytest.approx(1, abs=1e-4) and plan.samples[:, 0, 0].std() > 0
     kept, held = plan.costs, [plan.inputs, plan.states]
     before = [each.copy() for each in held]
     controller.solve([1.0, 0.0])

@@ -50,8 +50,7 @@ def test_a_cost_of_ones_own_slows_the_robot():
         steps = np.linalg.norm(np.diff(trace[:, :2], axis=0), axis=1)
         return np.max(steps[(trace[1:, 0] > 7.2) & (trace[1:, 0] < 8)]) / 0.05
 
-    assert speed(drive(1)) > 0.7 and speed(drive(1, slow)) < 0.4
-    assert steps == set(range(56))
+    assert speed(drive(1)) > 0.7 and speed(drive(1, slow)) < 0.4 and steps == set(range(56))
 
 
 def scan(pose, person, radius=0.25):
@@ -103,8 +102,7 @@ def test_errors_of_a_cost_reach_the_caller():
 
 def test_errors_name_the_argument_and_the_rule():
     costmap, body = slalom.Costmap(room(), unknown="priced"), slalom.Footprint([[0.2, 0.2], [-0.2, 0.2], [0, -0.3]])
-    assert costmap.distance(1, 1) > 0.5
-    assert slalom.plan_path(costmap, body, (1, 3, 0), (4.7, 3, 0)).shape == (0, 3)
+    assert costmap.distance(1, 1) > 0.5 and slalom.plan_path(costmap, body, (1, 3, 0), (4.7, 3, 0)).shape == (0, 3)
     navigator = slalom.Navigator(body, costmap)
     for call, words in [(lambda: navigator.set_path(np.zeros((3, 2))), "path: has shape"),
                         (lambda: slalom.Costmap(room(), unknown="free"), "unknown: 'free' must be one of"),

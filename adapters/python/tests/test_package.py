@@ -21,8 +21,7 @@ def point(**changes):
 
 
 def test_problems_print_as_they_are_made():
-    assert repr(slalom.CartPole()) == "slalom.CartPole()"
-    assert repr(slalom.CartPole(track=3.5)) == "slalom.CartPole(track=3.5)"
+    assert repr(slalom.CartPole()) == "slalom.CartPole()" and repr(slalom.CartPole(track=3.5)) == "slalom.CartPole(track=3.5)"
     drive = slalom.DifferentialDrive(goal_x=3)
     drive.discs = [(1, 0, 0.5)] * 3
     assert repr(drive) == "slalom.DifferentialDrive(goal_x=3.0, discs=[(1.0, 0.0, 0.5), (1.0, 0.0, 0.5), (1.0, 0.0, 0.5)])"

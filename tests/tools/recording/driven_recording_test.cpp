@@ -170,8 +170,7 @@ void write_sqlite(const std::vector<Message>& messages, const std::filesystem::p
     ASSERT_EQ(sqlite3_exec(database, text, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
   };
   run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
-      "serialization_format "
-      "TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
+      "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
       "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, "
       "data BLOB NOT NULL); BEGIN");
   std::map<std::string, int> topics;

@@ -67,11 +67,9 @@ def in_slalom(given):
     car = {name: given[name] for name in ("course", "configuration", "method", "max_speed")}
     car.update(localise="true", everywhere="true", pose_file="")
     if given["composed"] == "true":
-        return [ComposableNodeContainer(name="slalom", namespace="", package="rclcpp_components",
-                                        executable="component_container_isolated", output="screen",
-                                        composable_node_descriptions=[
-                                            ComposableNode(package="slalom_ros", plugin="slalom_ros::WorldNode",
-                                                           name="world", parameters=[world])]),
+        node = ComposableNode(package="slalom_ros", plugin="slalom_ros::WorldNode", name="world", parameters=[world])
+        return [ComposableNodeContainer(name="slalom", namespace="", package="rclcpp_components", output="screen",
+                                        executable="component_container_isolated", composable_node_descriptions=[node]),
                 include("slalom_ros", "car.launch.py", container="slalom", **car)]
     return [Node(package="slalom_ros", executable="world_node", name="world", parameters=[world], output="screen"),
             include("slalom_ros", "car.launch.py", **car)]
