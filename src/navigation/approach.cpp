@@ -7,7 +7,7 @@ namespace {
 
 constexpr double wrong_way = std::numbers::pi / 3;  // rad from the path, from which the robot first turns
 constexpr std::size_t most_goals = 30;              // poses, as goals of a search
-constexpr double more_room = 0.1;                   // radii of room that a manoeuvre keeps if it can
+constexpr double more_room = 0.1;  // radii of room that a manoeuvre keeps if it can, or a third
 
 maps::ManoeuvreOptions search_options(const NavigatorOptions& options, const Footprint& footprint) {
   const bool turns = turns_on_the_spot(options.base);
@@ -44,7 +44,8 @@ class CostmapRoom final : public maps::BodyRoom {
 Approach::Approach(const NavigatorOptions& options, const Footprint& footprint)
     : options_(options),
       footprint_(footprint),
-      enlarged_(footprint.without_rim(-more_room * footprint.circumscribed_radius())),
+      bodies_{footprint.without_rim(-more_room * footprint.circumscribed_radius()),
+              footprint.without_rim(-more_room / 3 * footprint.circumscribed_radius()), footprint},
       search_(search_options(options, footprint)) {
   goals_.reserve(2 * most_goals);
 }
@@ -66,8 +67,11 @@ double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& c
 
 /// Searches a manoeuvre from a pose to one of the goals, at first with more room.
 bool Approach::search(const maps::Pose& start, bool backward_in_time, const Costmap& costmap) noexcept {
-  return search_.search(CostmapRoom(costmap, enlarged_, start, backward_in_time), goals_) ||
-         search_.search(CostmapRoom(costmap, footprint_, start, backward_in_time), goals_);
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const Footprint& body) {
+    const CostmapRoom room(costmap, body, start, backward_in_time);
+    const auto is_free = [&](const maps::ManoeuvreGoal& goal) { return room.at(goal.pose) >= 0; };
+    return std::any_of(goals_.begin(), goals_.end(), is_free) && search_.search(room, goals_);
+  });
 }
 
 /// Searches a manoeuvre from a pose to one of the points `first` to `last` of the path; or, backward in time,
@@ -101,7 +105,10 @@ bool Approach::dock(PathGuide& guide, const maps::Pose& robot, const Costmap& co
                     std::vector<maps::Pose>& buffer) noexcept {
   const maps::Pose& goal = guide.goal();
   const double yaw = std::atan2(goal.y - robot.y, goal.x - robot.x);
-  if (turns_on_the_spot(options_.base) && free_turn(robot, yaw, costmap) != 0) return false;
+  const maps::Pose turned{robot.x, robot.y, yaw}, there{goal.x, goal.y, yaw};
+  if (turns_on_the_spot(options_.base) && free_turn(robot, yaw, costmap) != 0 &&
+      !costmap.collides(footprint_, turned, there) && free_turn(there, goal.yaw, costmap) != 0)
+    return false;
   goals_.clear();
   for (const double run : {-footprint_.circumscribed_radius(), footprint_.circumscribed_radius()}) {
     const maps::Pose begin{goal.x + run * std::cos(goal.yaw), goal.y + run * std::sin(goal.yaw), goal.yaw};
@@ -126,7 +133,8 @@ bool Approach::lead(PathGuide& guide, const maps::Pose& robot, std::size_t joint
   }
   buffer.insert(buffer.end(), points.begin() + joint, points.end());
   buffer.back() = guide.goal();
-  end_ = guide.step() * static_cast<double>(points.size() - 1 - joint);
+  const double left = guide.step() * static_cast<double>(points.size() - 1 - joint);
+  end_ = begin_ < 0 ? left : std::min(end_, left);  // it may lead into the last one
   guide.set(buffer, turns_on_the_spot(options_.base));
   begin_ = guide.remaining();
   return true;

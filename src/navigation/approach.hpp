@@ -45,7 +45,8 @@ class Approach {
               bool backward_in_time, const Costmap& costmap) noexcept;
 
   NavigatorOptions options_;
-  Footprint footprint_, enlarged_;
+  Footprint footprint_;
+  std::array<Footprint, 3> bodies_;  ///< the last is the body itself, the first needs most room
   maps::ManoeuvreSearch search_;
   ReservedVector<maps::ManoeuvreGoal> goals_;
   double begin_ = -1, end_ = 0;  ///< m of path left at the begin and at the end of the last manoeuvre

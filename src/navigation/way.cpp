@@ -45,6 +45,7 @@ Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps
          double reach)
     : options_(options),
       footprint_(footprint),
+      inner_(footprint.without_rim(geometry.resolution)),
       guide_(reach),
       planner_(geometry, footprint.half_width()),
       approach_(options, footprint),
@@ -163,7 +164,7 @@ void Way::clear() noexcept {
   closed_.forget_dead_ends();
   planner_.cancel();
   detour_left_ = infinity;
-  without_way_ = since_search_ = since_meeting_ = 0;
+  without_way_ = since_search_ = since_meeting_ = standing_ = 0;
   recovery_.reset();
   stop_ = no_stop;
 }
@@ -193,15 +194,15 @@ std::size_t Way::first_closed(const Costmap& costmap, std::size_t first, double 
   return count;
 }
 
-/// Whether a point is closed: the body has no room there, in a manoeuvre at just this yaw, or it is in a
-/// closed place.
+/// Whether a point is closed: the body has no room there, in a manoeuvre at just this yaw but for a rim that
+/// the search did not see, or it is in a closed place.
 bool Way::is_closed(const Costmap& costmap, std::size_t point) const noexcept {
   const maps::Pose& pose = guide_.points()[point];
   const maps::Point place = position(pose);
   if (closed_.contain(place)) return true;
   const double left = guide_.step() * static_cast<double>(guide_.points().size() - 1 - point);
-  return planner_.knows(costmap, place) && (approach_.manoeuvres(left) ? costmap.collides(footprint_, pose)
-                                                                       : !planner_.has_room(costmap, place));
+  return planner_.knows(costmap, place) &&
+         (approach_.manoeuvres(left) ? costmap.collides(inner_, pose) : !planner_.has_room(costmap, place));
 }
 
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
@@ -308,6 +309,7 @@ void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const 
   const std::size_t count = guide_.points().size();
   if (std::exchange(count_, count) != count) other_ += left - left_;  // another path: the progress goes on
   left_ = left;
+  standing_ = speed_ < recovery_.lengths().standing ? standing_ + elapsed : 0;
   recovery_.update({.arc = other_ - left,
                     .speed = speed_,
                     .waits = without_way_ > 0 || stop_ != no_stop || others.are_near(position(robot))},

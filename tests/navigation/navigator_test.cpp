@@ -120,6 +120,19 @@ TEST(Navigator, ASearchOverALargeCostmapTakesSeveralUpdates) {
   EXPECT_FALSE(drive.collided);
 }
 
+TEST(Navigator, WithoutDetoursItReportsNone) {
+  NavigatorOptions options{.find_detours = false};
+  CheckedDrive drive(options);
+  drive.block(4, -2, 4.3, 2);
+  drive.navigator->set_path(straight);
+  for (int i = 0; i < 200; ++i) {
+    const NavigationResult result = drive.step();
+    EXPECT_TRUE(result.status == NavigationStatus::following || result.status == NavigationStatus::braking);
+    EXPECT_NEAR(result.path.back().x, 6, 1e-9);
+  }
+  EXPECT_FALSE(drive.collided);
+}
+
 TEST(Navigator, BrakesWhereEveryPlanMeetsAnObstacle) {
   CheckedDrive drive;
   drive.navigator->set_path(straight);

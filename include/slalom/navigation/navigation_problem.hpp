@@ -32,9 +32,17 @@ class BodyCheck {
       // A position lies within half of a diagonal (0.71 edges) of the middle of its cell.
       parts_[i] = {
           {part.middle.x, part.middle.y}, part.contained - 0.71 * resolution, part.covering, count, 0};
+      std::vector<maps::Point> own;
       for (const maps::Point& point : points)
-        if (footprint.part_at(point) == i) points_[count++] = {point.x, point.y};
-      parts_[i].end = count;
+        if (footprint.part_at(point) == i) own.push_back(point);
+      for (std::size_t k = 0; k < own.size(); ++k) points_[count + k] = {own[k].x, own[k].y};
+      for (std::size_t k = 0; k < own.size(); k += group) {
+        const std::size_t end = std::min(k + group, own.size());
+        double reach = 0;
+        for (std::size_t j = k; j < end; ++j) reach = std::max(reach, distance(own[j], own[(k + end) / 2]));
+        reaches_[count + k] = reach + 2 * resolution;  // of positions within two cells
+      }
+      parts_[i].end = count += own.size();
     }
   }
 
@@ -58,8 +66,14 @@ class BodyCheck {
       collided = collided | (distance < T(part.contained));
       const mask_t<T> unsure = (around < T(unsure_)) & !collided;
       if (any(unsure)) {
-        for (std::size_t i = part.begin; i < part.end; ++i)
-          collided = collided | (look_up_at(distances, points_[i], x, y, sine, cosine) < T(half_cell_));
+        for (std::size_t first = part.begin; first < part.end; first += group) {
+          const std::size_t end = std::min(first + group, part.end);
+          const T near = look_up_at(distances, points_[(first + end) / 2], x, y, sine, cosine);
+          // Off the map no distance is known.
+          if (!any(unsure & ((near < T(reaches_[first])) | !(near < T(Costmap::reach))))) continue;
+          for (std::size_t i = first; i < end; ++i)
+            collided = collided | (look_up_at(distances, points_[i], x, y, sine, cosine) < T(half_cell_));
+        }
       }
     }
     return {max(clearance - T(half_cell_), T(0)), collided};
@@ -84,9 +98,11 @@ class BodyCheck {
   }
 
   std::array<Part, Footprint::part_count> parts_;
-  std::array<BodyPoint, max_points> points_;  ///< points of the outline, part by part
-  Coefficient unsure_;                        ///< m of clearance below which the outline decides
-  Coefficient half_cell_;                     ///< m
+  static constexpr std::size_t group = 8;        ///< points that one of them in their middle decides for
+  std::array<BodyPoint, max_points> points_;     ///< points of the outline, part by part
+  std::array<Coefficient, max_points> reaches_;  ///< m around the middle of a group, at its first point
+  Coefficient unsure_;                           ///< m of clearance below which the outline decides
+  Coefficient half_cell_;                        ///< m
 };
 
 /// The maps of a solve, in the map frame, and the goal.
