@@ -172,11 +172,7 @@ TEST(Mlp, ParametersThatDoNotFitAreRejected) {
                std::invalid_argument);
 }
 
-using testing::floats;
-using testing::network_files;
-using testing::npy;
-using testing::text;
-using testing::zip;
+using namespace testing;
 using Files = testing::NpzArrays;
 
 class MlpFile : public testing::TemporaryFolder {

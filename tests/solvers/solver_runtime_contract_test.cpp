@@ -185,6 +185,27 @@ TEST_P(SolverRuntimeContract, ASolveThatIsLateSaysSo) {
   EXPECT_EQ(solver->solve(SlowBatches{}, {.deadline = 0.005}).status, Status::deadline);
 }
 
+TEST_P(SolverRuntimeContract, AnInterruptionCostsFewSamplesLater) {
+  const auto solver = make(1, [](SolverOptions& o) {
+    set(o, "horizon", 3);
+    set(o, "samples", 20'000);
+  });
+  int pause = 100;  // us for 64 samples
+  const auto slow = simple(1, [&](float a, float b, int k) {
+    if (k % 64 == 0) std::this_thread::sleep_for(std::chrono::microseconds(std::exchange(pause, 100)));
+    return a + b;
+  });
+  const auto most_rollouts = [&](int solves) {
+    int most = 0;
+    for (int i = 0; i < solves; ++i) most = std::max(most, solver->solve(slow, {.deadline = 8e-3}).rollouts);
+    return most;
+  };
+  const int before = most_rollouts(9);
+  pause = 50'000;
+  solver->solve(slow, {.deadline = 8e-3});
+  EXPECT_GT(2 * most_rollouts(3), before);
+}
+
 TEST_P(SolverRuntimeContract, WarmStartFollowsTheClock) {
   const auto solver = make(1, [](SolverOptions& o) {
     small(o);

@@ -5,9 +5,6 @@
 namespace slalom::tools {
 namespace {
 
-using nlohmann::json;
-using testing::contains;
-
 class BenchCommand : public testing::ProgramTest {};
 
 TEST_F(BenchCommand, MeasuresModelsWithTwoInputs) {

@@ -7,11 +7,6 @@
 namespace slalom::tools {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::contains;
-using testing::content;
-using testing::expect_says;
-
 const std::string wren = SLALOM_COURSES "/wren";
 
 class CommandLine : public testing::EvaluationFolder {

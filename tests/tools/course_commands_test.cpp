@@ -11,9 +11,6 @@
 namespace slalom::tools {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::content;
-
 class CourseCommand : public testing::ProgramTest {
  protected:
   void SetUp() override { maps::save_ros_map(testing::rectangular_course(), folder_ / "room.yaml"); }

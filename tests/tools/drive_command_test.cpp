@@ -7,11 +7,6 @@
 namespace slalom::tools {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using testing::content;
-using testing::run_program;
-
 class DriveCommand : public testing::ProgramTest {
  protected:
   /// Drives on the smallest course with few samples, unless the arguments say otherwise.
@@ -29,12 +24,8 @@ class DriveCommand : public testing::ProgramTest {
 };
 
 TEST_F(DriveCommand, ParksCarsAtGivenPlaces) {
-  const std::string said =
-      program(
-          "drive --course wren --set samples=256 --obstacle 1.5,0.25,0.1 --obstacle=-3,2,0 --obstacles 3 "
-          "--laps 1 --json out.json")
-          .output;
-  testing::expect_says(said, {"3 obstacles"});
+  const std::string drive = "drive --course wren --set samples=256 --obstacles 3 --laps 1 --json out.json ";
+  expect_says(program(drive + "--obstacle 1.5,0.25,0.1 --obstacle=-3,2,0").output, {"3 obstacles"});
   const json told = result("out.json");
   ASSERT_EQ(told["laps"][0]["obstacles"].size(), 3u);
   EXPECT_EQ(told["laps"][0]["obstacles"][0], json({1.5, 0.25, 0.1}));

@@ -6,14 +6,6 @@
 namespace slalom::tools {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::contains;
-using testing::content;
-using testing::count_lines;
-using testing::expect_says;
-using testing::repeatable;
-using testing::write_settings;
-
 class EvalCommand : public testing::EvaluationFolder {
  protected:
   static std::string small(int laps = 3) {

@@ -5,8 +5,6 @@
 namespace slalom::tools {
 namespace {
 
-using testing::expect_says;
-
 class NavigateCommand : public testing::ProgramTest {};
 
 TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {

@@ -110,3 +110,9 @@ class ProgramTest : public TemporaryFolder {
 };
 
 }  // namespace slalom::testing
+
+namespace slalom::tools {
+namespace fs = std::filesystem;
+using namespace testing;
+using nlohmann::json;
+}  // namespace slalom::tools

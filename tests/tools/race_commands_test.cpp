@@ -9,10 +9,6 @@
 namespace slalom::tools {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using testing::expect_says;
-
 class RaceCommand : public testing::ProgramTest {
  protected:
   /// Drives on the smallest course with few samples, unless the arguments say otherwise.

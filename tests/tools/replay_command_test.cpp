@@ -6,10 +6,6 @@
 namespace slalom::tools {
 namespace {
 
-using testing::content;
-using testing::expect_says;
-using testing::run_shell;
-
 class ExportCommand : public testing::ProgramTest {
  protected:
   void SetUp() override { std::filesystem::create_symlink(testing::recorded_lap(), folder_ / "lap.mcap"); }

@@ -11,9 +11,7 @@ namespace slalom::vehicle {
 namespace {
 
 using slalom::testing::GridMap;
-using testing::Case;
-using testing::load_cases;
-using testing::options_of;
+using namespace testing;
 
 struct MapPair {
   GridMap<4> reference;

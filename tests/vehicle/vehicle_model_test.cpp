@@ -170,10 +170,6 @@ struct Trolley {
   Cost<T> stage_cost(const State<T>&, const Input<T, 1>& u) const {
     return {u[0] * u[0], mask_t<T>(false)};
   }
-  template <class T>
-  Cost<T> terminal_cost(const State<T>&) const {
-    return {T(0), mask_t<T>(false)};
-  }
   void set_maps(const VehicleMaps&) {}
   State<double> start(const VehicleStart& start, double) { return {start.pose.x}; }
   PredictedState predicted(const State<double>& s) const { return {{s.x, 0, 0}, 1, 0, {}}; }

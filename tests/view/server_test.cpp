@@ -8,8 +8,7 @@
 namespace slalom::view {
 namespace {
 
-using testing::PageClient;
-using testing::WebClient;
+using namespace testing;
 
 const std::map<std::string, Resource> page = {{"/", {"text/html", "<p>here</p>"}}};
 

@@ -49,23 +49,24 @@ class MethodSolver : public SolverBase {
     const CountingEvaluator evaluator(problem);
     result_.times = {};
     static_cast<Self&>(*this).bind_result();
-    const double reserve = std::min(reserve_, 0.8 * request.deadline);
-    static_cast<Self&>(*this).compute(evaluator, request, Deadline(start, request.deadline - reserve));
+    reserve_ = std::clamp(reserve_, 0.0, std::max(0.8 * request.deadline, 0.0));
+    static_cast<Self&>(*this).compute(evaluator, request, Deadline(start, request.deadline - reserve_));
     if (this->takes_proposals() && !Self::plan_is_cheapest) this->choose(evaluator, request.proposals);
     result_.rollouts = evaluator.count();
     result_.times.total = seconds(start, Clock::now());
-    learn_reserve(result_.times.total - request.deadline);
+    learn_reserve(result_.times.total - request.deadline, 0.1 * request.deadline);
     return result_;
   }
 
  private:
   /// Fits the time that is kept for the end of a solve, after the last samples, to how late this one was (s).
-  /// A solve that is late has the status of one.
-  void learn_reserve(double late) noexcept {
-    constexpr double earlier = 0.3;  ///< part of the time that was left over by which the reserve shrinks
+  /// A solve that is late has the status of one. The reserve at most doubles, or grows by `growth` (s): the
+  /// solve may have been interrupted.
+  void learn_reserve(double late, double growth) noexcept {
+    constexpr double earlier = 0.1;  ///< part of the time that was left over by which the reserve shrinks
     if (late > 0 && result_.status == Status::ok) result_.status = Status::deadline;
-    if (result_.status == Status::deadline)
-      reserve_ = std::max(reserve_ + late * (late > 0 ? 1 : earlier), 0.0);
+    if (result_.status != Status::deadline) return;
+    reserve_ += late < 0 ? earlier * late : std::min(late, std::max(reserve_, growth));
   }
 
   double reserve_ = 0;  ///< s

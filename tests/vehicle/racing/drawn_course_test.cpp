@@ -8,8 +8,7 @@ namespace slalom::vehicle::drawn_course_test {
 namespace {
 
 using maps::Occupancy;
-using testing::pi;
-using testing::rectangular_course;
+using namespace testing;
 
 /// Points of a closed curve, whose parameter goes once round.
 std::vector<maps::Point> curve(const std::function<maps::Point(double)>& at) {

@@ -11,9 +11,7 @@
 namespace slalom::vehicle::minimum_time_test {
 namespace {
 
-using testing::circle;
-using testing::pi;
-using testing::straight;
+using namespace testing;
 
 /// A closed corridor with bends of both directions and of several radii.
 Corridor winding(double half_width) {

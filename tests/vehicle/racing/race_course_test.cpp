@@ -11,8 +11,7 @@ namespace slalom::vehicle::race_course_test {
 namespace {
 
 using maps::Occupancy;
-using testing::fill;
-using testing::rectangular_course;
+using namespace testing;
 
 class RaceCourseFile : public testing::TemporaryFolder {};
 

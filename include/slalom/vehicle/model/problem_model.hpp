@@ -62,8 +62,11 @@ class ProblemModelBase : public Interface {
       for (std::size_t i = 0; !last && i < P::inputs; ++i)
         u.value[i] = static_cast<double>(inputs[k * P::inputs + i]);
       const int step = static_cast<int>(k);
-      const Cost<double> cost = last ? slalom::detail::terminal_cost<P, double>(problem, s, seen)
-                                     : slalom::detail::stage_cost<P, double>(problem, s, seen, u, step);
+      Cost<double> cost{};
+      if (!last)
+        cost = slalom::detail::stage_cost<P, double>(problem, s, seen, u, step);
+      else if constexpr (!slalom::detail::LacksTerminalCost<P>)
+        cost = slalom::detail::terminal_cost<P, double>(problem, s, seen);
       double collision = problem.collision_part(seen, last);
       if constexpr (requires { problem.others_part(s, step); }) collision += problem.others_part(s, step);
       total.state += cost.value - collision;

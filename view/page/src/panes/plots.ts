@@ -2,7 +2,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { make } from "../dom";
 import { page, redraw } from "../page";
-import type { Line } from "./strips";
+import { meaningOf, type Line } from "./strips";
 
 const bins = 30; // bars of a histogram
 
@@ -42,7 +42,7 @@ export class Chart {
       };
       return button;
     });
-    this.box.append(make("h2", {}, title, ...legend), this.holder);
+    this.box.append(make("h2", { title: meaningOf(title) }, title, ...legend), this.holder);
     new ResizeObserver(([{ contentRect }]) => {
       this.width = Math.floor(contentRect.width);
       redraw();

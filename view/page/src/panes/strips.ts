@@ -98,6 +98,21 @@ function grouped(kind: string, names: string[]): Strip[] {
   });
 }
 
+/** Words of titles, and what the charts with them show. */
+const meanings: [word: string, meaning: string][] = [
+  ["Cost", "Sum of each cost term along the plan: lower is better"],
+  ["Slip", "Angle from where the car points to where it moves"],
+  ["Grip", "Force of the tyres to the side, as a share of what the ground can give"],
+  ["Friction", "Friction coefficient of the ground, as learned, and as plans rely on"],
+  ["estimates", "What the car learned: how far its wheels turn for a command of 1, and how late"],
+  ["Samples", "ESS: how many share the weight; temperature: extra cost that divides a weight by e"],
+  ["Clearance", "Distance from the body"],
+  ["Collided", "Share of the sampled control sequences that would collide"],
+  ["deviation", "How far samples spread around the plan, at each time along it"],
+  ["time", "Missed: commands that took longer than the deadline, the time between commands"],
+];
+export const meaningOf = (title: string) => meanings.find(([word]) => title.includes(word))?.[1] ?? "";
+
 /** The charts of a drive: of the figures that it has. */
 export function stripsOf({ scalars, terms, inputs, states }: Hello): Strip[] {
   const costs = terms.map((term, i) => lineOf(`${term}_cost`, term, i));

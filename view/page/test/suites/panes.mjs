@@ -55,6 +55,14 @@ export default async function (h) {
     await h.until(() => slalom.cursor === undefined);
   });
 
+  await h.test("a chart says what it shows where its title does not", async () => {
+    const plain = await page.locator("#charts h2:not([title*=' '])").allTextContents();
+    assert.deepEqual(
+      plain.map((text) => text.split(",")[0]),
+      ["Steering", "Speed"],
+    );
+  });
+
   await h.test("the charts are saved as CSV", async () => {
     await h.until(isWhole);
     const [head, ...cells] = await h.csv();
