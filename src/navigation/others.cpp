@@ -5,11 +5,10 @@
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr double waits_for = 2;       // m from the robot to moving objects for which it may wait
-constexpr double foresight = 5;       // s, in which meetings are found
-constexpr double along_path = 0.7;    // cosine of the angle to the path, of those who go along it
-constexpr double noticed = 0.005;     // m by which a robot comes nearer to somebody
-constexpr double passing_room = 0.1;  // m, more than the margin, so that a way past somebody is kept
+constexpr double waits_for = 2;     // m from the robot to moving objects for which it may wait
+constexpr double foresight = 5;     // s, in which meetings are found
+constexpr double along_path = 0.7;  // cosine of the angle to the path, of those who go along it
+constexpr double noticed = 0.005;   // m by which a robot comes nearer to somebody
 
 /// The box around the footprint, and the costs of plans beside others.
 maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options) {
@@ -86,7 +85,7 @@ std::optional<maps::ClosedDisc> Others::meeting(std::span<const maps::Pose> path
     if (nearest == 0 || nearest + 1 >= last || least >= room) continue;
     const maps::Pose at = pose_at(nearest);
     if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < along_path) continue;
-    first = maps::ClosedDisc{{at.x, at.y}, room + passing_room};
+    first = maps::ClosedDisc{{at.x, at.y}, room + body_.margin};  // more, so that a way past is kept
     last = nearest;
   }
   return first;

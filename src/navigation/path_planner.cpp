@@ -131,7 +131,7 @@ std::span<const maps::Point> PathPlanner::path_to(const maps::Point& point) noex
 
 std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footprint, const maps::Pose& start,
                                   const maps::Pose& goal) {
-  constexpr double straight = 0.2;  // m before the goal
+  constexpr double straight = 4 * PathPlanner::spacing;  // m before the goal
   const maps::GridGeometry& geometry = costmap.geometry();
   const double cells =
       static_cast<double>(geometry.rows) * geometry.columns;  // a way enters each once at most

@@ -11,7 +11,8 @@ constexpr double search_period = 0.1;   // s between searches while there is no 
 constexpr int cells_of_update = 60000;  // cells that an update searches; the next goes on
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
-constexpr double around_joint = 0.2;    // m behind the end of a detour, where the path may have a corner
+constexpr double around_joint =
+    4 * PathPlanner::spacing;           // m behind the end of a detour, where the path may have a corner
 constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
 constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
 

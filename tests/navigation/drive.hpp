@@ -46,8 +46,9 @@ struct Drive {
     costmap.update(grid);
   }
   NavigationResult update(std::span<const maps::PredictedObstacle> others = {}) {
-    const NavigationResult result =
-        navigator->update(pose, told_zero ? Velocity{} : velocity, costmap, drive_period, others);
+    return move(navigator->update(pose, told_zero ? Velocity{} : velocity, costmap, drive_period, others));
+  }
+  NavigationResult move(const NavigationResult& result) {
     turn_changes.push_back(result.command.turn - velocity.turn);
     command = result.command;
     on_their_way.push_back(result.command);

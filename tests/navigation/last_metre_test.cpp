@@ -47,8 +47,13 @@ TEST(LastMetre, SaysThatItIsStuckWithoutTheSearchForDetours) {
   drive.block(4, 1, 4.5, 5);
   drive.start({2, 3, 0}, {{2, 3, 0}, {8, 3, 0}});
   NavigationStatus status{};
-  for (int i = 0; i < 800 && status != NavigationStatus::stuck; ++i) status = drive.step();
+  int waits = 0;
+  for (int i = 0; i < 800 && status != NavigationStatus::stuck; ++i) {
+    status = drive.step();
+    waits += status == NavigationStatus::waiting;
+  }
   EXPECT_EQ(status, NavigationStatus::stuck);
+  EXPECT_GT(waits, 20) << "a reason to stand";
   EXPECT_FALSE(drive.collided);
 }
 
