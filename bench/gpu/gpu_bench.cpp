@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "bench/random_network.hpp"
+#include "bench/problems.hpp"
 #include "bench/workload/statistics.hpp"
 #include "slalom/gpu/gpu.hpp"
 #include "slalom/solvers/registry.hpp"

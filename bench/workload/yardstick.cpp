@@ -1,4 +1,4 @@
-#include "bench/workload/yardstick.hpp"
+#include "bench/workload/reference_workload.hpp"
 
 namespace slalom::workload {
 

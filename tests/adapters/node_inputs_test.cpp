@@ -1,7 +1,12 @@
 // The planner of the ROS nodes takes every input: goal speed, other cars, points, covariance, what is obeyed.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+#include <thread>
+
 #include "simulated_drive.hpp"
+#include "view/protocol/frame_reader.hpp"
+#include "view/web_client.hpp"
 
 namespace slalom::nodes::testing {
 namespace {
@@ -120,6 +125,40 @@ TEST(NodeInputs, ObjectsThatAnotherNodeTracksAreNeededAndAvoided) {
   EXPECT_EQ(close.value("other cars"), "1");
   EXPECT_LT(close.speed(), far.speed() - 0.3);
   EXPECT_THROW(Drive({.others = "radar"}), std::exception);
+}
+
+TEST(NodeInputs, AViewPortShowsThePlansOnAPageAndChangesNone) {
+  const Told plain(3, [](Told&, auto&) {});
+  std::optional<slalom::testing::WebClient> page;
+  std::vector<std::string> frames;
+  Told shown(3,
+             [&](Told& d, auto&) {
+               const std::string said = d.log(), words = "the live view is at http://127.0.0.1:";
+               if (const auto at = said.find(words); !page && at != std::string::npos) {
+                 page.emplace(static_cast<std::uint16_t>(std::stoi(said.substr(at + words.size()))));
+                 page->get("/ws", true);
+               }
+               if (page) std::this_thread::sleep_for(std::chrono::milliseconds(15));
+             },
+             {.view_port = 8440});
+  ASSERT_TRUE(page) << shown.log();
+  EXPECT_TRUE(same(plain.commands(), shown.commands()));
+  nlohmann::json hello;
+  while (frames.size() < 10) {
+    std::string message = page->next_message();
+    ASSERT_FALSE(message.empty());
+    if (message.starts_with("SLV1") && !view::FrameReader(message).block(view::Block::plan).empty())
+      frames.push_back(message);
+    if (!message.starts_with("SLV1") && hello.is_null()) hello = nlohmann::json::parse(message);
+  }
+  EXPECT_EQ(hello["lidar"]["range_max"], shown.car().scan().range_max);
+  const view::FrameReader frame(frames.back());
+  for (const view::Block part : {view::Block::scan, view::Block::candidates, view::Block::plan})
+    EXPECT_FALSE(frame.block(part).empty()) << static_cast<int>(part);
+  view::PayloadReader scalars(frame.block(view::Block::scalars));
+  scalars.take(2 * sizeof(double));
+  const double x = scalars.get<double>(), y = scalars.get<double>();
+  EXPECT_LT(std::hypot(x - shown.car().pose().x, y - shown.car().pose().y), 6);
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ struct DriveSetup {
   std::string course = "wren", others = "none";
   std::uint64_t seed = 1;
   int parked = 3;
+  int view_port = 0;
   double other_speed = 0;  ///< share of the course's speeds of a car that starts 5 m ahead; 0: there is none
 };
 
@@ -243,7 +244,10 @@ class Drive {
     allocations_ += slalom::testing::allocations() - before;
   }
   static PlannerCore::Settings planner_settings(const DriveSetup& setup) {
-    return {.configuration = SLALOM_CONFIGS "/default.yaml", .course = place(setup), .others = setup.others};
+    return {.configuration = SLALOM_CONFIGS "/default.yaml",
+            .course = place(setup),
+            .others = setup.others,
+            .view_port = setup.view_port};
   }
   Transforms transforms() {
     return {[this](Stamp at) { return map_to_odometry_.knows(at) && odometry_to_base_.knows(at); },

@@ -1,9 +1,10 @@
-
 #include <map>
 
 #include "sim/golden_table.hpp"
 #include "sim/gym_world.hpp"
 #include "slalom/sim/gym.hpp"
+#include "slalom/sim/lidar.hpp"
+#include "slalom/sim/plant.hpp"
 #include "slalom/sim/world.hpp"
 
 namespace slalom::sim {
@@ -106,5 +107,105 @@ TEST(GymWorld, EnvironmentTraces) {
   TraceRun run(folder);
 }
 
+using namespace slalom::testing;
+
+maps::Pose pose_of(const GoldenRow& row, const std::string& prefix = "") {
+  return {row.real(prefix + "x"), row.real(prefix + "y"), row.real(prefix + "yaw")};
+}
+
+class GymScan : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(GymScan, Lidar) {
+  SLALOM_GOLDEN_FOLDER(folder, "simulator");
+  const std::string map = GetParam();
+  const Track track = gym_track(folder, map);
+  const Lidar lidar(gym_lidar());
+  std::vector<double> ranges(1080);
+  compare_rows("lidar_" + map, 1e-9, [&](const GoldenRow& row, Comparison& compared) {
+    // The pose of this case lies on a corner of a cell.
+    if (map == "berlin" && row.integer("case") == 59) return;
+    lidar.gym_scan(track, pose_of(row), ranges);
+    compared.absolute(ranges, row.series("r"));
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Maps, GymScan, ::testing::Values("berlin", "skirk"));
+
+TEST(GymLidar, RayCast) {
+  const Lidar lidar(gym_lidar());
+  std::vector<double> ranges;
+  compare_rows("raycast", 1e-9, [&](const GoldenRow& row, Comparison& compared) {
+    if (row.text("row") == "base") {
+      ranges = row.series("r");
+      return;
+    }
+    lidar.gym_cast(pose_of(row, "ego_"), Box{pose_of(row, "opp_"), 0.58, 0.31}, ranges);
+    compared.absolute(ranges, row.series("r"));
+  });
+}
+
+using namespace slalom::testing;
+
+const DynamicsOptions gym_dynamics{.substeps = 1, .gym = true};
+const ActuationOptions gym_actuation{.gym = true};
+
+CarState state_of(const GoldenRow& row) {
+  CarState s{row.real("x"), row.real("y"), row.real("delta"), row.real("v"), row.real("psi")};
+  if (row.has("psidot")) s.yaw_rate = row.real("psidot"), s.slip = row.real("beta");
+  return s;
+}
+
+TEST(GymDynamics, SingleTrackDerivatives) {
+  compare_rows("dynamics_st", 1e-12, [](const GoldenRow& row, Comparison& compared) {
+    const auto car = row.text("params") == "commonroad" ? CarParameters::full_scale() : CarParameters{};
+    const CarState f = derivative(car, gym_dynamics, state_of(row), {row.real("u_sv"), row.real("u_accl")});
+    compared.relative(row, {{"f_x", f.x},
+                            {"f_y", f.y},
+                            {"f_delta", f.steer},
+                            {"f_v", f.speed},
+                            {"f_psi", f.yaw},
+                            {"f_psidot", f.yaw_rate},
+                            {"f_beta", f.slip}});
+  });
+}
+
+TEST(GymDynamics, KinematicDerivatives) {
+  DynamicsOptions options = gym_dynamics;
+  options.model = Model::kinematic;
+  compare_rows("dynamics_ks", 1e-12, [&](const GoldenRow& row, Comparison& compared) {
+    const CarState f =
+        derivative(CarParameters{}, options, state_of(row), {row.real("u_sv"), row.real("u_accl")});
+    compared.relative(row,
+                      {{"f_x", f.x}, {"f_y", f.y}, {"f_delta", f.steer}, {"f_v", f.speed}, {"f_psi", f.yaw}});
+  });
+}
+
+TEST(GymDynamics, Trajectories) {
+  SLALOM_GOLDEN_FOLDER(folder, "simulator");
+  const GoldenTable sensitivity(folder / "trajectory_sensitivity.csv");
+  std::unordered_map<std::string, int> valid_steps;
+  for (std::size_t i = 0; i < sensitivity.rows(); ++i)
+    valid_steps[sensitivity[i].text("case") + sensitivity[i].text("integrator")] =
+        sensitivity[i].integer("valid_steps");
+  PlantOptions options{.dynamics = gym_dynamics, .actuation = gym_actuation, .gym = true};
+  Plant plant(CarParameters{}, options, 0.01);
+  int valid = 0;
+  compare_rows("trajectories", 1e-10, [&](const GoldenRow& row, Comparison& compared) {
+    const std::string integrator = row.text("integrator");
+    if (row.integer("k") == 0) {
+      options.dynamics.integrator = integrator == "Euler" ? Integrator::euler : Integrator::runge_kutta_4;
+      plant = Plant(CarParameters{}, options, 0.01);
+      plant.reset(state_of(row));
+      valid = valid_steps.at(row.text("case") + integrator);
+      return;
+    }
+    if (row.integer("k") > valid) return;
+    plant.step({row.real("steer_cmd"), row.real("speed_cmd")});
+    EXPECT_EQ(plant.steering_applied(), row.real("steer_applied"));
+    compared.relative(row, columns(plant.state()));
+  });
+}
+
 }  // namespace
+
 }  // namespace slalom::sim

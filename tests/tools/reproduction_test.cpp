@@ -9,7 +9,6 @@
 #include "slalom/vehicle/course/course.hpp"
 #include "support/temporary_folder.hpp"
 #include "tools/evaluation/claims.hpp"
-#include "tools/evaluation/paper_program.hpp"
 #include "tools/paper_clone.hpp"
 
 namespace slalom::tools {

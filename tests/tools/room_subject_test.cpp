@@ -1,5 +1,5 @@
 // A navigator in its room, as the live view drives it: what is dragged, options, and copies.
-#include "tools/live_view/subjects.hpp"
+#include "tools/live_view/view_setup.hpp"
 
 #include "support/thrown_words.hpp"
 

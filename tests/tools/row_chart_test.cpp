@@ -1,8 +1,19 @@
 // Charts of rows: names stay left of the panels.
-#include "tools/drawing/row_chart.hpp"
+// Progress lines never promise a time that is over.
+// JSON that is read from files: limits, and errors that name the key.
+// Settings of an evaluation that no evaluation has are refused by name; from the others its laps are made
+// again.
+#include <gtest/gtest.h>
 
+#include "json/json.hpp"
+#include "slalom/core/error.hpp"
 #include "slalom/maps/image.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown_words.hpp"
+#include "tools/drawing/row_chart.hpp"
+#include "tools/evaluation/evaluation_job.hpp"
+#include "tools/evaluation/stored_evaluation.hpp"
+#include "tools/terminal/progress.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -29,5 +40,68 @@ TEST_F(RowChartPicture, LongNamesDoNotReachThePanels) {
   EXPECT_EQ(beside, 0);
 }
 
+TEST(ProgressText, NoTimeIsLeftThatIsNotKnownOrOver) {
+  const auto text = [](int done, double left) {
+    return evaluation_text({.laps_done = done, .laps_total = 10, .seconds_left = left});
+  };
+  EXPECT_EQ(text(0, 0), "0 of 10 laps");
+  EXPECT_EQ(text(5, 62), "5 of 10 laps, 1 min 02 s left");
+  EXPECT_EQ(text(9, 0.2), "9 of 10 laps, 1 s left");
+  EXPECT_EQ(text(10, 0), "10 of 10 laps");
+}
+
+TEST(Json, ErrorsSayWhereTheTextIsWrong) {
+  const std::string error = message_of([] { parse_json("{\n\"a\": ]"); });
+  EXPECT_EQ(error.rfind("is not JSON: parse error at line 2, column 6", 0), 0u) << error;
+  EXPECT_THROW(parse_json(std::string(100000, '[')), std::invalid_argument);
+  EXPECT_TRUE(parse_json_or_null("{").is_null());
+  EXPECT_TRUE(parse_json(std::string(64, '[') + std::string(64, ']')).is_array());
+}
+
+TEST(Json, MembersAreCheckedAndErrorsNameTheKey) {
+  const Json json = parse_json(R"({"large": 4294967298, "half": 2.5, "less": -1, "text": "a"})");
+  EXPECT_EQ(member<std::uint64_t>(json, "large"), 4294967298U);
+  EXPECT_EQ(member<int>(json, "less"), -1);
+  EXPECT_DOUBLE_EQ(member<double>(json, "less"), -1);
+  EXPECT_EQ(member<std::string>(json, "text"), "a");
+  EXPECT_EQ(message_of([&] { member<int>(json, "none"); }), "key 'none' is missing");
+  EXPECT_EQ(message_of([&] { member<double>(json, "text"); }), "key 'text': \"a\" must be a number");
+  for (const char* key : {"large", "half", "text"})
+    EXPECT_THROW(member<int>(json, key), std::invalid_argument) << key;
+  EXPECT_THROW(member<std::uint64_t>(json, "less"), std::invalid_argument);
+  EXPECT_THROW(member<int>(Json::array(), "large"), std::invalid_argument);
+}
+
+TEST(Json, BytesThatAreNotUtf8AreReplaced) {
+  EXPECT_EQ(json_text("a\xff"), "\"a\xEF\xBF\xBD\"");
+}
+
+class StoredSettings : public testing::TemporaryFolder {
+ protected:
+  /// The error message for a folder without laps whose settings have these experiments and this seed.
+  std::string complaint(const std::string& experiments, const std::string& seed0 = "0") const {
+    write("laps.csv", evaluation::checked_header() + "\n");
+    write("settings.json",
+          evaluation::with_checksum("{\"experiments\": [" + experiments + "], \"seed0\": " + seed0 + "}"));
+    return message_of<IoError>([&] { load_evaluation(folder_); });
+  }
+  static std::string experiment(const std::string& laps) {
+    return R"({"method": "mppi", "set": "", "scenario": "oa", "obstacles": 5, "laps": )" + laps + "}";
+  }
+};
+
+TEST_F(StoredSettings, NeedAnExperiment) {
+  EXPECT_EQ(complaint(experiment("3")), "accepted");
+  EXPECT_NE(complaint("").find("settings.json: is invalid: experiments: must be at least one"),
+            std::string::npos);
+}
+
+TEST_F(StoredSettings, WholeNumbersAreNotCutToFit) {
+  EXPECT_NE(complaint(experiment("4294967298")).find("4294967298"), std::string::npos);
+  EXPECT_NE(complaint(experiment("0")).find("laps: 0 must be in [1, 1000000]"), std::string::npos);
+  EXPECT_NE(complaint(experiment("3"), "1e30").find("must be a whole number"), std::string::npos);
+}
+
 }  // namespace
+
 }  // namespace slalom::tools

@@ -1,6 +1,6 @@
+#include <memory>
 
 #include "tools/commands/commands.hpp"
-#include "tools/explanation/explain_picture.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -15,7 +15,8 @@ struct ExplainArguments {
 
 void declare_explain(Subcommand& command) {
   command.summary(
-      "Draw a figure of the SVG-MPPI paper: how methods solve a problem with two equally good ways");
+      "Draw a figure of the SVG-MPPI paper: how methods solve a problem with two equally good ways, by the "
+      "Python package and matplotlib");
   const auto arguments = std::make_shared<ExplainArguments>();
   command.option("--figure", arguments->figure, "Figure of the paper: 1, 3 or 4",
                  {.least = 1, .most = 4, .required = true});
@@ -24,7 +25,7 @@ void declare_explain(Subcommand& command) {
   command.examples({"explain --figure 4 --plot figure.png"});
   command.action([arguments] {
     if (arguments->figure == 2) throw CommandLineError("--figure", "'2' must be 1, 3 or 4");
-    save(draw_paper_figure(arguments->figure, arguments->seed), arguments->plot);
+    become_python("paper_figures");
     return 0;
   });
 }

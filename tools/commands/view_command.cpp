@@ -2,7 +2,6 @@
 #include "slalom/core/version.hpp"
 #include "slalom/view/serve.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/live_view/subjects.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"

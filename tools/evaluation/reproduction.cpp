@@ -5,8 +5,8 @@
 #include "json/json.hpp"
 #include "slalom/core/error.hpp"
 #include "tools/command_line/words.hpp"
+#include "tools/evaluation/claims.hpp"
 #include "tools/evaluation/comparison.hpp"
-#include "tools/evaluation/paper_program.hpp"
 
 namespace slalom::tools {
 

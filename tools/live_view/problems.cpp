@@ -6,7 +6,7 @@
 #include "slalom/problems/quadrotor.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/view/serve.hpp"
-#include "tools/live_view/subjects.hpp"
+#include "tools/live_view/view_setup.hpp"
 #include "view/problem/differential_drive.hpp"
 
 namespace slalom::tools {

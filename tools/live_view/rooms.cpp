@@ -2,7 +2,7 @@
 #include "slalom/evaluation/rooms/room_world.hpp"
 #include "slalom/navigation/navigation_problem.hpp"
 #include "slalom/view/serve.hpp"
-#include "tools/live_view/subjects.hpp"
+#include "tools/live_view/view_setup.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -6,7 +6,6 @@
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
-#include "tools/racing/grid_race_result.hpp"
 #include "tools/scenario/lap_json.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"

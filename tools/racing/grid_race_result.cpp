@@ -1,4 +1,4 @@
-#include "tools/racing/grid_race_result.hpp"
+#include "tools/racing/grid_race_job.hpp"
 
 #include "json/json.hpp"
 #include "tools/command_line/words.hpp"

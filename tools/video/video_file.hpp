@@ -1,7 +1,6 @@
 #pragma once
 
-#include <sys/types.h>
-
+#include <cstdio>
 #include <filesystem>
 #include <string_view>
 
@@ -13,25 +12,21 @@ class VideoFile {
   /// Whether the name of a file ends with one of these formats.
   static bool knows(const std::filesystem::path& file);
 
-  /// Begins a video of this size (pixels, even) and number of pictures a second. Throws IoError if ffmpeg is
-  /// not installed.
+  /// Begins a video of this size (pixels, even) and number of pictures a second. Throws IoError if no program
+  /// can be started.
   VideoFile(const std::filesystem::path& file, int width, int height, int rate);
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;
   ~VideoFile();
 
-  /// Adds a picture: pixels 0xXXRRGGBB, row by row. Throws IoError if ffmpeg has ended.
+  /// Adds a picture: pixels 0xXXRRGGBB, row by row. Throws IoError if ffmpeg has ended or is not installed.
   void add(std::string_view pixels);
   /// Ends the video. Throws IoError if ffmpeg could not write it.
   void finish();
 
  private:
-  /// Waits for ffmpeg and returns its exit status.
-  int wait();
-
   std::filesystem::path file_;
-  int pipe_ = -1;
-  pid_t ffmpeg_ = -1;
+  std::FILE* ffmpeg_ = nullptr;
 };
 
 }  // namespace slalom::tools

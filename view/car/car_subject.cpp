@@ -26,17 +26,6 @@ double clearance_of(const sim::World& world) {
   return least;
 }
 
-void put_scan(FrameWriter& to, const ControlStep& step) {
-  to.begin(Block::scan);
-  to.put_pose(step.seen.sensor);
-  to.put(static_cast<std::uint32_t>(step.scan.ranges.size()));
-  for (const float range : step.scan.ranges) {
-    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
-    to.put(static_cast<std::uint16_t>(millimetres));
-  }
-  to.end();
-}
-
 void put_cost_map(FrameWriter& to, const ControlStep& step) {
   const maps::LocalCostMap& map = step.planner.cost_map();
   const maps::GridGeometry& geometry = map.geometry();
@@ -187,9 +176,9 @@ class CarSource : public virtual FrameSource {
     all.insert(all.end(), {rear.x, rear.y, rear.yaw, step_->odometry.speed});
     return all;
   }
+  std::optional<SeenScan> scan() const override { return SeenScan{step_->seen.sensor, step_->scan.ranges}; }
   std::string blocks() override {
     FrameWriter to;
-    put_scan(to, *step_);
     put_cost_map(to, *step_);
     put_others(to, *step_);
     return to.take_blocks();

@@ -1,15 +1,64 @@
 #include "view/protocol/frame.hpp"
 
-#include "view/protocol/blocks.hpp"
 #include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {
 namespace {
 
-constexpr std::size_t most_candidates = 160, least_candidates = 20;
-constexpr std::size_t most_points = 50000;  // number of points of all candidates
-constexpr float nudge = 0.01f;              // change of an input, for the derivative of the plan
-constexpr double course_room = 1.5;         // m beside the line of a course
+/// The number of a shape's kind in the block `bodies`.
+int kind_of(const Shape& shape) {
+  switch (shape.kind) {
+    case ShapeKind::parked_car:
+      return 1;
+    case ShapeKind::opponent:
+      return 4;
+    case ShapeKind::mover:
+      return 5;
+    case ShapeKind::goal:
+      return 6;
+    case ShapeKind::obstacle:
+      break;
+  }
+  return shape.is_disc ? 3 : 2;
+}
+
+void put_body(FrameWriter& to, std::size_t id, int kind, const Shape& shape) {
+  to.put(static_cast<std::uint16_t>(id));
+  to.put(static_cast<std::uint8_t>(kind));
+  to.put(static_cast<std::uint8_t>(shape.touched));
+  to.put_f32({shape.pose.x, shape.pose.y, shape.pose.yaw, shape.length, shape.width});
+}
+
+void put_lines(FrameWriter& to, Block block, const std::vector<Line>& lines) {
+  if (lines.empty()) return;
+  to.begin(block);
+  to.put(static_cast<std::uint32_t>(lines.size()));
+  for (const Line& line : lines) {
+    to.put(static_cast<std::uint32_t>(line.size()));
+    for (const maps::Point& p : line) to.put_f32({p.x, p.y});
+  }
+  to.end();
+}
+
+/// Writes the body, 0, and the shapes, whose numbers are their indices + 1; polygons apart.
+void put_bodies(FrameWriter& to, const Shape& body, const std::vector<Shape>& shapes) {
+  std::vector<Line> polygons;
+  to.begin(Block::bodies);
+  const auto count =
+      std::count_if(shapes.begin(), shapes.end(), [](const Shape& s) { return s.corners.empty(); });
+  to.put(static_cast<std::uint32_t>(1 + count));
+  put_body(to, 0, 0, body);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (shapes[i].corners.empty())
+      put_body(to, i + 1, kind_of(shapes[i]), shapes[i]);
+    else
+      polygons.push_back(shapes[i].corners);
+  }
+  to.end();
+  put_lines(to, Block::polygons, polygons);
+}
+
+constexpr double course_room = 1.5;  // m beside the line of a course
 
 using Poses = std::span<const maps::Pose>;
 
@@ -29,20 +78,33 @@ void put_points(FrameWriter& to, Poses poses, double most) {
   for (const maps::Pose& p : poses) to.put_point({p.x, p.y});
 }
 
-/// Encodes one control step. The control sequences are rolled out together: plan, nominal, candidates,
-/// guides, then the plan with each of its inputs changed a little.
+void put_scan(FrameWriter& to, const SeenScan& scan) {
+  to.begin(Block::scan);
+  to.put_pose(scan.sensor);
+  to.put(static_cast<std::uint32_t>(scan.ranges.size()));
+  for (const float range : scan.ranges) {
+    const double millimetres = std::clamp(1000.0 * static_cast<double>(range), 0.0, 65535.0);
+    to.put(static_cast<std::uint16_t>(millimetres));
+  }
+  to.end();
+}
+
+/// Encodes one control step. Its control sequences are rolled out together.
 class StepEncoder {
  public:
-  StepEncoder(FrameSource& source, const SolveResult& solve, const StepFacts& step)
+  StepEncoder(FrameSource& source, const DrawnSolve& solve, const StepFacts& step)
       : source_(source),
         facts_(source.facts()),
         solve_(solve),
         step_(step),
         terms_(facts_.terms.size()),
         inputs_(source.inputs_per_step()),
-        points_(solve.inputs.size() / inputs_ + 1),
+        points_(solve.length / inputs_ + 1),
         now_(source.poses(step.state).front()) {
-    if (!solve.inputs.empty()) roll_out();
+    if (solve.length > 0) {
+      rolled_ = source_.roll_out(step_.state, solve.sequences);
+      poses_ = source_.poses(rolled_.states);
+    }
     frame_.collides = source.measures() ? step.measures.collides
                                         : !rolled_.collisions.empty() && rolled_.collisions[0] == 0;
   }
@@ -52,51 +114,19 @@ class StepEncoder {
     const std::vector<Line> figure = source_.figure(step_.state), lines = source_.lines();
     find_bounds(shapes, figure, lines);
     put_scalars();
+    if (const std::optional<SeenScan> scan = source_.scan()) put_scan(to_, *scan);
     to_.append(source_.blocks());
     const Shape body{
         .pose = now_, .length = facts_.length, .width = facts_.width, .touched = frame_.collides};
     put_bodies(to_, body, shapes);
     put_lines(to_, Block::figure, figure);
     put_lines(to_, Block::lines, lines);
-    if (!solve_.inputs.empty()) put_trajectories();
+    if (solve_.length > 0) put_trajectories();
     frame_.message = to_.take();
     return std::move(frame_);
   }
 
  private:
-  void add(std::span<const float> sequence) {
-    sequences_.insert(sequences_.end(), sequence.begin(), sequence.end());
-  }
-  /// Adds samples that are evenly spread over the batch, so that the picture is as dense in every region.
-  void add_candidates() {
-    const SequenceBatch* batch = solve_.samples;
-    if (!batch || solve_.costs.empty()) return;
-    const std::size_t most = std::clamp(most_points / points_, least_candidates, most_candidates);
-    const auto samples = static_cast<std::size_t>(batch->samples());
-    const std::size_t count = std::min(most, samples);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t k = i * samples / count;
-      candidates_.push_back(k);
-      for (int row = 0; row < static_cast<int>(solve_.inputs.size()); ++row)
-        sequences_.push_back(batch->at(row / batch->inputs(), row % batch->inputs(), static_cast<int>(k)));
-    }
-  }
-
-  void roll_out() {
-    add(solve_.inputs);
-    add(solve_.nominal.size() == solve_.inputs.size() ? solve_.nominal : solve_.inputs);
-    add_candidates();
-    const SequenceList& guides = solve_.guide_path.sequences > 0 ? solve_.guide_path : solve_.guides;
-    guides_ = static_cast<std::size_t>(guides.sequences);
-    add(guides.values);
-    if (facts_.length > 0 && solve_.variances.size() == solve_.inputs.size())
-      for (std::size_t i = 0; i < solve_.inputs.size(); ++i) {
-        add(solve_.inputs);
-        sequences_[sequences_.size() - solve_.inputs.size() + i] += nudge;
-      }
-    rolled_ = source_.roll_out(step_.state, sequences_);
-    poses_ = source_.poses(rolled_.states);
-  }
   /// The poses of some of the sequences.
   Poses poses(std::size_t from, std::size_t count = 1) const {
     return Poses(poses_).subspan(from * points_, count * points_);
@@ -131,7 +161,8 @@ class StepEncoder {
   }
 
   void put_scalars() {
-    const bool is_solved = !solve_.inputs.empty();
+    const SolveResult& solved = solve_.figures;
+    const bool is_solved = solve_.length > 0;
     std::vector<double> sums(terms_);
     for (std::size_t i = 0; is_solved && i < points_ * terms_; ++i) sums[i % terms_] += rolled_.costs[i];
     double cost = 0;
@@ -142,15 +173,14 @@ class StepEncoder {
     const bool counts = source_.measures().has_value();
     to_.begin(Block::scalars);
     to_.put({static_cast<double>(step_.tick), m.time, now_.x, now_.y, now_.yaw});
-    to_.put({static_cast<double>(source_.status(solve_)), known(solve_.minimum_cost)});
-    to_.put({known(solve_.expected_cost), known(solve_.effective_sample_size)});
-    to_.put({solve_.samples ? solve_.samples->samples() : 0.0,
-             facts_.can_collide ? known(solve_.collided_share) : none});
-    to_.put({known(solve_.temperature), static_cast<double>(solve_.iterations), 1e3 * m.update_time});
+    to_.put({static_cast<double>(source_.status(solved)), known(solved.minimum_cost)});
+    to_.put({known(solved.expected_cost), known(solved.effective_sample_size)});
+    to_.put({static_cast<double>(solve_.samples), facts_.can_collide ? known(solved.collided_share) : none});
+    to_.put({known(solved.temperature), static_cast<double>(solved.iterations), 1e3 * m.update_time});
     const auto collision = [&](double value) { return facts_.can_collide ? value : none; };
     to_.put({1e3 * step_.period, collision(frame_.collides)});
     to_.put({collision(m.collisions + (counts ? 0 : frame_.collides)), m.prediction_step});
-    to_.put({static_cast<double>(step_.method), cost, static_cast<double>(solve_.symptom())});
+    to_.put({static_cast<double>(step_.method), cost, static_cast<double>(solved.symptom())});
     const bool leads_into = is_solved && !rolled_.collisions.empty() && rolled_.collisions[0] >= 0;
     to_.put(leads_into ? rolled_.collisions[0] : none);
     for (const double sum : sums) to_.put(sum);
@@ -165,8 +195,8 @@ class StepEncoder {
   void put_trajectories() {
     const Bounds& b = frame_.bounds;
     const double reach = 20 * std::max({b.x1 - b.x0, b.y1 - b.y0, 1e-3});
-    if (!candidates_.empty()) put_candidates(reach);
-    if (guides_ > 0) put_guides(reach);
+    if (solve_.candidates > 0) put_candidates(reach);
+    if (solve_.guides > 0) put_guides(reach);
     to_.begin(Block::nominal);
     to_.put(static_cast<std::uint32_t>(points_));
     put_points(to_, poses(1), reach);
@@ -180,36 +210,34 @@ class StepEncoder {
   /// Writes candidates: each term of their costs, the solver's cost, the weight, and whether they collide.
   void put_candidates(double reach) {
     to_.begin(Block::candidates);
-    to_.put(static_cast<std::uint16_t>(candidates_.size()));
+    to_.put(static_cast<std::uint16_t>(solve_.candidates));
     to_.put(static_cast<std::uint16_t>(points_));
     const std::size_t first = 2;  // candidate among the sequences
     std::string collided;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    for (std::size_t i = 0; i < solve_.candidates; ++i) {
       for (std::size_t t = 0; t < terms_; ++t) {
         double sum = 0;
         for (std::size_t k = 0; k < points_; ++k)
           sum += rolled_.costs[((first + i) * points_ + k) * terms_ + t];
         to_.put_f32(sum);
       }
-      const std::size_t sample = candidates_[i];
-      to_.put(solve_.costs[sample]);
-      to_.put(sample < solve_.weights.size() ? solve_.weights[sample] : 0.0f);
-      collided += static_cast<char>(solve_.collided[sample] != 0);
+      to_.put(solve_.costs[i]);
+      to_.put(solve_.weights[i]);
+      collided += static_cast<char>(solve_.collided[i]);
     }
     to_.append(collided);
     to_.pad();
-    put_points(to_, poses(first, candidates_.size()), reach);
+    put_points(to_, poses(first, solve_.candidates), reach);
     to_.end();
   }
 
   void put_guides(double reach) {
-    const auto guides = static_cast<std::size_t>(std::max(1, solve_.guides.sequences));
     to_.begin(Block::guides);
-    to_.put(static_cast<std::uint16_t>(guides));
-    to_.put(static_cast<std::uint16_t>(guides_ / guides));
+    to_.put(static_cast<std::uint16_t>(solve_.guides_at_once));
+    to_.put(static_cast<std::uint16_t>(solve_.guides / solve_.guides_at_once));
     to_.put(static_cast<std::uint16_t>(points_));
     to_.put(std::uint16_t{0});
-    put_points(to_, poses(2 + candidates_.size(), guides_), reach);
+    put_points(to_, poses(2 + solve_.candidates, solve_.guides), reach);
     to_.end();
   }
 
@@ -218,14 +246,14 @@ class StepEncoder {
   std::vector<double> lateral_variances() const {
     std::vector<double> variances(points_);
     const Poses plan = poses(0);
-    const std::size_t first = 2 + candidates_.size() + guides_;
+    const std::size_t first = 2 + solve_.candidates + solve_.guides;
     for (std::size_t j = 0; (first + j + 1) * points_ <= poses_.size(); ++j) {
       const Poses moved = poses(first + j);
       for (std::size_t k = j / inputs_ + 1; k < points_; ++k) {
         const maps::Pose& p = plan[k];
         const double across = -std::sin(p.yaw) * (moved[k].x - p.x) + std::cos(p.yaw) * (moved[k].y - p.y);
-        variances[k] +=
-            across * across / static_cast<double>(nudge * nudge) * static_cast<double>(solve_.variances[j]);
+        variances[k] += across * across / static_cast<double>(DrawnSolve::nudge * DrawnSolve::nudge) *
+                        static_cast<double>(solve_.variances[j]);
       }
     }
     return variances;
@@ -250,13 +278,10 @@ class StepEncoder {
 
   FrameSource& source_;
   const SubjectFacts& facts_;
-  const SolveResult& solve_;
+  const DrawnSolve& solve_;
   const StepFacts& step_;
   std::size_t terms_, inputs_, points_;
   maps::Pose now_;
-  std::vector<float> sequences_;         ///< [sequence][step][input]
-  std::vector<std::size_t> candidates_;  ///< index in the batch of each
-  std::size_t guides_ = 0;               ///< sequences of guides, in all iterations
   Trajectories rolled_;
   std::vector<maps::Pose> poses_;  ///< [sequence][point]
   FrameWriter to_;
@@ -286,7 +311,35 @@ std::vector<std::string> scalar_names(const SubjectFacts& facts) {
 }
 
 Frame encode_frame(FrameSource& source, const SolveResult& solve, const StepFacts& step) {
+  DrawnSolve drawn;
+  drawn.take(solve, source.facts().length > 0);
+  return encode_frame(source, drawn, step);
+}
+
+Frame encode_frame(FrameSource& source, const DrawnSolve& solve, const StepFacts& step) {
   return StepEncoder(source, solve, step).encode();
+}
+
+std::string encode_ghost_frame(std::string_view frame) {
+  FrameWriter to;
+  to.begin(Block::ghost_frame);
+  to.append(frame);
+  to.end();
+  return to.take_blocks();
+}
+
+std::string encode_scene(const SubjectFacts& facts) {
+  if (!facts.map && facts.course.empty()) return {};
+  FrameWriter to;
+  if (facts.map) to.put_grid(*facts.map);
+  if (!facts.course.empty()) {
+    to.begin(Block::path);
+    to.put(static_cast<std::uint32_t>(facts.course.size()));
+    to.put(static_cast<std::uint32_t>(facts.is_closed));
+    for (const maps::ReferencePoint& p : facts.course) to.put_f32({p.x, p.y, p.speed});
+    to.end();
+  }
+  return to.take();
 }
 
 }  // namespace slalom::view

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "slalom/view/drawn_solve.hpp"
 #include "slalom/view/subject.hpp"
 
 /// The message of a control step contains everything that the page draws.
@@ -39,6 +40,8 @@ struct Frame {
 /// Encodes a control step for which has just been solved. It rolls out plan, candidates and guides,
 /// outside of the measured time.
 Frame encode_frame(FrameSource& source, const SolveResult& solve, const StepFacts& step);
+/// Encodes a control step whose solve was copied.
+Frame encode_frame(FrameSource& source, const DrawnSolve& solve, const StepFacts& step);
 
 /// Returns the block with the message `frame` of the ghost's control step, to be appended to a frame.
 std::string encode_ghost_frame(std::string_view frame);

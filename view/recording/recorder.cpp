@@ -6,7 +6,7 @@
 #include "json/json.hpp"
 #include "view/car/car_subject.hpp"
 #include "view/embedded.hpp"
-#include "view/recording/small_frame.hpp"
+#include "view/recording/replay.hpp"
 
 namespace slalom::view {
 namespace {

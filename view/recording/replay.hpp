@@ -8,6 +8,8 @@
 
 /// A replay: the messages of a live drive in their order, in segments that are compressed one by one. A
 /// message is stored as its kind (a byte: 0 text, 1 binary), its length (u32) and its bytes.
+/// Recordings are small unless everything is asked for: what a reader of a drive looks at, not what a
+/// developer of a solver does.
 namespace slalom::view {
 
 /// Cuts messages into segments.
@@ -40,5 +42,14 @@ std::string replay_page(std::string page, const std::vector<std::string>& segmen
 /// Returns the segments of an MCAP recording. Of one that was cut: those that are whole, and `lost` receives
 /// the number of bytes after the last one. Throws IoError if it is not a recording, or cut without `lost`.
 std::vector<std::string> load_replay(const std::string& file, std::uint64_t* lost = nullptr);
+
+inline constexpr int small_stride = 2;        ///< control steps for each frame of a small recording
+inline constexpr int small_scene_stride = 6;  ///< control steps for each of its scenes for other programs
+inline constexpr int small_candidates = 20;   ///< candidates of its frames: the heaviest, and others
+inline constexpr int small_beams = 6;         ///< beams of a scan for each that is kept
+
+/// Returns a frame (docs/live-view.md) with fewer candidates and beams, with figures of the precision of a
+/// float, and without guides and cost map.
+std::string small_frame(std::string_view frame);
 
 }  // namespace slalom::view

@@ -140,9 +140,9 @@ void Timeline::forget_oldest() {
   DrivenTick& oldest = ticks_[static_cast<std::size_t>(oldest_++ - ticks_.front().tick)];
   frame_bytes_ -= oldest.bytes();
   oldest = {.tick = oldest.tick, .records = oldest.records};
-  if (copies_.size() < 2 || copies_[1].drives.ticks() > oldest_) return;
-  copies_.pop_front();
-  const int first = copies_.front().drives.ticks();
+  if (copies_.size() == 1 || (copies_.size() > 1 && copies_[1].drives.ticks() > oldest_)) return;
+  if (!copies_.empty()) copies_.pop_front();
+  const int first = copies_.empty() ? oldest_ : copies_.front().drives.ticks();
   while (ticks_.front().tick < first) ticks_.pop_front();
   std::erase_if(actions_, [&](const auto& each) { return each.first <= first; });
 }

@@ -1,15 +1,91 @@
 #pragma once
 
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <optional>
+
 #include "logic/input_watch.hpp"
 #include "logic/installed.hpp"
-#include "logic/known_pose.hpp"
 #include "logic/named_option.hpp"
-#include "logic/pose_trust.hpp"
 #include "logic/reports.hpp"
 #include "logic/transforms.hpp"
 #include "slalom/vehicle/localisation/localiser.hpp"
 
+/// The last reliable pose of a localiser, from which one that is restarted continues.
 namespace slalom::nodes {
+
+/// Poses of the same point of the car at the same time: in the map frame, and in the odometry frame.
+struct KnownPose {
+  maps::Pose map, odometry;
+};
+
+/// The pose in the map frame, if the odometry is `odometry` now: `known`, moved as the odometry has moved
+/// since. An odometry that starts again has its origin where the car is. So if it is nearer to its origin
+/// than to that of `known`, the car is taken to be where it was.
+inline maps::Pose pose_now(const KnownPose& known, const maps::Pose& odometry) {
+  const double x = odometry.x - known.odometry.x, y = odometry.y - known.odometry.y;
+  if (std::hypot(odometry.x, odometry.y) < std::hypot(x, y)) return known.map;
+  const double turn = known.map.yaw - known.odometry.yaw;
+  return composed({known.map.x, known.map.y, turn}, {x, y, odometry.yaw});
+}
+
+/// Writes a pose and the time (s since 1970) to a file, which has the old or the new content at any time.
+/// Returns whether it could be written.
+inline bool write_pose(const std::string& file, const KnownPose& pose, double time) {
+  const std::string fresh = file + ".new";
+  std::ofstream stream(fresh);
+  stream.precision(std::numeric_limits<double>::max_digits10);
+  const auto& [map, odometry] = pose;
+  for (const double each : {map.x, map.y, map.yaw, odometry.x, odometry.y, odometry.yaw, time})
+    stream << each << ' ';
+  stream << '\n';
+  stream.close();
+  return stream && std::rename(fresh.c_str(), file.c_str()) == 0;
+}
+
+/// The pose in a file, unless a number is not finite or it was not written within the last 10 s.
+inline std::optional<KnownPose> read_pose(const std::string& file, double time) {
+  std::ifstream stream(file);
+  std::array<double, 7> n{};
+  for (double& each : n)
+    if (!(stream >> each) || !std::isfinite(each)) return std::nullopt;
+  constexpr double oldest = 10;  // s
+  if (!(n[6] <= time && time - n[6] <= oldest)) return std::nullopt;
+  return KnownPose{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
+
+/// Whether the estimate of the pose can be used for driving. After it could not, it must be good for a
+/// moment, since some scans fit a wrong pose by chance; a mediocre one, as beside a parked car, for longer.
+class PoseTrust {
+ public:
+  /// After a doubt the estimate is trusted again after `scans` consecutive ones of at least this health.
+  explicit PoseTrust(int scans = 10, double health = 0.7) : scans_(scans), health_(health) {}
+
+  /// Takes the next estimate. Returns whether it can be used.
+  bool update(const vehicle::LocaliserOutput& seen) {
+    usable_ = seen.status == vehicle::LocaliserStatus::ok;
+    if (!usable_) doubt_ = vehicle::name(seen.status);
+    good_ = usable_ ? good_ + 1 : 0;
+    fine_ = usable_ && seen.health >= health_ ? fine_ + 1 : 0;
+    holds_ = usable_ && (holds_ || fine_ >= scans_ || good_ >= mediocre_scans * scans_);
+    return holds_;
+  }
+  /// Whether the last estimate can be used.
+  bool holds() const { return holds_; }
+  /// The reason why it cannot be used.
+  std::string doubt() const { return doubt_ + (usable_ ? ", over, until it is sure" : ""); }
+
+ private:
+  static constexpr int mediocre_scans = 6;  ///< this many times as many scans of any health are as good
+
+  int scans_;
+  double health_;
+  int good_ = 0, fine_ = 0;
+  bool holds_ = false, usable_ = false;
+  std::string doubt_ = "uncertain";  ///< the last status that was not ok
+};
 
 /// A message of the odometry.
 struct OdometrySample {

@@ -1,11 +1,11 @@
 # The library slalom_logic: the part of the ROS 2 packages that needs no ROS. Needs the package slalom, or its
 # targets.
 add_library(slalom_logic STATIC)
-foreach(name follower_settings installed localiser_core path_follower planner_core planner_inputs simulated_car)
+foreach(name car_page follower_settings installed localiser_core path_follower planner_core planner_inputs simulated_car)
   target_sources(slalom_logic PRIVATE ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
 endforeach()
 target_compile_features(slalom_logic PUBLIC cxx_std_20)
-target_link_libraries(slalom_logic PUBLIC slalom::slalom)
+target_link_libraries(slalom_logic PUBLIC slalom::slalom slalom::view)
 target_include_directories(slalom_logic PUBLIC ${CMAKE_CURRENT_LIST_DIR}/..)
 target_compile_options(slalom_logic PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi)
 set_target_properties(slalom_logic PROPERTIES POSITION_INDEPENDENT_CODE ON)

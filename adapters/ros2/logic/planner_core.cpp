@@ -58,6 +58,7 @@ void PlannerCore::change(const Changes& changes) {
   vehicle::Configuration changed = configuration_;
   for (const auto& [name, text] : changes) vehicle::set_option(changed, name, text, settings_.method);
   if (planner_) planner_ = make_planner(changed, path_);
+  page_.reset();
   configuration_ = std::move(changed);
 }
 
@@ -81,6 +82,7 @@ void PlannerCore::use_path(const Path& path, bool closed) {
     others_watch_.emplace(map_ ? tracking::ObjectTracker(*map_) : tracking::ObjectTracker(),
                           tracking::Predictor(path));
   path_ = path;
+  page_.reset();
   laps_.reset();
   if (closed) {
     std::vector<maps::Point> points;
@@ -227,6 +229,22 @@ void PlannerCore::plan() {
   send(out.command);
   latency_.add(clocks_.now() - in_seconds(scan_stamp_));
   outputs_.plan(out, scan_stamp_);
+  show(input, out);
+}
+
+void PlannerCore::show(const vehicle::PlannerInput& input, const vehicle::PlannerOutput& out) {
+  if (settings_.view_port == 0) return;
+  try {
+    if (!page_) {
+      page_.emplace(static_cast<std::uint16_t>(settings_.view_port), configuration_, *planner_, input.scan,
+                    view::SubjectFacts{.map = map_, .course = path_, .is_closed = laps_.has_value()});
+      outputs_.inform("the live view is at " + page_->address());
+    }
+  } catch (const std::exception& error) {
+    settings_.view_port = 0;
+    return log_(std::string("view_port: ") + error.what());
+  }
+  page_->show(*planner_, input, out);
 }
 
 void PlannerCore::stop(const std::string& why) {

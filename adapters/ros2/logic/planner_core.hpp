@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "logic/car_page.hpp"
 #include "logic/input_watch.hpp"
 #include "logic/installed.hpp"
 #include "logic/named_option.hpp"
@@ -46,6 +47,7 @@ class PlannerCore {
     WatchLimits limits{};
     std::string others = "none";  ///< where it learns of other cars: a name of OthersFrom
     double rear_axle = 0;         ///< m, x of the middle of the rear axle in the base frame
+    int view_port = 0;            ///< port of the live view; 0: none
     double scan_interval = 0;     ///< s, scans that come sooner after the last one used are not used
   };
   /// The messages that the node sends; called from within the functions below.
@@ -125,6 +127,7 @@ class PlannerCore {
   void place_laser();
   void plan();
   void stop(const std::string& why);
+  void show(const vehicle::PlannerInput& input, const vehicle::PlannerOutput& out);
   void count_laps(const maps::Pose& pose);
   void send(const Command& command);
 
@@ -137,6 +140,7 @@ class PlannerCore {
   vehicle::Configuration configuration_;
   Path path_;
   std::optional<vehicle::Planner> planner_;  ///< none without a path
+  std::optional<CarPage> page_;              ///< none without `view_port`, and before the first plan
   std::optional<Laps> laps_;                 ///< none without a closed path
   ImuReading imu_sum_;                       ///< sum of the samples since the last plan
   int imu_count_ = 0;                        ///< number of these samples

@@ -78,15 +78,14 @@ class View {
 
 namespace detail {
 
-/// A controller with its drawing.
+/// A problem with its drawing.
 template <Problem P>
-class ControllerSubject final : public SolverSubject {
+class DrawnProblem : public virtual FrameSource {
  public:
   using State = typename Drawing<P>::State;
-  using Inputs = typename Drawing<P>::Inputs;
 
-  ControllerSubject(Controller<P> controller, Drawing<P> drawing)
-      : controller_(std::move(controller)), drawing_(std::make_shared<const Drawing<P>>(std::move(drawing))) {
+  explicit DrawnProblem(Drawing<P> drawing)
+      : drawing_(std::make_shared<const Drawing<P>>(std::move(drawing))) {
     const Drawing<P>& d = *drawing_;
     if (!d.pose && !(d.x && d.y)) throw std::invalid_argument("drawing: must have x and y, or pose");
     SubjectFacts facts{.title = d.title,
@@ -104,9 +103,58 @@ class ControllerSubject final : public SolverSubject {
     facts_ = std::make_shared<const SubjectFacts>(std::move(facts));
   }
 
-  std::unique_ptr<Subject> clone() const override { return std::make_unique<ControllerSubject>(*this); }
   const SubjectFacts& facts() const override { return *facts_; }
-  std::vector<double> start() const override { return values(drawing_->start); }
+  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences) override {
+    return slalom::roll_out<P>(evaluator(), state_of(state.data()), sequences, horizon());
+  }
+  std::vector<maps::Pose> poses(std::span<const double> states) override {
+    std::vector<maps::Pose> all;
+    for (std::size_t at = 0; at < states.size(); at += state_size) all.push_back(pose(state_of(&states[at])));
+    return all;
+  }
+  std::vector<Shape> shapes() override {
+    return drawing_->shapes ? drawing_->shapes(evaluator().problem()) : std::vector<Shape>{};
+  }
+  std::vector<Line> figure(std::span<const double> state) override {
+    return drawing_->figure ? drawing_->figure(state_of(state.data())) : std::vector<Line>{};
+  }
+
+ protected:
+  static constexpr std::size_t state_size = sizeof(State) / sizeof(double);
+
+  virtual const ProblemEvaluator<P>& evaluator() const = 0;
+  virtual int horizon() const = 0;
+
+  const Drawing<P>& drawn() const { return *drawing_; }
+  static State state_of(const double* from) {
+    State state;
+    std::memcpy(&state, from, sizeof state);
+    return state;
+  }
+
+ private:
+  maps::Pose pose(const State& x) const {
+    const Drawing<P>& d = *drawing_;
+    if (d.pose) return d.pose(x);
+    return {x.*d.x, x.*d.y, d.heading ? x.*d.heading : 0};
+  }
+
+  std::shared_ptr<const Drawing<P>> drawing_;
+  std::shared_ptr<const SubjectFacts> facts_;
+};
+
+/// A controller with its drawing.
+template <Problem P>
+class ControllerSubject final : public SolverSubject, public DrawnProblem<P> {
+ public:
+  using State = typename Drawing<P>::State;
+  using Inputs = typename Drawing<P>::Inputs;
+
+  ControllerSubject(Controller<P> controller, Drawing<P> drawing)
+      : DrawnProblem<P>(std::move(drawing)), controller_(std::move(controller)) {}
+
+  std::unique_ptr<Subject> clone() const override { return std::make_unique<ControllerSubject>(*this); }
+  std::vector<double> start() const override { return values(drawn().start); }
   double time_step() const override { return controller_.evaluator().time_step(); }
   const SolverOptions* options() const override { return controller_.options(); }
   void set_options(const SolverOptions& options) override {
@@ -128,7 +176,7 @@ class ControllerSubject final : public SolverSubject {
     SolverSubject::restart();
   }
   const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
-    if (drawing_->clock) drawing_->clock(controller_.problem(), time_);
+    if (drawn().clock) drawn().clock(controller_.problem(), time_);
     const Plan<P> plan = controller_.solve(state_of(state.data()), request);
     plan_.clear();
     for (const Inputs& u : plan.inputs) plan_.insert(plan_.end(), u.value, u.value + P::inputs);
@@ -136,67 +184,42 @@ class ControllerSubject final : public SolverSubject {
   }
   std::span<const double> inputs() const override { return plan_; }
 
-  Trajectories roll_out(std::span<const double> state, std::span<const float> sequences) override {
-    const int steps = controller_.solver().horizon();
-    return slalom::roll_out<P>(controller_.evaluator(), state_of(state.data()), sequences, steps);
-  }
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
     time_ += time_step();
     Inputs u;
     std::copy_n(input.begin(), P::inputs, u.value);
     const State x = state_of(state.data());
-    if (drawing_->plant) return values(drawing_->plant(x, u));
+    if (drawn().plant) return values(drawn().plant(x, u));
     const P& p = controller_.problem();
     return values(slalom::detail::step<P, double>(p, x, slalom::detail::look_up<P, double>(p, x), u, 0));
   }
 
-  std::vector<maps::Pose> poses(std::span<const double> states) override {
-    std::vector<maps::Pose> all;
-    for (std::size_t at = 0; at < states.size(); at += state_size) all.push_back(pose(state_of(&states[at])));
-    return all;
-  }
-  std::vector<Shape> shapes() override {
-    return drawing_->shapes ? drawing_->shapes(controller_.problem()) : std::vector<Shape>{};
-  }
-  std::vector<Line> figure(std::span<const double> state) override {
-    return drawing_->figure ? drawing_->figure(state_of(state.data())) : std::vector<Line>{};
-  }
   void place(std::span<double> state, const maps::Pose& to) override {
     State x = state_of(state.data());
-    x.*drawing_->x = to.x;
-    x.*drawing_->y = to.y;
-    if (drawing_->heading) x.*drawing_->heading = to.yaw;
+    x.*drawn().x = to.x;
+    x.*drawn().y = to.y;
+    if (drawn().heading) x.*drawn().heading = to.yaw;
     std::memcpy(state.data(), &x, sizeof x);
   }
   void move(int shape, const maps::Pose& to) override {
-    drawing_->move(controller_.problem(), shape, {to.x, to.y});
+    drawn().move(controller_.problem(), shape, {to.x, to.y});
   }
 
  private:
-  static constexpr std::size_t state_size = sizeof(State) / sizeof(double);
+  using DrawnProblem<P>::drawn, DrawnProblem<P>::state_of, DrawnProblem<P>::state_size;
   static constexpr bool has_parameters = requires(P & p) {
     visit_options(p, [](auto&, const Declaration&) {});
   };
 
-  static State state_of(const double* from) {
-    State state;
-    std::memcpy(&state, from, sizeof state);
-    return state;
-  }
+  const ProblemEvaluator<P>& evaluator() const override { return controller_.evaluator(); }
+  int horizon() const override { return controller_.solver().horizon(); }
   static std::vector<double> values(const State& state) {
     std::vector<double> all(state_size);
     std::memcpy(all.data(), &state, sizeof state);
     return all;
   }
-  maps::Pose pose(const State& x) const {
-    const Drawing<P>& d = *drawing_;
-    if (d.pose) return d.pose(x);
-    return {x.*d.x, x.*d.y, d.heading ? x.*d.heading : 0};
-  }
 
   Controller<P> controller_;
-  std::shared_ptr<const Drawing<P>> drawing_;
-  std::shared_ptr<const SubjectFacts> facts_;
   std::vector<double> plan_;
   double time_ = 0;  ///< s since the start
 };

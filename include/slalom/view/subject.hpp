@@ -50,6 +50,12 @@ struct Scanner {
   double range_max = 0;                       ///< m; readings from here on are not drawn
 };
 
+/// A scan of a laser scanner.
+struct SeenScan {
+  maps::Pose sensor;              ///< pose of the scanner
+  std::span<const float> ranges;  ///< m
+};
+
 /// Facts about a subject that do not change.
 struct SubjectFacts {
   std::string title{};                                   ///< name of the problem
@@ -68,7 +74,7 @@ struct SubjectFacts {
   std::vector<std::string> figures{};  ///< names of FrameSource::figures, which replace states and inputs
   double front = 0, rear = 0;          ///< m from the position to the axles; 0: it has no wheels
   int speed = -1, steering = -1;       ///< indices of a state's speed (m/s) and steering (rad); -1: none
-  std::optional<Scanner> scanner{};    ///< scanner of the scans in FrameSource::blocks
+  std::optional<Scanner> scanner{};    ///< scanner of FrameSource::scan
   std::vector<maps::ReferencePoint> course{};  ///< the line to follow, with the speeds on it
   bool is_closed = false;                      ///< whether the end of the course is its beginning
 };
@@ -134,6 +140,7 @@ class FrameSource {
   /// Returns the lines that show the body in a state.
   virtual std::vector<Line> figure(std::span<const double> state) = 0;
 
+  virtual std::optional<SeenScan> scan() const { return {}; }          ///< scan with which it has planned
   virtual std::vector<double> figures() { return {}; }                 ///< values of SubjectFacts::figures
   virtual std::string blocks() { return {}; }                          ///< further blocks of the message
   virtual std::optional<StepMeasures> measures() const { return {}; }  ///< figures of the last plan

@@ -1,6 +1,6 @@
 import { ask, send } from "./connection";
 import { all, click, get, say, showIcon } from "./dom";
-import { isReplay, on, page, period, scalar, tell } from "./page";
+import { isMonitor, isReplay, on, page, period, scalar, tell } from "./page";
 import { past } from "./past";
 import { toast } from "./toast";
 
@@ -9,7 +9,7 @@ import { toast } from "./toast";
 let isPaused = false; // as it will be once the server has executed what was asked
 let pending = 0; // questions that it has not answered
 /** Whether an earlier step is shown, after which Play forgets what was driven. */
-const isPast = () => !isReplay && page.state!.tick < page.state!.newest;
+const isPast = () => !isReplay && !isMonitor() && page.state!.tick < page.state!.newest;
 function showPlay() {
   showIcon(get("play"), isPaused ? "play" : "pause");
   say(get("play").lastChild!, !isPaused ? "Pause" : isPast() ? "Play from here" : "Play");

@@ -33,7 +33,7 @@ const shortcuts: Shortcut[] = [
   ["Space", "pause and continue", { " ": bar.play }],
   [".", "one control step forward", { ".": bar.step }],
   [",", "one control step back", { ",": bar.back }],
-  ["R", "restart from the beginning", { r: bar.restart }],
+  ["R", "restart from the beginning", { r: bar.restart }, "time"],
   ["F", "follow the car, heading up or not", { f: stage.turnFollow }],
   ["A", "fit the course", { a: stage.fit }],
   ["G", "car and ghost side by side, or in one picture", { g: () => get("split").click() }],

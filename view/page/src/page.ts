@@ -66,9 +66,16 @@ const none = new Float64Array();
 export const drivenOf = (frame: Frame | undefined): Body | undefined =>
   frame?.bodies.find((b) => b.kind === 0);
 
-/** Whether the page can do what not all pages can, such as to choose a scenario; "live": what no replay can. */
-export const can = (what: string) =>
-  !isReplay && (what === "live" || (page.hello?.can.includes(what) ?? false));
+/** Whether the page only watches a controller that runs elsewhere. */
+export const isMonitor = () => page.hello?.can.includes("watch") ?? false;
+/**
+ * Whether the page can do what not all pages can, such as to choose a scenario; "live": what only the drive of a
+ * server can; "time": what also a replay can.
+ */
+export function can(what: string): boolean {
+  if (what === "time") return !isMonitor();
+  return !isReplay && (what === "live" ? !isMonitor() : (page.hello?.can.includes(what) ?? false));
+}
 
 /** The time between two control steps, s. */
 export const period = () => page.state?.control_period ?? page.hello?.control_period ?? 0.025;

@@ -189,7 +189,7 @@ export interface OptionDeclaration extends Texts<"name" | "symbol" | "unit" | "h
 export interface Hello extends Numbers<"protocol" | "history_seconds" | "control_period"> {
   type: "hello";
   title: string;
-  can: string[]; // place, move, add, scenario, real_time, save, ghost, introduction
+  can: string[]; // place, move, add, scenario, real_time, save, ghost, introduction, watch
   scalars: string[];
   statuses: string[];
   symptoms: Texts<"name" | "explanation">[];

@@ -1,6 +1,6 @@
 import { send } from "./connection";
 import { all, click, get, make } from "./dom";
-import { can, isReplay, on } from "./page";
+import { can, isMonitor, isReplay, on } from "./page";
 import type { State } from "./protocol";
 import { toast } from "./toast";
 
@@ -29,6 +29,8 @@ on("hello", () => {
 /** Returns the name of the way in which the time of a drive passes, and its meaning. */
 function modeOf(state: State): [name: string, meaning: string] {
   if (isReplay) return ["replay", "A recording of an earlier drive"];
+  if (isMonitor())
+    return ["watching", "This page shows a controller that runs elsewhere, and cannot change it"];
   if (state.real_time)
     return ["real time", "Commands take effect after the wall-clock time of the planner, as on a car"];
   const why = "the same seed gives the same drive on any machine";

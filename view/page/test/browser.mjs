@@ -1,8 +1,9 @@
-// Drives the page in Chromium: node test/browser.mjs PROGRAM
+// Drives the page in Chromium: node test/browser.mjs PROGRAM [PROGRAM WITH A MONITOR]
 // SLALOM_SUITES=drive,save runs only these suites, SLALOM_TEST=TEXT only tests whose name contains the text.
 import { chromiumPath, Harness } from "./harness.mjs";
 
-const suites = "introduction drive compare panes problem room save names layout accessible pages".split(" ");
+const suites =
+  "introduction drive compare panes problem room monitor save names layout accessible pages".split(" ");
 const chosen = process.env.SLALOM_SUITES?.split(",") ?? suites;
 const program = process.argv[2];
 if (!program) {
@@ -14,6 +15,7 @@ if (!chromiumPath()) {
   process.exit(77);
 }
 const harness = new Harness(program, process.env.SLALOM_TEST);
+harness.monitored = process.argv[3];
 await harness.openAll(["--course", "stag", "--obstacles", "4", "--seed", "3"]);
 for (const name of chosen) await (await import(`./suites/${name}.mjs`)).default(harness);
 await harness.test("no errors are in the console", async () => {

@@ -41,7 +41,7 @@ async function palette() {
 
 /** Colours of pictures and videos, by name, and those of the page for the same. */
 export async function coloursByMeaning() {
-  const source = readFileSync(new URL("../../../tools/drawing/colour.hpp", import.meta.url), "utf8");
+  const source = readFileSync(new URL("../../../tools/drawing/drawing.hpp", import.meta.url), "utf8");
   const { themes, rampColour } = await palette();
   const hex = (rgb) => rgb.slice(0, 3).reduce((sum, v) => 256 * sum + Math.round(255 * v), 0);
   const named = [...source.matchAll(/(\w+)_colour = hex\((0x\w+)/g)].map(([, name, rgb]) => [

@@ -163,8 +163,11 @@ export class Harness extends Tab {
   }
 
   /** Starts the program and waits for its address. */
-  async start(...args) {
-    const child = spawn(this.program, args, { stdio: ["ignore", "pipe", "inherit"] });
+  start(...args) {
+    return this.run(this.program, args);
+  }
+  async run(program, args) {
+    const child = spawn(program, args, { stdio: ["ignore", "pipe", "inherit"] });
     const address = await new Promise((resolve, reject) => {
       let said = "";
       child.stdout.on("data", (data) => {

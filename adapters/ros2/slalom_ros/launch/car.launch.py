@@ -30,6 +30,7 @@ ARGUMENTS = (
     ("base_frame", "base_link", "x ahead, y to the left"),
     ("rear_axle", "0.0", "m, x of the middle of the rear axle in the base frame"),
     ("scan_interval", "0.0", "s, scans that come sooner after the last one used are not used"),
+    ("view_port", "0", "of a page that shows the plans; 0: none"),
     ("use_sim_time", "false", "the time is that of the topic clock"),
     ("container", "", "a component container that loads the nodes; empty: each is a process"),
 )
@@ -50,6 +51,7 @@ def nodes(context):
         "method": given["method"],
         "planner.max_speed": float(given["max_speed"]),
         "scan_interval": float(given["scan_interval"]),
+        "view_port": int(given["view_port"]),
     }
     localiser = {"everywhere": given["everywhere"] == "true", "pose_file": given["pose_file"]}
     file = [given["params"]] if given["params"] else []

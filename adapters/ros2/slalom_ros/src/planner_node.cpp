@@ -46,6 +46,8 @@ class PlannerNode : public CoreNode<PlannerCore> {
                 "scans that come sooner after the last one used are not used; 0: all are used [s]");
     settings_.others =
         setting("others", settings_.others, "where the planner learns of other cars: none, scan or topic");
+    settings_.view_port = setting("view_port", settings_.view_port,
+                                  "port at which this computer serves the live view; 0: none");
     drive_.header.frame_id = base_;
   }
 

@@ -1,7 +1,7 @@
 // Colours by meaning. Those in between are computed in OKLab (B. Ottosson, 2020), where equal steps look equal. The
 // ramp of costs runs from blue to yellow with lightness in one direction, so it reads the same with any kind of colour
 // vision and in grey. No other thing is green but the plan. Pictures and videos have the colours of the light theme
-// (tools/drawing/colour.hpp).
+// (tools/drawing/drawing.hpp).
 
 export type Rgba = [number, number, number, number];
 
