@@ -310,7 +310,10 @@ void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const 
   const std::size_t count = guide_.points().size();
   if (std::exchange(count_, count) != count) other_ += left - left_;  // another path: the progress goes on
   left_ = left;
-  standing_ = speed_ < recovery_.lengths().standing ? standing_ + elapsed : 0;
+  const bool moves = distance(position(robot), position(stood_at_)) > 0.5 * options_.goal_distance ||
+                     std::abs(maps::wrap_angle(robot.yaw - stood_at_.yaw)) > 0.5 * options_.goal_angle;
+  standing_ = moves ? 0 : standing_ + elapsed;
+  if (moves) stood_at_ = robot;
   recovery_.update({.arc = other_ - left,
                     .speed = speed_,
                     .waits = without_way_ > 0 || stop_ != no_stop || others.are_near(position(robot))},

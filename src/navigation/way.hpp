@@ -88,7 +88,8 @@ class Way {
   double left_ = 0, other_ = 0;    ///< m left of the path then; m by which it was longer than the first
   bool is_done_ = false;           ///< whether the end was reached
   double speed_ = 0;               ///< m/s, of the robot; in a turn, too
-  double standing_ = 0;            ///< s
+  maps::Pose stood_at_;            ///< near which it has been
+  double standing_ = 0;            ///< for so long, s
   maps::Point position_;           ///< m, of the robot
   bool manoeuvres_ = false;        ///< whether a manoeuvre was the last try to get on
   std::size_t stop_ = no_stop;     ///< point of the path before an occupied goal
