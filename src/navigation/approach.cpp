@@ -7,7 +7,7 @@ namespace {
 
 constexpr double wrong_way = std::numbers::pi / 3;  // rad from the path, from which the robot first turns
 constexpr std::size_t most_goals = 30;              // poses, as goals of a search
-constexpr double more_room = 0.1;  // radii of room that a manoeuvre keeps if it can, or a third
+constexpr double more_room = 0.1;                   // radii of room that a manoeuvre keeps if it can
 
 maps::ManoeuvreOptions search_options(const NavigatorOptions& options, const Footprint& footprint) {
   const bool turns = turns_on_the_spot(options.base);
@@ -44,8 +44,7 @@ class CostmapRoom final : public maps::BodyRoom {
 Approach::Approach(const NavigatorOptions& options, const Footprint& footprint)
     : options_(options),
       footprint_(footprint),
-      bodies_{footprint.without_rim(-more_room * footprint.circumscribed_radius()),
-              footprint.without_rim(-more_room / 3 * footprint.circumscribed_radius()), footprint},
+      bodies_{footprint.without_rim(-more_room * footprint.circumscribed_radius()), footprint},
       search_(search_options(options, footprint)) {
   goals_.reserve(2 * most_goals);
 }

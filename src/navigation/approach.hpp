@@ -46,7 +46,7 @@ class Approach {
 
   NavigatorOptions options_;
   Footprint footprint_;
-  std::array<Footprint, 3> bodies_;  ///< the last is the body itself, the first needs most room
+  std::array<Footprint, 2> bodies_;  ///< one that is larger, and the body itself
   maps::ManoeuvreSearch search_;
   ReservedVector<maps::ManoeuvreGoal> goals_;
   double begin_ = -1, end_ = 0;  ///< m of path left at the begin and at the end of the last manoeuvre

@@ -133,9 +133,7 @@ void Way::set_path(std::span<const maps::Pose> path) {
   }
   if (!goes_on || is_stuck() || is_done_) recovery_.reset();
   guide_.reserve(most);
-  poses_.reserve(most);
-  chosen_.reserve(most);
-  waiting_.reserve(most);
+  for (auto* const poses : {&poses_, &chosen_, &waiting_}) poses->reserve(most);
   waiting_.assign(path.begin(), path.end());
   is_done_ = false;
 }
