@@ -104,10 +104,7 @@ bool Approach::dock(PathGuide& guide, const maps::Pose& robot, const Costmap& co
                     std::vector<maps::Pose>& buffer) noexcept {
   const maps::Pose& goal = guide.goal();
   const double yaw = std::atan2(goal.y - robot.y, goal.x - robot.x);
-  const maps::Pose turned{robot.x, robot.y, yaw}, there{goal.x, goal.y, yaw};
-  if (turns_on_the_spot(options_.base) && free_turn(robot, yaw, costmap) != 0 &&
-      !costmap.collides(footprint_, turned, there) && free_turn(there, goal.yaw, costmap) != 0)
-    return false;
+  if (turns_on_the_spot(options_.base) && free_turn(robot, yaw, costmap) != 0) return false;
   goals_.clear();
   for (const double run : {-footprint_.circumscribed_radius(), footprint_.circumscribed_radius()}) {
     const maps::Pose begin{goal.x + run * std::cos(goal.yaw), goal.y + run * std::sin(goal.yaw), goal.yaw};

@@ -32,8 +32,8 @@ bool PathPlanner::has_room(const Costmap& costmap, const maps::Point& point) con
 bool PathPlanner::begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept,
                         std::span<const maps::ClosedDisc> closed) noexcept {
   geometry_ = costmap.geometry();
-  grid_.set_corner({geometry_.center_x - 0.5 * geometry_.length_x(),
-                    geometry_.center_y - 0.5 * geometry_.length_y()});
+  grid_.set_corner(
+      {geometry_.center_x - 0.5 * geometry_.length_x(), geometry_.center_y - 0.5 * geometry_.length_y()});
   std::fill(marks_.begin(), marks_.end(), Mark::none);
   for (const maps::Pose& pose : kept)
     grid_.visit_around({pose.x, pose.y}, kept_reach * half_width_,
