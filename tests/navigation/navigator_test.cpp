@@ -121,8 +121,7 @@ TEST(Navigator, ASearchOverALargeCostmapTakesSeveralUpdates) {
 }
 
 TEST(Navigator, WithoutDetoursItReportsNone) {
-  NavigatorOptions options{.find_detours = false};
-  CheckedDrive drive(options);
+  CheckedDrive drive({.find_detours = false});
   drive.block(4, -2, 4.3, 2);
   drive.navigator->set_path(straight);
   for (int i = 0; i < 200; ++i) {
