@@ -57,6 +57,19 @@ TEST(GettingOn, ASmallSlowRobotAndALargeOnePassADoor) {
   }
 }
 
+TEST(GettingOn, ASmallRobotDrivesBackFromADoorPost) {
+  maps::OccupancyGrid floor = free_grid(0, 0, 10, 5);
+  floor.resolution = 0.01;  // 2 m x 1 m
+  Drive drive({.base = {.max_forward = 1.6, .max_acceleration = 1.158}}, floor, 0.125, 0.128);
+  drive.block(1, 0, 1.1, 0.41);
+  drive.block(1, 0.58, 1.1, 1);
+  drive.restart();
+  const maps::Pose from{0.865, 0.458, 0.115};
+  drive.start(from, plan_path(drive.costmap, drive.body, from, {1.7, 0.5, 0}));
+  EXPECT_EQ(drive.drive(20), NavigationStatus::goal_reached);
+  EXPECT_FALSE(drive.collided);
+}
+
 TEST(GettingOn, LeavesWhatAppearsUnderItsBody) {
   // A cell under the front, one deep in the body, and a zone.
   const double places[][4] = {{3.27, 3, 3.3, 3.04}, {3.12, 3, 3.15, 3.04}, {2.4, 2.3, 3.7, 3.6}};
