@@ -44,7 +44,7 @@ class CostmapRoom final : public maps::BodyRoom {
 Approach::Approach(const NavigatorOptions& options, const Footprint& footprint)
     : options_(options),
       footprint_(footprint),
-      bodies_{footprint.without_rim(-more_room * footprint.circumscribed_radius()), footprint},
+      enlarged_(footprint.without_rim(-more_room * footprint.circumscribed_radius())),
       search_(search_options(options, footprint)) {
   goals_.reserve(2 * most_goals);
 }
@@ -66,11 +66,12 @@ double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& c
 
 /// Searches a manoeuvre from a pose to one of the goals, at first with more room.
 bool Approach::search(const maps::Pose& start, bool backward_in_time, const Costmap& costmap) noexcept {
-  return std::any_of(bodies_.begin(), bodies_.end(), [&](const Footprint& body) {
+  const auto finds = [&](const Footprint& body) {
     const CostmapRoom room(costmap, body, start, backward_in_time);
     const auto is_free = [&](const maps::ManoeuvreGoal& goal) { return room.at(goal.pose) >= 0; };
     return std::any_of(goals_.begin(), goals_.end(), is_free) && search_.search(room, goals_);
-  });
+  };
+  return finds(enlarged_) || finds(footprint_);
 }
 
 /// Searches a manoeuvre from a pose to one of the points `first` to `last` of the path; or, backward in time,

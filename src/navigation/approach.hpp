@@ -45,8 +45,7 @@ class Approach {
               bool backward_in_time, const Costmap& costmap) noexcept;
 
   NavigatorOptions options_;
-  Footprint footprint_;
-  std::array<Footprint, 2> bodies_;  ///< one that is larger, and the body itself
+  Footprint footprint_, enlarged_;
   maps::ManoeuvreSearch search_;
   ReservedVector<maps::ManoeuvreGoal> goals_;
   double begin_ = -1, end_ = 0;  ///< m of path left at the begin and at the end of the last manoeuvre

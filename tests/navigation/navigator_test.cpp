@@ -250,8 +250,6 @@ TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
   EXPECT_THROW(method_options("dwa", base), std::invalid_argument);
 }
 
-const maps::Pose hall_path[] = {{-1.5, 0, 0}, {1.5, 0, 0}};
-
 TEST(NavigatorCheck, ALongPathWithManyCornersIsTakenInAnUpdate) {
   const Hall hall;
   Navigator navigator = make_navigator({}, hall.costmap);
@@ -284,7 +282,7 @@ TEST(AllocationFailure, ANavigatorIsMadeAndTakesAPathOrThrows) {
   const Hall hall;
   EXPECT_GT(testing::fail_every_allocation([&] {
               Navigator navigator = make_navigator({}, hall.costmap);
-              navigator.set_path(hall_path);
+              navigator.set_path(std::vector<maps::Pose>{{-1.5, 0, 0}, {1.5, 0, 0}});
               return navigator.update({-1.5, 0, 0}, {}, hall.costmap, period).command.forward;
             }),
             20);
