@@ -96,8 +96,7 @@ class NavigationEvaluator final : public BatchEvaluator {
   maps::Point origin_;
 };
 
-/// The options for plans in steps of this duration (s). Noise is smooth over a whole plan: in a longer one,
-/// less of it changes the way as much.
+/// The options for steps of this duration (s). Noise is smooth over a plan: in a longer one it turns farther.
 SolverOptions fitted(SolverOptions options, double step) {
   constexpr double usual = 2.8;  // s, the plans for which variances are meant
   const double share = std::min(usual / (*options.find<int>("horizon") * step), 1.0);
