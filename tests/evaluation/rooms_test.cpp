@@ -84,7 +84,7 @@ TEST(RoomDrive, EveryManoeuvreEndsAsItShould) {
     if (kind == "straight") {
       EXPECT_LT(drive.command_change, 0.0236);
       EXPECT_LE(drive.turn_changes, 3);
-      navigation::SvgMppiOptions longer = navigation::svg_mppi_options(scenario.base);
+      SvgMppiOptions longer = navigation::svg_mppi_options(scenario.base);
       longer.horizon = 200;
       EXPECT_LT(drive_room(scenario, {.solver = longer}, 1).command_change, 0.01) << "0.015 with wider noise";
     }
