@@ -2,7 +2,6 @@
 
 #include "navigation/approach.hpp"
 #include "navigation/others.hpp"
-#include "navigation/path_guide.hpp"
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/leg_follower.hpp"
 #include "slalom/maps/recovery.hpp"

@@ -6,7 +6,6 @@
 #include "slalom/navigation/navigator.hpp"
 #include "support/adversary.hpp"
 #include "support/any_options.hpp"
-#include "support/any_others.hpp"
 #include "support/promise.hpp"
 
 /// Navigators as state machines: updates with any pose, path and map, and what every command promises.

@@ -1,7 +1,7 @@
 #include <map>
 
 #include "sim/golden_table.hpp"
-#include "sim/gym_world.hpp"
+#include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/gym.hpp"
 #include "slalom/sim/lidar.hpp"
 #include "slalom/sim/plant.hpp"
@@ -9,6 +9,17 @@
 
 namespace slalom::sim {
 namespace {
+
+/// A map of the golden data as f1tenth_gym reads it.
+inline sim::Track gym_track(const std::filesystem::path& folder, const std::string& map) {
+  auto yaml = folder / "maps" / map / "map.yaml";
+  if (!std::filesystem::exists(yaml)) yaml.replace_filename(map + ".yaml");
+  return sim::Track(maps::load_ros_map(yaml, maps::MapRule::grey_threshold), {}, false);
+}
+
+inline sim::LidarOptions gym_lidar() {
+  return sim::WorldOptions::gym_compatible().lidar;
+}
 
 using namespace slalom::testing;
 

@@ -92,17 +92,17 @@ TEST_F(Watched, ShowsWhatTheControllerPlannedWithItsSamples) {
   EXPECT_EQ(hello_["methods"], json({"svg_mppi"}));
   const State before = x_;
   step();
-  const std::string shown = frame();
+  std::string shown = frame();
   EXPECT_EQ(scalar(shown, "tick"), 0);
   EXPECT_EQ(scalar(shown, "x"), before.x);
   EXPECT_EQ(scalar(shown, "minimum_cost"), cost_);
   EXPECT_EQ(scalar(shown, "samples"), samples_);
-  std::uint16_t candidates = 0;
-  std::memcpy(&candidates, FrameReader(shown).block(Block::candidates).data(), sizeof candidates);
-  EXPECT_EQ(candidates, std::min(samples_, 160));
+  PayloadReader candidates(FrameReader(shown).block(Block::candidates));
+  EXPECT_EQ(candidates.get<std::uint16_t>(), std::min(samples_, 160));
   controller_.problem().goal_x = 4;  // the scene is that of the plan
   step();
-  PayloadReader bodies(FrameReader(frame()).block(Block::bodies));
+  shown = frame();
+  PayloadReader bodies(FrameReader(shown).block(Block::bodies));
   bodies.take(4 + 24 + 4);
   EXPECT_EQ(bodies.f32(), 4);
 }

@@ -5,7 +5,7 @@
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_pictures.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/recording/recording.hpp"
+#include "tools/recording/driven_recording.hpp"
 #include "tools/scenario/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"

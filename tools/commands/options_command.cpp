@@ -1,4 +1,5 @@
 #include <iostream>
+#include <memory>
 
 #include "json/json.hpp"
 #include "tools/commands/commands.hpp"
@@ -80,6 +81,12 @@ void options(const OptionsArguments& arguments) {
   if (!arguments.json.empty()) write_json(json, arguments.json);
 }
 
+struct ExplainArguments {
+  int figure = 0;  ///< 0: not given
+  std::string plot;
+  std::uint64_t seed = 0;
+};
+
 }  // namespace
 
 void declare_options(Subcommand& command) {
@@ -95,6 +102,23 @@ void declare_options(Subcommand& command) {
   command.examples({"options --method svg_mppi", "options --config race --yaml"});
   command.action([arguments] {
     options(*arguments);
+    return 0;
+  });
+}
+
+void declare_explain(Subcommand& command) {
+  command.summary(
+      "Draw a figure of the SVG-MPPI paper: how methods solve a problem with two equally good ways, by the "
+      "Python package and matplotlib");
+  const auto arguments = std::make_shared<ExplainArguments>();
+  command.option("--figure", arguments->figure, "Figure of the paper: 1, 3 or 4",
+                 {.least = 1, .most = 4, .required = true});
+  command.option("--plot", arguments->plot, "Write the figure to this PNG, SVG or PDF", {.required = true});
+  command.option("--seed", arguments->seed, "Seed of the random numbers");
+  command.examples({"explain --figure 4 --plot figure.png"});
+  command.action([arguments] {
+    if (arguments->figure == 2) throw CommandLineError("--figure", "'2' must be 1, 3 or 4");
+    become_python("paper_figures");
     return 0;
   });
 }

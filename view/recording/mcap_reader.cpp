@@ -5,7 +5,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "view/protocol/frame_reader.hpp"
-#include "view/recording/mcap_bytes.hpp"
+#include "view/recording/mcap_writer.hpp"
 
 namespace slalom::view::mcap {
 namespace {

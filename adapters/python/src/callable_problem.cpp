@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "callable_results.hpp"
-
 namespace slalom::python {
 namespace {
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "callable_problem.hpp"
-#include "callable_results.hpp"
 
 namespace slalom::python {
 

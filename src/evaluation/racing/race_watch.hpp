@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/overtaking/fault_judge.hpp"
+#include "evaluation/overtaking/overtaking_meter.hpp"
 #include "slalom/evaluation/grid_race.hpp"
 
 namespace slalom::evaluation {

@@ -12,7 +12,6 @@
 #include "solvers/methods/guide_search.hpp"
 #include "solvers/methods/last_choice.hpp"
 #include "solvers/methods/method_solver.hpp"
-#include "solvers/sampling/sample_kinds.hpp"
 #include "solvers/sampling/weigh_part.hpp"
 
 namespace slalom {

@@ -4,7 +4,6 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
-#include "vehicle/known_folders.hpp"
 #include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle {

@@ -3,7 +3,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/vehicle/course/course.hpp"
-#include "vehicle/known_folders.hpp"
+#include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "vehicle/racing/loop_search.hpp"
+#include "vehicle/racing/map_corridor.hpp"
 
 #include <deque>
 #include <queue>

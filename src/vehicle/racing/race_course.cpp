@@ -7,7 +7,6 @@
 #include "slalom/maps/reference_path.hpp"
 #include "vehicle/course/track_parts.hpp"
 #include "vehicle/racing/free_space.hpp"
-#include "vehicle/racing/loop_search.hpp"
 #include "vehicle/racing/map_corridor.hpp"
 
 namespace slalom::vehicle {

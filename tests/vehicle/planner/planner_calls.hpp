@@ -5,7 +5,6 @@
 #include "solvers/set_option.hpp"
 #include "support/adversary.hpp"
 #include "support/any_options.hpp"
-#include "support/any_others.hpp"
 #include "support/lane.hpp"
 #include "support/promise.hpp"
 

@@ -9,8 +9,8 @@
 #include <tf2_msgs/msg/tf_message.hpp>
 #include <tf2_ros/qos.hpp>
 
-#include "core_node.hpp"
 #include "logic/localiser_core.hpp"
+#include "managed_node.hpp"
 
 namespace slalom_ros {
 

@@ -13,8 +13,8 @@
 #include <slalom_msgs/srv/save.hpp>
 #include <std_msgs/msg/float32.hpp>
 
-#include "core_node.hpp"
 #include "logic/planner_core.hpp"
+#include "managed_node.hpp"
 #include "tracked_objects.hpp"
 
 namespace slalom_ros {
