@@ -110,8 +110,7 @@ bool Costmap::touches(const Footprint& footprint, const maps::Pose& from,
   for (int row = std::max(row_begin, 0); row <= std::min(row_last, geometry_.rows - 1); ++row)
     for (int column = std::max(column_begin, 0), next; column <= std::min(column_last, geometry_.columns - 1);
          column = next) {
-      // The nearest obstacle is so many cells away, but for rounding.
-      const double away = *distances_.at(row, column) / geometry_.resolution - 1e-3;
+      const double away = *distances_.at(row, column) / geometry_.resolution - 1e-3;  // cells, rounded
       next = column + std::max(saturate_cast<int>(std::ceil(away)), 1);
       if (away > 0) continue;
       const maps::Point middle{geometry_.cell_x(row), geometry_.cell_y(column)};

@@ -35,8 +35,7 @@ TEST(GettingOn, ALargeRobotKeepsToItsManoeuvreBesideAWall) {
   Drive drive({.base = {.max_forward = 1.2, .max_turn = 0.8, .max_acceleration = 0.8}},
               free_grid(0, 0, 26, 16), 2.5, 2.4);
   drive.restart();
-  const maps::Pose from{4, 8, -0.3};
-  drive.start(from, plan_path(drive.costmap, drive.body, from, {16, 1.4, pi}), 2);
+  drive.start({4, 8, -0.3}, plan_path(drive.costmap, drive.body, {4, 8, -0.3}, {16, 1.4, pi}), 2);
   EXPECT_EQ(drive.drive(45), NavigationStatus::goal_reached);
   EXPECT_FALSE(drive.collided);
 }

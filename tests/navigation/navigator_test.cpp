@@ -197,8 +197,7 @@ TEST(Navigator, ACopyDrivesOnLikeTheOriginalAndAllocatesNothing) {
     if (i == 10) copy = *drive.navigator;
     const long before = testing::allocations();
     const Velocity of_copy = copy.update(drive.pose, drive.velocity, drive.costmap, period).command;
-    const NavigationResult of_original =
-        drive.navigator->update(drive.pose, drive.velocity, drive.costmap, period);
+    const auto of_original = drive.navigator->update(drive.pose, drive.velocity, drive.costmap, period);
     EXPECT_EQ(testing::allocations(), before);
     status = of_original.status;
     drive.move(of_original);
