@@ -64,7 +64,9 @@ struct Corridor : PointMass {
 
   template <class T>
   Cost<T> stage_cost(const State<T>& s, const Input<T, 2>& u) const {
-    return step_cost(dt, T(3) * way_left(s), 0.02, u, collides(s));
+    const mask_t<T> hit = collides(s);
+    return {T(dt) * (T(3) * way_left(s) + T(0.02) * (u[0] * u[0] + u[1] * u[1])) + select(hit, T(50), T(0)),
+            hit};
   }
   template <class T>
   T terminal_cost(const State<T>& s) const {

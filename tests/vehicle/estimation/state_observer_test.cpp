@@ -131,9 +131,8 @@ TEST(StateObserver, LearnsTheSizeOfTheWheels) {
 
 TEST(StateObserver, AnImuGivesTheYawRate) {
   Drive drive = localised;
-  const Errors without = errors_of(drive);
   drive.imu = true;
-  const Errors with = errors_of(drive);
+  const Errors without = errors_of(localised), with = errors_of(drive);
   EXPECT_LT(with.yaw_rate, 0.7 * without.yaw_rate);
   EXPECT_LT(with.slip, 0.02);
 }
