@@ -159,8 +159,12 @@ double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& c
 
 /// Searches a manoeuvre from a pose to one of the goals, at first with more room.
 bool Approach::search(const maps::Pose& start, bool backward_in_time, const Costmap& costmap) noexcept {
-  return search_.search(CostmapRoom(costmap, enlarged_, start, backward_in_time), goals_) ||
-         search_.search(CostmapRoom(costmap, footprint_, start, backward_in_time), goals_);
+  const auto finds = [&](const Footprint& body) {
+    const CostmapRoom room(costmap, body, start, backward_in_time);
+    const auto is_free = [&](const maps::ManoeuvreGoal& goal) { return room.at(goal.pose) >= 0; };
+    return std::any_of(goals_.begin(), goals_.end(), is_free) && search_.search(room, goals_);
+  };
+  return finds(enlarged_) || finds(footprint_);
 }
 
 /// Searches a manoeuvre from a pose to one of the points `first` to `last` of the path; or, backward in time,
@@ -219,7 +223,8 @@ bool Approach::lead(PathGuide& guide, const maps::Pose& robot, std::size_t joint
   }
   buffer.insert(buffer.end(), points.begin() + joint, points.end());
   buffer.back() = guide.goal();
-  end_ = guide.step() * static_cast<double>(points.size() - 1 - joint);
+  const double left = guide.step() * static_cast<double>(points.size() - 1 - joint);
+  end_ = begin_ < 0 ? left : std::min(end_, left);  // it may lead into the last one
   guide.set(buffer, turns_on_the_spot(options_.base));
   begin_ = guide.remaining();
   return true;

@@ -96,6 +96,21 @@ class NavigationEvaluator final : public BatchEvaluator {
   maps::Point origin_;
 };
 
+/// The options for steps of this duration (s). Noise is smooth over a plan: in a longer one it turns farther.
+SolverOptions fitted(SolverOptions options, double step) {
+  constexpr double usual = 2.8;  // s, the plans for which variances are meant
+  const double share = std::min(usual / (*options.find<int>("horizon") * step), 1.0);
+  visit_options(options, [&](auto& option, const Declaration& about) {
+    if constexpr (std::is_same_v<decltype(option), PerInput&>) {
+      if (std::string_view(about.unit) != "input^2") return;
+      std::vector<double> values = option.values();
+      for (double& value : values) value *= share;
+      option = std::move(values);
+    }
+  });
+  return options;
+}
+
 template <class Base>
 class BaseModelOf final : public BaseModel {
  public:
@@ -103,7 +118,7 @@ class BaseModelOf final : public BaseModel {
               const SolverOptions& solver)
       : controller_(NavigationEvaluator<Base>(NavigationProblem<Base>(options.base, options.costs, footprint,
                                                                       resolution, options.time_step)),
-                    solver),
+                    fitted(solver, options.time_step)),
         deadline_(options.deadline),
         plan_(controller_.solver().horizon() + 1) {
     if (!controller_.solver().takes_proposals()) return;

@@ -108,9 +108,11 @@ bool Costmap::touches(const Footprint& footprint, const maps::Pose& from,
       (row_begin < 0 || column_begin < 0 || row_last >= geometry_.rows || column_last >= geometry_.columns))
     return true;
   for (int row = std::max(row_begin, 0); row <= std::min(row_last, geometry_.rows - 1); ++row)
-    for (int column = std::max(column_begin, 0); column <= std::min(column_last, geometry_.columns - 1);
-         ++column) {
-      if (!is_obstacle(row, column)) continue;
+    for (int column = std::max(column_begin, 0), next; column <= std::min(column_last, geometry_.columns - 1);
+         column = next) {
+      const double away = *distances_.at(row, column) / geometry_.resolution - 1e-3;  // cells, rounded
+      next = column + std::max(saturate_cast<int>(std::ceil(away)), 1);
+      if (away > 0) continue;
       const maps::Point middle{geometry_.cell_x(row), geometry_.cell_y(column)};
       for (std::size_t i = 0; i < 2 * n; ++i)
         if (enters_square(segments[i].begin, segments[i].end, middle, geometry_.resolution / 2)) return true;

@@ -97,15 +97,6 @@ Footprint::Part Footprint::part_of(double from, double to, bool along_x) const {
   return part;
 }
 
-std::size_t Footprint::part_at(const Point& point) const noexcept {
-  const auto depth = [&](const Part& part) {
-    return part.covering - std::hypot(point.x - part.middle.x, point.y - part.middle.y);
-  };
-  const auto deepest = std::max_element(parts_.begin(), parts_.end(),
-                                        [&](const Part& a, const Part& b) { return depth(a) < depth(b); });
-  return deepest - parts_.begin();
-}
-
 bool Footprint::contains(const Point& point) const noexcept {
   bool inside = false;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {

@@ -211,6 +211,7 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
   way_.advance(pose, velocity, costmap, 0);
   if (way_.is_at_stop()) return stand(NavigationStatus::goal_occupied, velocity, elapsed);
   NavigationResult result = plan(pose, velocity, costmap, elapsed);
+  if (way_.stands()) result.status = NavigationStatus::waiting;
   if (ignored) result.status = NavigationStatus::commands_ignored;
   return result;
 }

@@ -5,14 +5,14 @@
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr double waits_for = 2;       // m from the robot to moving objects for which it may wait
-constexpr double foresight = 5;       // s, in which meetings are found
-constexpr double along_path = 0.7;    // cosine of the angle to the path, of those who go along it
-constexpr double noticed = 0.005;     // m by which a robot comes nearer to somebody
-constexpr double passing_room = 0.1;  // m, more than the margin, so that a way past somebody is kept
+constexpr double waits_for = 2;     // m from the robot to moving objects for which it may wait
+constexpr double foresight = 5;     // s, in which meetings are found
+constexpr double along_path = 0.7;  // cosine of the angle to the path, of those who go along it
+constexpr double noticed = 0.005;   // m by which a robot comes nearer to somebody
 
-/// The box around the footprint, and the costs of plans beside others.
-maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options) {
+/// The box around the footprint, and the costs of plans beside others; with this share of the margins.
+maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options,
+                                       double share) {
   maps::MovingObstacleOptions made;
   made.front = made.rear = made.width = 0;
   for (const maps::Point& vertex : footprint.vertices()) {
@@ -20,18 +20,13 @@ maps::MovingObstacleOptions options_of(const Footprint& footprint, const Navigat
     made.rear = std::max(made.rear, -vertex.x);
     made.width = std::max(made.width, 2 * std::abs(vertex.y));
   }
-  made.margin = options.costs.others_margin;
-  made.soft_margin = options.costs.others_reach;
+  made.margin = share * options.costs.others_margin;
+  made.soft_margin = share * options.costs.others_reach;
+  made.deviations *= share;
   made.collision_cost = options.costs.collision * options.time_step;
   made.soft_cost = options.costs.others * options.time_step;
   made.max_probability = options.costs.others_probability;
   return made;
-}
-
-/// The options for the bodies alone.
-maps::MovingObstacleOptions without_margins(maps::MovingObstacleOptions options) {
-  options.margin = options.soft_margin = options.deviations = 0;
-  return options;
 }
 
 /// Whether the plan collides up to the pose with this index, unless its first pose does already.
@@ -52,9 +47,9 @@ Others::Others(const Footprint& footprint, const NavigatorOptions& options, std:
     : time_step_(options.time_step),
       speed_(options.base.max_forward),
       half_width_(footprint.half_width() + options.costs.others_margin),
-      body_(options_of(footprint, options)),
+      body_(options_of(footprint, options, 1)),
       obstacles_(body_, static_cast<int>(steps)),
-      bodies_(without_margins(body_), static_cast<int>(steps)) {}
+      bodies_(options_of(footprint, options, 0), static_cast<int>(steps)) {}
 
 bool Others::are_near(const maps::Point& robot) const noexcept {
   const auto taken = obstacles_.taken();
@@ -86,7 +81,7 @@ std::optional<maps::ClosedDisc> Others::meeting(std::span<const maps::Pose> path
     if (nearest == 0 || nearest + 1 >= last || least >= room) continue;
     const maps::Pose at = pose_at(nearest);
     if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < along_path) continue;
-    first = maps::ClosedDisc{{at.x, at.y}, room + passing_room};
+    first = maps::ClosedDisc{{at.x, at.y}, room + body_.margin};  // more, so that a way past is kept
     last = nearest;
   }
   return first;

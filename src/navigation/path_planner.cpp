@@ -9,10 +9,6 @@ constexpr double nearby = 1.2;       // half widths beside the corridor, and aro
 constexpr double kept_reach = 1.6;   // half widths
 constexpr float other_price = 1.3F;  // times as much away from the path that was kept
 
-maps::Point corner_of(const maps::GridGeometry& geometry) {
-  return {geometry.center_x - 0.5 * geometry.length_x(), geometry.center_y - 0.5 * geometry.length_y()};
-}
-
 }  // namespace
 
 PathPlanner::PathPlanner(const maps::GridGeometry& geometry, double half_width, std::size_t most_points)
@@ -36,7 +32,8 @@ bool PathPlanner::has_room(const Costmap& costmap, const maps::Point& point) con
 bool PathPlanner::begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept,
                         std::span<const maps::ClosedDisc> closed) noexcept {
   geometry_ = costmap.geometry();
-  grid_.set_corner(corner_of(geometry_));
+  grid_.set_corner(
+      {geometry_.center_x - 0.5 * geometry_.length_x(), geometry_.center_y - 0.5 * geometry_.length_y()});
   std::fill(marks_.begin(), marks_.end(), Mark::none);
   for (const maps::Pose& pose : kept)
     grid_.visit_around({pose.x, pose.y}, kept_reach * half_width_,
@@ -131,7 +128,7 @@ std::span<const maps::Point> PathPlanner::path_to(const maps::Point& point) noex
 
 std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footprint, const maps::Pose& start,
                                   const maps::Pose& goal) {
-  constexpr double straight = 0.2;  // m before the goal
+  constexpr double straight = 4 * PathPlanner::spacing;  // m before the goal
   const maps::GridGeometry& geometry = costmap.geometry();
   const double cells =
       static_cast<double>(geometry.rows) * geometry.columns;  // a way enters each once at most

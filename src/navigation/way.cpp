@@ -11,7 +11,8 @@ constexpr double search_period = 0.1;   // s between searches while there is no 
 constexpr int cells_of_update = 60000;  // cells that an update searches; the next goes on
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
-constexpr double around_joint = 0.2;    // m behind the end of a detour, where the path may have a corner
+constexpr double around_joint =
+    4 * PathPlanner::spacing;           // m behind the end of a detour, where the path may have a corner
 constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
 constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
 
@@ -45,11 +46,12 @@ Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps
          double reach)
     : options_(options),
       footprint_(footprint),
+      inner_(footprint.without_rim(geometry.resolution)),
       guide_(reach),
       planner_(geometry, footprint.half_width()),
       approach_(options, footprint),
-      legs_({.near = 0.75 * options.goal_distance,
-             .beside = options.goal_distance,
+      legs_({.near = std::min(0.75 * options.goal_distance, footprint.circumscribed_radius() / 4),
+             .beside = std::min(options.goal_distance, footprint.circumscribed_radius() / 3),
              .standing = 0.02,
              .standing_turn = 0.05,
              .stops = false}),
@@ -131,9 +133,7 @@ void Way::set_path(std::span<const maps::Pose> path) {
   }
   if (!goes_on || is_stuck() || is_done_) recovery_.reset();
   guide_.reserve(most);
-  poses_.reserve(most);
-  chosen_.reserve(most);
-  waiting_.reserve(most);
+  for (auto* const poses : {&poses_, &chosen_, &waiting_}) poses->reserve(most);
   waiting_.assign(path.begin(), path.end());
   is_done_ = false;
 }
@@ -163,7 +163,7 @@ void Way::clear() noexcept {
   closed_.forget_dead_ends();
   planner_.cancel();
   detour_left_ = infinity;
-  without_way_ = since_search_ = since_meeting_ = 0;
+  without_way_ = since_search_ = since_meeting_ = standing_ = 0;
   recovery_.reset();
   stop_ = no_stop;
 }
@@ -193,15 +193,15 @@ std::size_t Way::first_closed(const Costmap& costmap, std::size_t first, double 
   return count;
 }
 
-/// Whether a point is closed: the body has no room there, in a manoeuvre at just this yaw, or it is in a
-/// closed place.
+/// Whether a point is closed: the body has no room there, in a manoeuvre at just this yaw but for a rim that
+/// the search did not see, or it is in a closed place.
 bool Way::is_closed(const Costmap& costmap, std::size_t point) const noexcept {
   const maps::Pose& pose = guide_.points()[point];
   const maps::Point place = position(pose);
   if (closed_.contain(place)) return true;
   const double left = guide_.step() * static_cast<double>(guide_.points().size() - 1 - point);
-  return planner_.knows(costmap, place) && (approach_.manoeuvres(left) ? costmap.collides(footprint_, pose)
-                                                                       : !planner_.has_room(costmap, place));
+  return planner_.knows(costmap, place) &&
+         (approach_.manoeuvres(left) ? costmap.collides(inner_, pose) : !planner_.has_room(costmap, place));
 }
 
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
@@ -308,6 +308,10 @@ void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const 
   const std::size_t count = guide_.points().size();
   if (std::exchange(count_, count) != count) other_ += left - left_;  // another path: the progress goes on
   left_ = left;
+  const bool moves = distance(position(robot), position(stood_at_)) > 0.5 * options_.goal_distance ||
+                     std::abs(maps::wrap_angle(robot.yaw - stood_at_.yaw)) > 0.5 * options_.goal_angle;
+  standing_ = moves ? 0 : standing_ + elapsed;
+  if (moves) stood_at_ = robot;
   recovery_.update({.arc = other_ - left,
                     .speed = speed_,
                     .waits = without_way_ > 0 || stop_ != no_stop || others.are_near(position(robot))},

@@ -32,6 +32,8 @@ class Way {
   bool ends_at(const maps::Pose& robot) const noexcept;  ///< whether a robot there would be
   /// Whether the robot has made no progress for so long that it stands for a while before it tries again.
   bool is_stuck() const noexcept { return recovery_.state() == maps::DriveState::stuck; }
+  /// Whether it has stood for so long that it tries another way, or would if it did not wait for somebody.
+  bool stands() const noexcept { return standing_ >= recovery_.lengths().stand_still; }
   bool is_detour() const noexcept { return guide_.remaining() > detour_left_; }
   /// Whether the robot has come as near to an occupied goal as it may.
   bool is_at_stop() const noexcept {
@@ -64,7 +66,7 @@ class Way {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   NavigatorOptions options_;
-  Footprint footprint_;
+  Footprint footprint_, inner_;  ///< the body, and without a rim of a cell
   PathGuide guide_;
   PathPlanner planner_;
   Approach approach_;
@@ -85,6 +87,8 @@ class Way {
   double left_ = 0, other_ = 0;    ///< m left of the path then; m by which it was longer than the first
   bool is_done_ = false;           ///< whether the end was reached
   double speed_ = 0;               ///< m/s, of the robot; in a turn, too
+  maps::Pose stood_at_;            ///< near which it has been
+  double standing_ = 0;            ///< for so long, s
   maps::Point position_;           ///< m, of the robot
   bool manoeuvres_ = false;        ///< whether a manoeuvre was the last try to get on
   std::size_t stop_ = no_stop;     ///< point of the path before an occupied goal

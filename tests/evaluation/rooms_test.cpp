@@ -84,6 +84,9 @@ TEST(RoomDrive, EveryManoeuvreEndsAsItShould) {
     if (kind == "straight") {
       EXPECT_LT(drive.command_change, 0.0236);
       EXPECT_LE(drive.turn_changes, 3);
+      SvgMppiOptions longer = navigation::svg_mppi_options(scenario.base);
+      longer.horizon = 200;
+      EXPECT_LT(drive_room(scenario, {.solver = longer}, 1).command_change, 0.01) << "0.015 with wider noise";
     }
     if (scenario.wanted != RoomOutcome::reached) continue;
     EXPECT_LE(drive.goal_distance, 0.11) << kind;

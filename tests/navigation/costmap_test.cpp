@@ -14,12 +14,6 @@ namespace {
 
 using maps::Pose;
 
-Costmap costmap_of(const maps::OccupancyGrid& grid, UnknownCells unknown = UnknownCells::obstacle) {
-  Costmap costmap(grid.width, grid.height, grid.resolution, unknown);
-  EXPECT_TRUE(costmap.update(grid));
-  return costmap;
-}
-
 /// 5 x 4 m with scattered cells.
 maps::OccupancyGrid scattered(std::uint64_t seed) {
   maps::OccupancyGrid grid = free_grid(-2, 10, 5, 4);
@@ -159,7 +153,7 @@ TEST(Costmap, RolloutsMissNoCollisionDeeperThanHalfACell) {
   EXPECT_GT(collisions, 1000);
 }
 
-TEST(Costmap, MovesWithItsGridAndDoesNotAllocate) {
+TEST(Costmap, MovesWithItsGridDoesNotAllocateAndRejectsInvalidSizes) {
   maps::OccupancyGrid grid = free_grid(0, 0, 4, 3);
   fill(grid, 2, 1, 2.2, 1.2);
   Costmap costmap = costmap_of(grid);
@@ -170,16 +164,12 @@ TEST(Costmap, MovesWithItsGridAndDoesNotAllocate) {
   EXPECT_EQ(costmap.distance(102.1, -48.9), 0);
   EXPECT_EQ(costmap.distance(2.1, 1.1), 0) << "off the map";
   maps::OccupancyGrid turned = grid, smaller = free_grid(0, 0, 3, 3);
+  for (const auto& [width, height, resolution] : {std::tuple{2, 10, 0.05}, {10, 20001, 0.05}, {10, 10, 0.0}})
+    EXPECT_THROW(Costmap(width, height, resolution), std::invalid_argument);
   turned.origin.yaw = 0.1;
   EXPECT_FALSE(costmap.update(turned));
   EXPECT_FALSE(costmap.update(smaller));
   EXPECT_EQ(costmap.distance(102.1, -48.9), 0);
-}
-
-TEST(Costmap, RejectsInvalidSizes) {
-  EXPECT_THROW(Costmap(2, 10, 0.05), std::invalid_argument);
-  EXPECT_THROW(Costmap(10, 20001, 0.05), std::invalid_argument);
-  EXPECT_THROW(Costmap(10, 10, 0), std::invalid_argument);
 }
 
 using maps::Point;
@@ -219,8 +209,6 @@ TEST(Footprint, ThePartsCoverTheBodyAndContainNothingElse) {
         EXPECT_TRUE(std::any_of(parts.begin(), parts.end(),
                                 [&](const auto& part) { return reaches(part, part.covering + 2e-9); }))
             << shape << ": " << p.x << ", " << p.y;
-        const Footprint::Part& part = parts[body.part_at(p)];
-        EXPECT_TRUE(reaches(part, part.covering + 2e-9));
       } else {
         for (const auto& part : parts) EXPECT_FALSE(reaches(part, part.contained));
       }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <optional>
 
 #include "navigation/grids.hpp"
@@ -46,15 +45,11 @@ struct Drive {
     costmap.update(grid);
   }
   NavigationResult update(std::span<const maps::PredictedObstacle> others = {}) {
-    const NavigationResult result =
-        navigator->update(pose, told_zero ? Velocity{} : velocity, costmap, drive_period, others);
-    turn_changes.push_back(result.command.turn - velocity.turn);
+    return move(navigator->update(pose, velocity, costmap, drive_period, others));
+  }
+  NavigationResult move(const NavigationResult& result) {
     command = result.command;
-    on_their_way.push_back(result.command);
-    if (static_cast<int>(on_their_way.size()) > delay_periods) {
-      velocity = plant(on_their_way.front());
-      on_their_way.pop_front();
-    }
+    velocity = plant(command);
     const double yaw = pose.yaw + 0.5 * drive_period * velocity.turn, c = std::cos(yaw), s = std::sin(yaw);
     pose = {pose.x + drive_period * (c * velocity.forward - s * velocity.left),
             pose.y + drive_period * (s * velocity.forward + c * velocity.left),
@@ -63,8 +58,6 @@ struct Drive {
     const int now = velocity.forward > 0.03 ? 1 : velocity.forward < -0.03 ? -1 : 0;
     reversals += now != 0 && last_direction != 0 && now != last_direction;
     if (now != 0) last_direction = now;
-    remaining = result.remaining;
-    delay = result.delay;
     return result;
   }
   NavigationStatus step() { return update().status; }
@@ -86,12 +79,9 @@ struct Drive {
   maps::Pose pose;
   Velocity velocity, command;
   std::function<Velocity(const Velocity&)> plant = [](const Velocity& asked) { return asked; };
-  bool collided = false, told_zero = false;
+  bool collided = false;
   int reversals = 0, last_direction = 0;
-  std::vector<double> turn_changes;
-  int delay_periods = 0;
-  std::deque<Velocity> on_their_way;  ///< commands that have not taken effect yet
-  double time = 0, remaining = 0, delay = 0;
+  double time = 0;
 };
 
 }  // namespace slalom::navigation

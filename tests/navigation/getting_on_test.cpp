@@ -31,6 +31,15 @@ TEST(GettingOn, TurnsWhereThereIsRoomAndReversesToAGoalBesideAWall) {
   EXPECT_FALSE(drive.collided);
 }
 
+TEST(GettingOn, ALargeRobotKeepsToItsManoeuvreBesideAWall) {
+  Drive drive({.base = {.max_forward = 1.2, .max_turn = 0.8, .max_acceleration = 0.8}},
+              free_grid(0, 0, 26, 16), 2.5, 2.4);
+  drive.restart();
+  drive.start({4, 8, -0.3}, plan_path(drive.costmap, drive.body, {4, 8, -0.3}, {16, 1.4, pi}), 2);
+  EXPECT_EQ(drive.drive(45), NavigationStatus::goal_reached);
+  EXPECT_FALSE(drive.collided);
+}
+
 TEST(GettingOn, ASmallSlowRobotAndALargeOnePassADoor) {
   for (const double scale : {0.4, 6.0}) {
     maps::OccupancyGrid floor = free_grid(0, 0, scale < 1 ? 6.4 : 24, scale < 1 ? 3.2 : 12);
@@ -47,22 +56,29 @@ TEST(GettingOn, ASmallSlowRobotAndALargeOnePassADoor) {
   }
 }
 
-TEST(GettingOn, LeavesACellUnderItsBody) {
-  for (const double x : {3.27, 3.12}) {  // under the front, and deep in the body
-    Drive drive(BaseKind::differential, 0.3, 0.6);
-    drive.block(x, 3, x + 0.03, 3.04);
-    drive.restart_fast();
-    drive.start({3, 3, 0}, {{3, 3, 0}, {8, 3, 0}});
-    EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached) << x;
-  }
+TEST(GettingOn, ASmallRobotDrivesBackFromADoorPost) {
+  maps::OccupancyGrid floor = free_grid(0, 0, 10, 5);
+  floor.resolution = 0.01;  // 2 m x 1 m
+  Drive drive({.base = {.max_forward = 1.6, .max_acceleration = 1.158}}, floor, 0.125, 0.128);
+  drive.block(1, 0, 1.1, 0.41);
+  drive.block(1, 0.58, 1.1, 1);
+  drive.restart();
+  const maps::Pose from{0.865, 0.458, 0.115};
+  drive.start(from, plan_path(drive.costmap, drive.body, from, {1.7, 0.5, 0}));
+  EXPECT_EQ(drive.drive(20), NavigationStatus::goal_reached);
+  EXPECT_FALSE(drive.collided);
 }
 
-TEST(GettingOn, LeavesAZoneThatIsSwitchedOnOverIt) {
-  Drive drive(BaseKind::differential);
-  drive.restart_fast();
-  drive.start({3, 3, 0}, {{3, 3, 0}, {8, 3, 0}});
-  drive.block(2.4, 2.3, 3.7, 3.6);
-  EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached);
+TEST(GettingOn, LeavesWhatAppearsUnderItsBody) {
+  // A cell under the front, one deep in the body, and a zone.
+  const double places[][4] = {{3.27, 3, 3.3, 3.04}, {3.12, 3, 3.15, 3.04}, {2.4, 2.3, 3.7, 3.6}};
+  for (const auto& [x0, y0, x1, y1] : places) {
+    Drive drive(BaseKind::differential, 0.3, 0.6);
+    drive.restart_fast();
+    drive.start({3, 3, 0}, {{3, 3, 0}, {8, 3, 0}});
+    drive.block(x0, y0, x1, y1);
+    EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached) << x0;
+  }
 }
 
 TEST(LastMetre, YawsThatAreAllTheSameDoNotCount) {

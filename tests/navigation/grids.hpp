@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/navigation/costmap.hpp"
 
 namespace slalom::navigation {
 
@@ -24,6 +24,11 @@ inline void fill(maps::OccupancyGrid& grid, double x0, double y0, double x1, dou
                    y = grid.origin.y + (row + 0.5) * grid.resolution;
       if (x >= x0 && x <= x1 && y >= y0 && y <= y1) grid.at(column, row) = value;
     }
+}
+
+inline Costmap costmap_of(const maps::OccupancyGrid& grid, UnknownCells unknown = UnknownCells::obstacle) {
+  Costmap costmap(grid.width, grid.height, grid.resolution, unknown);
+  return costmap.update(grid) ? costmap : throw std::invalid_argument("the costmap refuses the grid");
 }
 
 }  // namespace slalom::navigation

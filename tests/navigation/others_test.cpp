@@ -116,7 +116,7 @@ TEST(NavigatorOthers, WaitingForThemIsNoDeadEnd) {
   meeting.block(0, -3, 10, -0.5);
   meeting.drive(4, true);
   EXPECT_EQ(meeting.detours, 0);
-  EXPECT_NE(meeting.status, NavigationStatus::blocked);
+  EXPECT_EQ(meeting.status, NavigationStatus::waiting);
   EXPECT_LT(meeting.pose.x, 1.8);
 }
 

@@ -17,12 +17,6 @@ maps::OccupancyGrid two_doors() {
   return grid;
 }
 
-Costmap costmap_of(const maps::OccupancyGrid& grid) {
-  Costmap costmap(grid.width, grid.height, grid.resolution);
-  EXPECT_TRUE(costmap.update(grid));
-  return costmap;
-}
-
 /// m, where a path crosses the wall.
 double crossing(const std::vector<maps::Pose>& path) {
   for (const maps::Pose& pose : path)

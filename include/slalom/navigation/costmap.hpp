@@ -57,7 +57,6 @@ class Costmap {
 
  private:
   bool touches(const Footprint& footprint, const maps::Pose& from, const maps::Pose& to) const noexcept;
-  bool is_obstacle(int row, int column) const noexcept { return *distances_.at(row, column) == 0; }
 
   UnknownCells unknown_;
   maps::GridGeometry geometry_;

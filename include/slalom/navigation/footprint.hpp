@@ -39,8 +39,6 @@ class Footprint {
   std::span<const maps::Point> vertices() const noexcept { return vertices_; }  ///< the outline
   /// The parts, which together cover the body.
   const std::array<Part, part_count>& parts() const noexcept { return parts_; }
-  /// The index of the part that covers a point of the body, the one in which it lies deepest.
-  std::size_t part_at(const maps::Point& point) const noexcept;
   /// The largest distance of a vertex from the origin, m.
   double circumscribed_radius() const noexcept { return circumscribed_; }
   /// The largest distance of a vertex from the robot's x axis, m: half of its corridor on a straight path.

@@ -11,30 +11,29 @@
 namespace slalom::navigation {
 
 /// Checks a body against the distances of a costmap, for rollouts. The parts of the footprint decide first:
-/// no obstacle is near a part, or one is inside. Where neither is certain, the points of the outline of that
-/// part do, at most a cell apart. So every overlap deeper than half a cell is found but a single cell that
-/// does not touch the outline, which a body in steps shorter than a cell meets with its outline first.
+/// no obstacle is near a part, or one is inside. Where neither is certain, the points of the outline do, at
+/// most a cell apart; one in the middle of each few shows whether they are near. So every overlap deeper than
+/// half a cell is found but a single cell that does not touch the outline, which a body in steps shorter than
+/// a cell meets with its outline first.
 class BodyCheck {
  public:
   static constexpr std::size_t max_points = 512;  ///< most points of an outline
 
   /// For costmaps of this resolution (m). Throws std::invalid_argument on an outline above 512 cells.
   BodyCheck(const Footprint& footprint, double resolution)
-      : unsure_(1.42 * resolution), half_cell_(0.5 * resolution) {
+      : unsure_(1.42 * resolution),
+        half_cell_(0.5 * resolution),
+        group_reach_((0.5 * group + 2) * resolution) {
     const std::vector<maps::Point> points = footprint.outline_points(resolution);
     if (points.size() > max_points) {
       throw std::invalid_argument("footprint: the outline is " + std::to_string(points.size()) +
                                   " cells long, must be at most 512 cells of the costmap");
     }
-    std::size_t count = 0;
+    for (const maps::Point& point : points) points_[count_++] = {point.x, point.y};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Footprint::Part& part = footprint.parts()[i];
       // A position lies within half of a diagonal (0.71 edges) of the middle of its cell.
-      parts_[i] = {
-          {part.middle.x, part.middle.y}, part.contained - 0.71 * resolution, part.covering, count, 0};
-      for (const maps::Point& point : points)
-        if (footprint.part_at(point) == i) points_[count++] = {point.x, point.y};
-      parts_[i].end = count;
+      parts_[i] = {{part.middle.x, part.middle.y}, part.contained - 0.71 * resolution, part.covering};
     }
   }
 
@@ -50,17 +49,22 @@ class BodyCheck {
   SLALOM_INLINE_CALLS Contact<T> check(const GridView<1>& distances, const T& x, const T& y, const T& sine,
                                        const T& cosine) const {
     T clearance = T(Costmap::reach);
-    mask_t<T> collided(false);
+    mask_t<T> collided(false), unsure(false);
     for (const Part& part : parts_) {
       const T distance = look_up_at(distances, part.middle, x, y, sine, cosine);
       const T around = distance - T(part.covering);
       clearance = min(clearance, around);
       collided = collided | (distance < T(part.contained));
-      const mask_t<T> unsure = (around < T(unsure_)) & !collided;
-      if (any(unsure)) {
-        for (std::size_t i = part.begin; i < part.end; ++i)
-          collided = collided | (look_up_at(distances, points_[i], x, y, sine, cosine) < T(half_cell_));
-      }
+      unsure = unsure | (around < T(unsure_));
+    }
+    unsure = unsure & !collided;
+    for (std::size_t first = 0; any(unsure) && first < count_; first += group) {
+      const std::size_t end = std::min(first + group, count_);
+      const T near = look_up_at(distances, points_[(first + end) / 2], x, y, sine, cosine);
+      // Off the map no distance is known.
+      if (!any(unsure & ((near < T(group_reach_)) | !(near < T(Costmap::reach))))) continue;
+      for (std::size_t i = first; i < end; ++i)
+        collided = collided | (look_up_at(distances, points_[i], x, y, sine, cosine) < T(half_cell_));
     }
     return {max(clearance - T(half_cell_), T(0)), collided};
   }
@@ -71,9 +75,8 @@ class BodyCheck {
   };
   struct Part {
     BodyPoint middle;
-    Coefficient contained;   ///< m; an obstacle whose distance is less is inside
-    Coefficient covering;    ///< m
-    std::size_t begin, end;  ///< first of its points, and the one after its last
+    Coefficient contained;  ///< m; an obstacle whose distance is less is inside
+    Coefficient covering;   ///< m
   };
 
   template <class T>
@@ -84,9 +87,11 @@ class BodyCheck {
   }
 
   std::array<Part, Footprint::part_count> parts_;
-  std::array<BodyPoint, max_points> points_;  ///< points of the outline, part by part
-  Coefficient unsure_;                        ///< m of clearance below which the outline decides
-  Coefficient half_cell_;                     ///< m
+  static constexpr std::size_t group = 8;     ///< points that the one in their middle decides for
+  std::array<BodyPoint, max_points> points_;  ///< points of the outline
+  std::size_t count_ = 0;
+  Coefficient unsure_;                   ///< m of clearance below which the outline decides
+  Coefficient half_cell_, group_reach_;  ///< m
 };
 
 /// The maps of a solve, in the map frame, and the goal.
@@ -264,8 +269,7 @@ class NavigationProblem {
     return {
         {T(progress_weight_) * left(seen), T(path_weight_) * min(square(seen.aside), T(costs_.max_squared)),
          T(heading_weight_) * (T(1) - facing) * heading_error,
-         T(clearance_weight_) * (T(1) - near) * hurry *
-             exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
+         T(clearance_weight_) * (T(1) - near) * hurry * exp(T(costs_.falloff) * seen.obstacle.clearance),
          moving, (T(turn_weight_) + T(costs_.facing) * facing) * turn_left,
          select(seen.obstacle.collided, T(costs_.collision), T(0)), met.value},
         mask_t<T>(seen.obstacle.collided | met.collided)};
@@ -281,7 +285,6 @@ class NavigationProblem {
   }
 
  private:
-  static constexpr double farthest = 5;  ///< m of clearance; keeps the exponential in range
   static constexpr double exact_path = 10, exact_heading = 5, on_the_spot = 0.1;  ///< factors of weights
   static constexpr double per_usual_speed = 2;      ///< s/m; faster robots keep more clearance
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step

@@ -72,6 +72,7 @@ enum class NavigationStatus {
   braking,           ///< the plan soon meets a fixed or moving obstacle: the robot brakes
   blocked,           ///< the path is blocked and there is no way round: the robot stands
   goal_occupied,     ///< something is on the goal: the robot has driven up to it, and stands
+  waiting,           ///< stands: it waits for somebody who moves, or tries another way
   stuck,             ///< no progress for five times `stuck_after`: the robot stands for 10 s, and tries again
   commands_ignored,  ///< the velocity stays near 0 although the commands do not
   goal_reached,      ///< the robot stands at the goal
@@ -81,9 +82,9 @@ enum class NavigationStatus {
 };
 /// The name of a status, as it is written in results.
 constexpr const char* name(NavigationStatus status) noexcept {
-  constexpr const char* names[] = {"following",     "detour",   "braking",          "blocked",
-                                   "goal_occupied", "stuck",    "commands_ignored", "goal_reached",
-                                   "no_path",       "bad_input"};
+  constexpr const char* names[] = {"following",     "detour",  "braking",  "blocked",
+                                   "goal_occupied", "waiting", "stuck",    "commands_ignored",
+                                   "goal_reached",  "no_path", "bad_input"};
   static_assert(std::size(names) == static_cast<int>(NavigationStatus::bad_input) + 1);
   return names[static_cast<int>(status)];
 }
@@ -99,7 +100,7 @@ struct NavigationResult {
   double remaining = 0;  ///< m of path to the goal
   double delay = 0;      ///< s until commands take effect: the longest that was told, or else an estimate
   /// Predicted poses, map frame; the first is now. Empty unless the status is `following`, `detour`,
-  /// `commands_ignored` or `braking`; with `braking` the plan is not followed.
+  /// `waiting`, `commands_ignored` or `braking`; with `braking` the plan is not followed.
   std::span<const maps::Pose> plan;
   std::span<const maps::Pose> path;  ///< path that is followed, with the present detour
 };
