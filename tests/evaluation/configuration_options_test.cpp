@@ -19,15 +19,16 @@ namespace {
 const std::string method = "svg_mppi";
 
 /// Options that change nothing in a configuration. A row that is no longer true fails. With one guide, as of
-/// few samples, there are no others; the variance is adapted; q* of `paper` has the temperature of samples;
-/// `race` reaches no lower bound in this second.
+/// few samples, there are no others; the variance is adapted; q* of `paper` has the temperature of samples.
 const std::map<std::string, std::set<std::string>> inert = {
     {"paper", {"restart_guides", "fit_all_guides", "variance", "fit_temperature"}},
     {"published", {"restart_guides", "fit_all_guides", "variance"}},
     {"hardware", {"restart_guides", "fit_all_guides", "variance"}},
     {"default_kinematic", {"variance"}},
     {"default_speed", {"variance"}},
-    {"race", {"input_min"}}};
+    {"race", {"guides"}},
+    {"race_obstacles", {"guides"}},
+    {"racing_benchmark", {"guides"}}};
 
 /// Options that act only where a guide leaves its bounds, all its samples are bad, or a limit is reached.
 const std::set<std::string> seldom = {"clamp_guides", "subtract_minimum", "gradient_floor", "variance_min",
