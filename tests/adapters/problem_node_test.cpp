@@ -33,7 +33,11 @@ TEST(CommandLoop, IsSafeWithoutAFreshStateOrAPlan) {
 }
 
 TEST(ProblemNode, TheExampleDrivesToItsGoalAndStopsWithoutStates) {
+  rclcpp::Node::parameters["view_port"] = 80000;
+  EXPECT_THROW(goal_node(0, nullptr), std::invalid_argument);
   rclcpp::Node::parameters["view_port"] = 8460;
+  EXPECT_THROW(Node("plain", slalom::SvgMppi{DifferentialDrive{}, {.horizon = 9}}, {}),
+               std::invalid_argument);
   goal_node(0, nullptr);
 }
 

@@ -139,8 +139,7 @@ def test_a_network_as_a_problem_goes_round_discs_and_is_changed_between_solves()
                                 disc_weight=100, dt=0.1, input_min=-1, input_max=1)
     controller = slalom.SvgMppi(problem, horizon=40)
     plan = controller.solve([0, 0])
-    assert not plan.collided and 0 < plan.collided_share < 1
-    assert problem.collides([1, 0]) and not problem.collides([0, 0])
+    assert not plan.collided and 0 < plan.collided_share < 1 and problem.collides([1, 0]) and not problem.collides([0, 0])
     controller.problem.discs = [(9, 9, 0.1)]
     controller.problem.goal = [0, 2]
     assert controller.solve([0, 0]).collided_share == 0 and problem.discs == [1, 0.05, 0.4]
@@ -252,8 +251,7 @@ def test_callables_of_a_batch_run_on_one_thread_and_their_exceptions_leave_it():
     batch = [slalom.Mppi(problem, horizon=3, samples=64, variance=1e-12) for _ in range(16)]
     with pytest.raises(ArithmeticError, match="too far"):
         slalom.solve_batch(batch, [[0.5]] * 15 + [[2]], threads=4)
-    assert slalom.solve_batch(batch, [[0.5]] * 16, threads=4)[15].ok
-    assert threads == {threading.get_ident()}
+    assert slalom.solve_batch(batch, [[0.5]] * 16, threads=4)[15].ok and threads == {threading.get_ident()}
 
 
 def test_the_package_needs_no_compiler_to_be_imported():

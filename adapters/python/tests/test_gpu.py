@@ -64,8 +64,7 @@ def test_plans_are_those_of_the_processor(emulated, make):
         plan, expected = (each.solve([0.2, -0.3], elapsed=0.1) for each in (on_gpu, processor))
         assert plan.ok and type(plan) is type(expected) and on_gpu.fault == "" and on_gpu.method == processor.method
         assert np.allclose(plan.inputs, expected.inputs, atol=1e-3) and np.ptp(plan.inputs) > 0.01
-        assert np.allclose(plan.states, expected.states, atol=1e-3)
-        assert plan.cost == pytest.approx(expected.cost, rel=1e-3)
+        assert np.allclose(plan.states, expected.states, atol=1e-3) and plan.cost == pytest.approx(expected.cost, rel=1e-3)
         assert plan.collided_share == pytest.approx(expected.collided_share, abs=0.01)
         assert len(plan.samples) == len(plan.weights) == 0 and f"slalom.gpu.{name}(" in repr(on_gpu)
 

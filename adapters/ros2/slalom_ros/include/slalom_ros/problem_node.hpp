@@ -97,7 +97,9 @@ class ProblemNode : public rclcpp::Node {
     get_node_base_interface()->get_context()->add_pre_shutdown_callback(
         [this] { commands_->publish(settings_.command(settings_.loop.safe)); });
     const int port = declare_parameter("view_port", 0);
-    if (port <= 0 || !settings_.drawing) return;
+    if (port == 0) return;
+    if (port < 0 || port > 65535 || !settings_.drawing)
+      throw std::invalid_argument("view_port: must be in [0, 65535], and the node needs a drawing");
     page_.emplace(loop_.controller(), *settings_.drawing,
                   slalom::view::ServeOptions{.port = static_cast<std::uint16_t>(port)});
     RCLCPP_INFO(get_logger(), "the live view is at %s", page_->address().c_str());
