@@ -16,6 +16,7 @@ const reasons: Record<string, string> = {
   blocked: "Every plan collides, so it stands.",
   goal_occupied: "Something is on the goal, so the robot stands before it.",
   stuck: "It got no further, so it stands for a while and tries again.",
+  waiting: "It waits for somebody who moves, or for another way.",
   commands_ignored: "The robot does not move although it is told to.",
   goal_reached: "It stands at the goal.",
   no_path: "There is no path, or the robot is off its map.",
