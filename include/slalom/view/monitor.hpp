@@ -37,7 +37,7 @@ class WatchedSource : public virtual FrameSource {
 template <class Value>
 class Handover {
  public:
-  explicit Handover(const Value& value = {}) : slots_{value, value, value} {}
+  explicit Handover(const Value& value = {}) : slots_{value, value, value} {}  ///< each slot has `value`
 
   /// Lets `fill` write a value. Returns whether it replaces one that was not taken. Memory that the first
   /// value needs is then there for all.
