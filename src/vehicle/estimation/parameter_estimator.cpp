@@ -17,6 +17,8 @@ constexpr double window_time = 0.4;      // s of driving that each hypothesis pr
 constexpr double memory = 2.0;           // s of turning after which what was learned is forgotten
 constexpr double yaw_noise = 0.02;       // rad, deviation of a predicted heading
 constexpr double slowest = 1.0;          // m/s, below it tyres hardly slip
+constexpr double standing = 0.05;        // m/s
+constexpr double start_noise = 0.03;     // s, deviation of the delay that a start shows
 constexpr double turning = 3.0;  // m/s^2, lateral acceleration from which old evidence fades at the full rate
 constexpr double offset_time = 0.5;     // s of straight driving within which the offset is learned
 constexpr double largest_offset = 0.1;  // rad
@@ -85,14 +87,16 @@ void ParameterEstimator::reset() noexcept {
   history_.fill({});
   sent_.fill(0);
   newest_ = moments_ = 0;
+  start_ = -1;
   std::fill(evidence_.begin(), evidence_.end(), 0.0);
   estimate_.steering_offset = 0;
   summarise();
 }
 
-void ParameterEstimator::send(double steer) noexcept {
+void ParameterEstimator::send(const Command& command) noexcept {
   for (std::size_t i = sent_.size() - 1; i > 0; --i) sent_[i] = sent_[i - 1];
-  sent_[0] = steer;
+  sent_[0] = command.steer;
+  if (start_ == 0 && command.speed > standing) start_ = 1;
 }
 
 const ParameterEstimator::Moment& ParameterEstimator::ago(int periods) const noexcept {
@@ -132,6 +136,7 @@ const ParameterEstimate& ParameterEstimator::update(const MeasuredMotion& now) n
   newest_ = (newest_ + 1) % kept;
   history_[newest_] = next;
   moments_ = std::min(moments_ + 1, kept);
+  watch_start(now.speed);
   if (moments_ > window_ + 2 && continues()) {
     weigh();
     summarise();
@@ -172,6 +177,28 @@ double ParameterEstimator::turning_share() const noexcept {
   for (int k = window_; k >= 0; --k)
     mean_square += square(ago(k).motion.speed * ago(k).motion.yaw_rate) / (window_ + 1);
   return std::min(1.0, mean_square / square(turning));
+}
+
+/// Learns how long the car took to move, when its speed has reached `slowest`. If the speed rose in proportion
+/// to the time, the car drove for twice its way divided by its speed. One that moves at once says nothing of
+/// its steering, whose servo may be the slower part.
+void ParameterEstimator::watch_start(double speed) noexcept {
+  if (start_ <= 0) {
+    start_ = std::abs(speed) < standing ? 0 : -1;
+    start_way_ = 0;
+    return;
+  }
+  start_way_ += period_ * speed;
+  if (speed < slowest) {
+    ++start_;
+    return;
+  }
+  const double delay = (start_ + 1) * period_ - 2 * start_way_ / speed;
+  start_ = -1;
+  if (!(delay > delay_ && delay < max_delay)) return;
+  for (std::size_t i = 0; i < evidence_.size(); ++i)
+    evidence_[i] -= 0.5 * square((delay_at(static_cast<int>(i / (gains * frictions))) - delay) / start_noise);
+  summarise();
 }
 
 /// Updates the evidence for each hypothesis by the errors of its prediction of the window.

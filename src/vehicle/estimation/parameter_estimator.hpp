@@ -32,6 +32,9 @@ struct MeasuredMotion {
 /// error of the yaw that the given values predict. The prior consists of independent normal distributions
 /// around the given values; that of the friction is for its logarithm.
 ///
+/// Where the car starts from rest, the time until it moves shows a delay that is longer than the given one,
+/// before the first turn does.
+///
 /// The means are those of the posterior; before the first turn they are the given values.
 /// `cautious_friction` is a quantile of the posterior, never above the given friction. The quantile rises
 /// with the confidence from a fifth of `friction_quantile` to all of it.
@@ -46,8 +49,8 @@ class ParameterEstimator {
   /// Forgets everything.
   void reset() noexcept;
 
-  /// Records the steering command (rad) that is sent now.
-  void send(double steer) noexcept;
+  /// Records the command that is sent now.
+  void send(const Command& command) noexcept;
 
   /// Learns from the motion of the last control period.
   const ParameterEstimate& update(const MeasuredMotion& now) noexcept;
@@ -81,6 +84,7 @@ class ParameterEstimator {
   void turn_wheels(Moment& next) const noexcept;
   Stretch last_stretch() const noexcept;
   double turning_share() const noexcept;
+  void watch_start(double speed) noexcept;
   void weigh() noexcept;
   void learn_offset(double straightness) noexcept;
   void summarise() noexcept;
@@ -97,6 +101,8 @@ class ParameterEstimator {
   std::array<Moment, kept> history_;
   std::array<double, kept> sent_{};
   int newest_ = 0, moments_ = 0;
+  int start_ = -1;        ///< control periods since a car at rest was told to drive; 0: it rests, -1: it drives
+  double start_way_ = 0;  ///< m, the way since then
   std::vector<double> log_prior_;                 ///< logarithms of weights, [delay][gain][friction]
   std::vector<double> evidence_;                  ///< logarithms of likelihoods
   std::vector<float> lateral_error_, yaw_error_;  ///< m, rad

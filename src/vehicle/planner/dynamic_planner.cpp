@@ -85,7 +85,7 @@ Command CarEstimator::command(const Command& wheels, double steer_limit) const n
 void CarEstimator::send(const Command& command) noexcept {
   const ParameterEstimate car = parameters();
   observer_.send({command.steer * car.steering_gain + car.steering_offset, command.speed});
-  parameters_.send(command.steer);
+  parameters_.send(command);
 }
 
 ParameterEstimate CarEstimator::parameters() const noexcept {

@@ -34,7 +34,7 @@ WidestWay Passage::search(const maps::ClearanceMap& obstacles, const maps::Pose&
       const double room = advance(obstacles, pose, path_[at]);
       if (room < radius_ + least_share * body_.margin) break;
       narrowest = std::min(narrowest, room);
-      const double slow = passing_speed(room - radius_);
+      const double slow = passing_speed(room);
       way.top_speed = std::min(way.top_speed, std::sqrt(slow * slow + 2 * braking * driven));
     }
     const std::size_t next = (at + 1) % path_.size();
@@ -53,12 +53,12 @@ WidestWay Passage::search(const maps::ClearanceMap& obstacles, const maps::Pose&
   return way;
 }
 
-/// The speed (m/s) in a place that leaves so much room (m) around the body. The map knows no more than the
-/// margins.
+/// The speed (m/s) in a place with so much room (m) around the centres of the discs. The map knows no more
+/// than `soft_end`, which is the room of an open place, to the last bit.
 double Passage::passing_speed(double room) const noexcept {
   const double root = scale_.speed;
-  return room < std::min(0.2 * scale_.length, body_.margin + body_.soft_margin)
-             ? 0.8 * root + 15 / root * std::max(room - 0.03 * scale_.length, 0.0)
+  return room < std::min(radius_ + 0.2 * scale_.length, soft_end())
+             ? 0.8 * root + 15 / root * std::max(room - radius_ - 0.03 * scale_.length, 0.0)
              : 1e3;
 }
 

@@ -33,6 +33,7 @@ struct Drive {
   double swing = 0.2;                        ///< rad, amplitude of the steering
   double position_noise = 0, yaw_noise = 0;  ///< m, rad, standard deviations
   double duration = 3;                       ///< s, after reaching the speed
+  bool from_rest = false;                    ///< `duration` begins at rest
 };
 
 ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {}) {
@@ -40,7 +41,7 @@ ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {
   sim::PlantOptions plant_options;
   plant_options.dynamics.model = drive.tyres;
   sim::Plant plant(car, plant_options, time_step);
-  plant.reset({.speed = drive.speed});
+  plant.reset({.speed = drive.from_rest ? 0 : drive.speed});
   const SingleTrackDynamics dynamics(
       car_options(),
       {.tyres = drive.tyres == sim::Model::saturating ? TyreModel::saturating : TyreModel::linear});
@@ -58,16 +59,26 @@ ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {
     estimator.update({pose, state.speed, state.yaw_rate, state.slip});
     const double steer =
         drive.swing * std::sin(2 * 3.14159 * time / 1.5) * std::cos(0.7 * time) - drive.offset;
-    estimator.send(steer);
+    estimator.send({steer, drive.speed});
     for (int k = 0; k < std::lround(period / time_step); ++k) {
       commands.push_back(steer);
       // The servo's lag, before the plant's own dead time.
       wheel += (drive.gain * commands.front() + drive.offset - wheel) * (1 - std::exp(-time_step / 0.05));
       commands.pop_front();
-      plant.step({wheel, drive.speed});
+      const bool waits = drive.from_rest && time + k * time_step < drive.delay;
+      plant.step({wheel, waits ? 0 : drive.speed});
     }
   }
   return estimator.estimate();
+}
+
+TEST(ParameterEstimator, AStartFromRestShowsALongDelayBeforeTheFirstTurn) {
+  for (const double delay : {0.06, 0.1, 0.14}) {
+    const double found = after({.delay = delay, .swing = 0, .duration = 1, .from_rest = true}).delay;
+    EXPECT_GT(found, 0.6 * delay);
+    EXPECT_LT(found, delay + 0.03);
+  }
+  EXPECT_DOUBLE_EQ(after({.swing = 0, .duration = 1, .from_rest = true}).delay, 0.025);
 }
 
 TEST(ParameterEstimator, FindsLowFrictionAndALongDelayWithinThreeSeconds) {

@@ -157,12 +157,15 @@ TEST(Passage, MarginsFitIntoTheNarrowestPlace) {
   EXPECT_LT(narrower.top_speed, narrow.top_speed);
 }
 
-TEST(Passage, WithNarrowMarginsTheMapEndsBeforeTheUsualRoom) {
-  const BodyOptions racing{.margin = 0.01, .soft_margin = 0.1};
-  maps::ClearanceMap open({.length_x = 18, .length_y = 16, .center_x = 6, .reach = 0.3});
-  const WidestWay way = Passage(testing::lane(5), false, racing).search(open, car, 100, 8);
-  EXPECT_EQ(way.soft_share, 1);
-  EXPECT_GT(way.top_speed, 100);
+TEST(Passage, AnOpenPlaceSlowsNoCarWhateverItsMargins) {
+  const maps::ClearanceMap open({.length_x = 18, .length_y = 16, .center_x = 6, .reach = 0.6});
+  for (int margin = 1; margin <= 10; ++margin)
+    for (int soft = 1; soft <= 20; ++soft) {
+      const BodyOptions body{.margin = 0.01 * margin, .soft_margin = 0.01 * soft};
+      const WidestWay way = Passage(testing::lane(5), false, body).search(open, car, 100, 8);
+      EXPECT_EQ(way.soft_share, 1);
+      EXPECT_GT(way.top_speed, 100) << margin << ' ' << soft;
+    }
 }
 
 }  // namespace
