@@ -1,4 +1,5 @@
 import inspect
+import re
 import threading
 import warnings
 
@@ -248,6 +249,34 @@ def test_everything_public_says_what_it_is():
             if not member.startswith("_") and (not own or own.endswith(("-> None", "-> object")) and "\n" not in own):
                 silent.append(f"{name}.{member}")
     assert not silent
+
+
+def public_functions():
+    """[(name, function or class)] of the package and the modules that need nothing else."""
+    import slalom.mlp
+    import slalom.ros
+
+    modules = {"": slalom, "mlp.": slalom.mlp, "plot.": slalom.plot, "ros.": slalom.ros}
+    for place, module in modules.items():
+        for name in slalom.__all__ if module is slalom else [n for n, v in vars(module).items() if callable(v) and v.__module__ == module.__name__]:
+            value = getattr(module, name)
+            if callable(value) and not name.startswith("_") and not (isinstance(value, type) and issubclass(value, (Exception, tuple, dict))):
+                yield place + name, value
+                yield from ((f"{place}{name}.{member}", getattr(value, member)) for member, what in vars(value).items()
+                            if isinstance(value, type) and not member.startswith("_") and inspect.isroutine(getattr(value, member)))
+
+
+def test_docstrings_name_each_argument_with_its_form_and_what_is_returned():
+    missing = []
+    for name, value in public_functions():
+        told = ", ".join(re.findall(r"^([\w, ]+) : \S", value.__doc__, re.M)).split(", ")
+        try:
+            parameters = [p for p in inspect.signature(value).parameters if p not in ("self", "args", "kwargs", "drawing")]
+        except ValueError:
+            parameters = []
+        missing += [f"{name}: {each}" for each in parameters if each not in told]
+        missing += [f"{name}: returns"] * ("Returns\n---" not in value.__doc__ and not isinstance(value, type))
+    assert not missing
 
 
 def test_a_symptom_that_stays_is_reported_once():
