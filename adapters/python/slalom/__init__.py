@@ -59,4 +59,4 @@ for _module in filter(None, (_slalom, _driving)):
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
 __all__ += ["CompileError", "Feedback", "Linearization", "MlpProblem", "Run", "SymptomWarning", "__version__", "linearize", "run", "show"]
 display.describe_all({name: globals()[name] for name in __all__})
-display.describe_all({f"plot.{name}": value for name, value in vars(plot).items()}, plot.__name__)
+display.describe_all(vars(plot), plot.__name__)

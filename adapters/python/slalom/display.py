@@ -119,9 +119,10 @@ def _add_signatures(solvers: ModuleType, cls: Any) -> None:
 
 def describe_all(values: dict[str, Any], module: str = "") -> None:
     """Describes functions and classes, with `module` those that it defines."""
+    place = f"{module.rpartition('.')[2]}." if module else ""
     for name, value in values.items():
-        if callable(value) and "._" not in f".{name}" and module in ("", getattr(value, "__module__", None)):
-            describe(name, value)
+        if callable(value) and not name.startswith("_") and module in ("", getattr(value, "__module__", None)):
+            describe(place + name, value)
 
 
 def describe(name: str, value: Any) -> None:

@@ -130,36 +130,9 @@ void bind_any_problem(py::module_& module) {
           "state"_a, "Whether a state collides.");
 }
 
-constexpr const char* callable_words = R"(A problem of your own: callables on batches of K samples.
-
-Parameters
-----------
-dynamics : callable (x [K, states], u [K, inputs]) -> x [K, states]
-cost : callable (x, u) -> [K]
-    or in terms, {name: [K]}; or a pair (cost, collided [K])
-terminal_cost : callable (x) -> [K], optional
-    as of cost
-states, inputs : int
-dt : float, optional
-    s, duration of a step
-input_min, input_max : float or [inputs], optional
-    bounds in addition to those of the options
-input_rate_max : float or [inputs], optional
-    largest rate of the inputs, per s, in rollouts and plans; requires dt
-input_levels : float or [inputs], optional
-    number of values, evenly spaced from input_min to input_max, that an input takes; 0: all
-sampler : callable (random, samples, horizon, inputs) -> [samples, horizon, inputs], optional
-    noise instead of standard normal values, drawn only from the numpy Generator `random`
-rollout : callable (x [states], u [K, T, inputs]) -> costs [K]
-    whole rollouts, in place of dynamics and costs; with their states a pair (costs,
-    states [K, T + 1, states]). K and T differ from call to call
-
-dynamics and cost may take a third argument: the index of the step, an int. Their x and u are float32, with
-contiguous columns. No argument must be written; u is a view of the solver's memory, valid during the call.
-The result of dynamics is not copied.)";
-
 void bind_callable_problem(py::module_& module) {
-  py::class_<CallableProblem, AnyProblem> problem(module, "Problem", callable_words,
+  py::class_<CallableProblem, AnyProblem> problem(module, "Problem",
+                                                  "A problem of your own: callables on batches of K samples.",
                                                   collected<CallableProblem>());
   problem
       .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
