@@ -35,8 +35,10 @@ def linearize(problem: _slalom.AnyProblem, state: ArrayLike, inputs: ArrayLike =
         the index of the step, for functions that take it
     """
     x, u = np.array(state, float), np.array(inputs, float)
-    is_callable = isinstance(problem, _slalom.Problem) and problem.dynamics
-    parts = _differences(problem, x, u, k) if is_callable else getattr(problem, "_expand")(x, u, k)
+    if isinstance(problem, _slalom.Problem) and problem.dynamics:
+        parts = _differences(problem, x, u, k)
+    else:
+        parts = getattr(problem, "_expand")(x, u, k)
     if not parts:
         raise TypeError(f"linearize: {problem!r} has no derivatives: slalom.compile(problem, derivatives=True) makes them for "
                         "structs in C++ and for built-in problems")
