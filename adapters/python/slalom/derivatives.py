@@ -24,21 +24,10 @@ class Linearization(NamedTuple):
 
 def linearize(problem: _slalom.AnyProblem, state: ArrayLike, inputs: ArrayLike = (), k: int = 0) -> Linearization:
     """The exact derivatives of a problem that `slalom.compile(..., derivatives=True)` made. Those of callables are central
-    differences, about eight digits of functions that compute in double for arrays of double.
-
-    Parameters
-    ----------
-    problem : AnyProblem
-    state, inputs : array_like, shapes (states,) and (inputs,)
-        without inputs, the derivatives of the terminal cost
-    k : int
-        the index of the step, for functions that take it
-    """
+    differences, about eight digits of functions that compute in double for arrays of double."""
     x, u = np.array(state, float), np.array(inputs, float)
-    if isinstance(problem, _slalom.Problem) and problem.dynamics:
-        parts = _differences(problem, x, u, k)
-    else:
-        parts = getattr(problem, "_expand")(x, u, k)
+    is_callable = isinstance(problem, _slalom.Problem) and problem.dynamics
+    parts = _differences(problem, x, u, k) if is_callable else getattr(problem, "_expand")(x, u, k)
     if not parts:
         raise TypeError(f"linearize: {problem!r} has no derivatives: slalom.compile(problem, derivatives=True) makes them for "
                         "structs in C++ and for built-in problems")
@@ -47,7 +36,7 @@ def linearize(problem: _slalom.AnyProblem, state: ArrayLike, inputs: ArrayLike =
     return Linearization._make(np.reshape(part, shape) for part, shape in zip(parts, shapes))
 
 
-def _differences(problem: _slalom.Problem, x: Array, u: Array, k: int) -> list[Any]:
+def _differences(problem: Any, x: Array, u: Array, k: int) -> list[Any]:
     """The parts of a Linearization; each function is called once, with all points."""
     z = np.concatenate([x, u])
     steps, n, states = np.diag(1e-4 * np.maximum(1, np.abs(z))), len(z), len(x)
@@ -73,13 +62,8 @@ def _differences(problem: _slalom.Problem, x: Array, u: Array, k: int) -> list[A
 
 class Feedback:
     """Linear feedback around the plans of a controller, for the time until the next one: the gains of the linear-quadratic
-    regulator along the plan, as slalom::Feedback in C++ (docs/derivatives.md) computes them.
-
-    Attributes
-    ----------
-    gains : float64, shape (horizon, inputs, states)
-        change of the inputs by deviation from the plan's states
-    """
+    regulator along the plan, as slalom::Feedback in C++ (docs/derivatives.md) computes them. `gains`,
+    float64 (horizon, inputs, states), are the change of the inputs by deviation from the plan's states."""
 
     def __init__(self, controller: _slalom.Controller) -> None:
         problem = controller.problem

@@ -50,8 +50,7 @@ def _access(env: gymnasium.Env[Any, Any]) -> tuple[Callable[[], Array], Callable
 
 
 def state_of(env: gymnasium.Env[Any, Any]) -> Array:
-    """The state of an environment, shape (states,), as its Problem has it: positions and velocities of MuJoCo, or the
-    attribute `state`, or all attributes that are numbers."""
+    """The state of an environment."""
     return _access(env)[0]()
 
 
