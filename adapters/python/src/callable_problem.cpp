@@ -231,13 +231,23 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
   // The costs of a small batch are computed for all steps in one call.
   const bool together = count <= small_batch && !cost_takes_k_;
   const py::ssize_t rows = together ? py::ssize_t{count} * batch.steps() : 0;
-  py::array_t<float> all_x = columns(rows, parts_.states), all_u = columns(rows, parts_.inputs);
+  // Memory that a callable does not keep is used again: new one would be cleared by the system each time.
+  const auto room = [&](py::array_t<float>& kept, py::ssize_t count_of_columns) {
+    if (kept.ref_count() > 1 || kept.size() < rows * count_of_columns)
+      kept = columns(rows * count_of_columns, 1);
+    return py::array_t<float>({rows, count_of_columns}, {width, width * rows}, kept.data(), kept);
+  };
+  py::array_t<float> all_x = room(all_x_, parts_.states), all_u = room(all_u_, parts_.inputs);
   const auto keep = [&](const py::array& from, py::array_t<float>& all, int k) {
     const bool contiguous = py::isinstance<py::array_t<float>>(from) && from.strides(0) == width;
     for (py::ssize_t i = 0; i < from.shape(1); ++i) {
       float* const to = all.mutable_data() + i * rows + py::ssize_t{k} * count;
-      if (!contiguous) add_column(from, i, count, to);
-      if (contiguous) std::memcpy(to, from.data(0, i), static_cast<std::size_t>(width * count));
+      if (contiguous) {
+        std::memcpy(to, from.data(0, i), static_cast<std::size_t>(width * count));
+      } else {
+        std::fill_n(to, count, 0.0f);
+        add_column(from, i, count, to);
+      }
     }
   };
   for (int k = 0; k < batch.steps(); ++k) {

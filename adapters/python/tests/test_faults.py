@@ -35,6 +35,14 @@ def test_dynamics_may_return_their_own_buffer():
     assert buffer.flags.writeable and buffer.any()
 
 
+def test_states_that_a_cost_keeps_do_not_change():
+    kept = []
+    controller = slalom.Mppi(linear(cost=lambda x, u: kept.append((x, x.copy())) or cost(x, u)), horizon=4, samples=64)
+    controller.solve([1, 0])
+    controller.solve([5, 0])
+    assert len(kept) > 3 and all(np.array_equal(x, before) for x, before in kept)
+
+
 def spoilt(values):
     """Values of which every second is nan."""
     values[::2] = np.nan
