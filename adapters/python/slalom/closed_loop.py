@@ -34,8 +34,7 @@ class Run:
         self.time_step = time_step
 
     def frame(self) -> Any:
-        """All as a pandas.DataFrame with a row for each state; the index is the time (s), or the step. The last state has no
-        inputs."""
+        """All as a pandas.DataFrame, a row for each state, the last without inputs; the index is the time, s, or the step."""
         pandas = importlib.import_module("pandas")
         columns = {f"{name} {i}": column for name, values in (("state", self.states), ("input", self.inputs))
                    for i, column in enumerate(values.T)}
