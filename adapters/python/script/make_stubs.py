@@ -26,7 +26,7 @@ def translate(kind, argument):
     if kind == "List[object]" and argument:
         return "Sequence[Any]"
     if kind.startswith("numpy.ndarray") or kind.startswith("List[") and argument:
-        return "ArrayLike" if argument else "NDArray[Any]"
+        return "ArrayLike" if argument else "NDArray[numpy.float64]" if "float64" in kind else "NDArray[Any]"
     if kind.startswith("Union["):
         return " | ".join(translate(part, argument) for part in re.findall(r"[\w.]+(?:\[[^]]*\])?", kind[6:-1]))
     if kind.startswith("Optional["):

@@ -30,7 +30,8 @@ class Run:
     """
 
     def __init__(self, states: ArrayLike, inputs: ArrayLike, costs: ArrayLike, times: ArrayLike, time_step: float) -> None:
-        self.states, self.inputs, self.costs, self.times = (np.array(each, float) for each in (states, inputs, costs, times))
+        values: list[NDArray[np.float64]] = [np.array(each, float) for each in (states, inputs, costs, times)]
+        self.states, self.inputs, self.costs, self.times = values
         self.time_step = time_step
 
     def frame(self) -> Any:
