@@ -87,12 +87,8 @@ struct CallableParts {
   std::array<py::object*, 5> callables() { return {&dynamics, &cost, &terminal_cost, &sampler, &rollout}; }
 };
 
-/// A problem made of callables on batches of K samples: dynamics(x[K, nx], u[K, nu]) -> x[K, nx],
-/// cost(x, u) -> [K], terminal_cost(x) -> [K]. Dynamics and cost may take the index of the step as a
-/// third parameter. A cost may consist of terms, {name: [K]}, or be a pair
-/// (cost, collided). In place of these, rollout(x[nx], u[K, steps, nu]) -> [K] computes whole rollouts; with
-/// their states it returns a pair. The functions get arrays that must not be written: views of the solver's
-/// memory, and what dynamics returned, which is not copied.
+/// A problem made of callables on batches (docs/python-reference.md), which get arrays that must not be
+/// written: views of the solver's memory, and what dynamics returned, which is not copied.
 class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
   /// Throws std::invalid_argument with the rule that a part breaks.
@@ -172,8 +168,9 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   bool dynamics_take_k_ = false, cost_takes_k_ = false;  ///< the index of the step
   std::vector<double> state_;
   std::vector<float> previous_;
-  py::handle owner_;                  ///< during a solve
-  mutable std::exception_ptr error_;  ///< the first of a solve; guarded by the interpreter lock
+  mutable py::array_t<float> all_x_, all_u_;  ///< memory of the last rollout of a small batch
+  py::handle owner_;                          ///< during a solve
+  mutable std::exception_ptr error_;          ///< the first of a solve; guarded by the interpreter lock
 };
 
 }  // namespace slalom::python
