@@ -2,7 +2,6 @@
 // member of the problem.
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 

@@ -204,6 +204,11 @@ TEST(Overtaking, SettingsThatDoNotFitAreRefused) {
   EXPECT_THROW(lap_with({.rounds = 0}), std::invalid_argument);
 }
 
+auto figures_of(const LapRow& row) {
+  const OvertakingFigures& f = row.overtaking;
+  return std::tuple(f.met, f.overtaken, f.not_overtaken, f.duration, f.contacts, f.caused, f.side_changes);
+}
+
 TEST(OvertakingColumns, CountTheEncountersOfALap) {
   LapResult lap;
   lap.overtaking.encounters = {{.duration = 3, .end = EncounterEnd::overtaken},
@@ -212,14 +217,7 @@ TEST(OvertakingColumns, CountTheEncountersOfALap) {
                                {.duration = 1, .end = EncounterEnd::open}};
   lap.overtaking.contacts = 5;
   lap.overtaking.caused = 2;
-  const OvertakingFigures figures = make_row(0, 0, lap, 1).overtaking;
-  EXPECT_EQ(figures.met, 4);
-  EXPECT_EQ(figures.overtaken, 2);
-  EXPECT_EQ(figures.not_overtaken, 1);
-  EXPECT_DOUBLE_EQ(figures.duration, 4.5);
-  EXPECT_EQ(figures.contacts, 5);
-  EXPECT_EQ(figures.caused, 2);
-  EXPECT_EQ(figures.side_changes, 4);
+  EXPECT_EQ(figures_of(make_row(0, 0, lap, 1)), std::tuple(4, 2, 1, 4.5, 5, 2, 4));
 }
 
 TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
@@ -233,14 +231,7 @@ TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
   LapRow row;
   row.min_clearance = 0.1;
   row.overtaking = {5, 3, 1, 4.25, 2, 1, 7};
-  const LapRow back = parse_line(csv_line(row, experiments), experiments);
-  EXPECT_EQ(back.overtaking.met, 5);
-  EXPECT_EQ(back.overtaking.overtaken, 3);
-  EXPECT_EQ(back.overtaking.not_overtaken, 1);
-  EXPECT_EQ(back.overtaking.duration, 4.25);
-  EXPECT_EQ(back.overtaking.contacts, 2);
-  EXPECT_EQ(back.overtaking.caused, 1);
-  EXPECT_EQ(back.overtaking.side_changes, 7);
+  EXPECT_EQ(figures_of(parse_line(csv_line(row, experiments), experiments)), figures_of(row));
 }
 
 }  // namespace

@@ -38,10 +38,7 @@ TEST(Results, EveryLapCountsWhetherItFinishedOrNot) {
   const auto results = summarise(laps(), experiments);
   ASSERT_EQ(results.size(), 3u);
   const ExperimentResult& r = results[0];
-  EXPECT_EQ(r.laps, 4);
-  EXPECT_EQ(r.finished, 3);
-  EXPECT_EQ(r.timeouts, 1);
-  EXPECT_EQ(r.collisions, 8);
+  EXPECT_EQ(std::tuple(r.laps, r.finished, r.timeouts, r.collisions), std::tuple(4, 3, 1, 8));
   EXPECT_DOUBLE_EQ(r.ms_mean, (3 + 5 + 22 + 0.5) / 4);
   EXPECT_DOUBLE_EQ(r.state_cost_mean, 4.5 / 4);
   EXPECT_DOUBLE_EQ(r.collision_cost_mean, 26.0 / 4);
@@ -134,10 +131,7 @@ TEST_F(LapLogFile, IsReadByColumnName) {
   const LapLog log = read(
       "seed,success,collision,timeout,state_cost,collision_cost,mean_calculation_time,max_calculation_time\n"
       "0,1,0,0,0.5,1.5,10,20\r\n10,0,2,1,1,4,12,18\n");
-  EXPECT_EQ(log.laps, 2);
-  EXPECT_EQ(log.successes, 1);
-  EXPECT_EQ(log.timeouts, 1);
-  EXPECT_EQ(log.collisions, 2);
+  EXPECT_EQ(std::tuple(log.laps, log.successes, log.timeouts, log.collisions), std::tuple(2, 1, 1, 2));
   EXPECT_EQ(log.ms, (std::vector<double>{2, 5}));
   EXPECT_DOUBLE_EQ(*log.solve_ms_mean, 11);
   EXPECT_DOUBLE_EQ(*log.solve_ms_max, 20);

@@ -4,7 +4,6 @@
 //   fuzzer TARGET CORPUS [options of libFuzzer]
 //
 // If the folder CORPUS does not exist, it is made, with the target's seeds.
-#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -3,7 +3,6 @@
 #include <random>
 
 #include "slalom/core/derivatives/linearize.hpp"
-#include "support/allocations.hpp"
 #include "support/rollouts.hpp"
 #include "support/thrown_words.hpp"
 

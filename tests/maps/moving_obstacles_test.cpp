@@ -8,7 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "support/allocations.hpp"
 #include "support/predicted.hpp"
 #include "support/rollouts.hpp"
 

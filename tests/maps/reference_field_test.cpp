@@ -5,7 +5,6 @@
 #include <random>
 
 #include "slalom/maps/local_cost_map.hpp"
-#include "support/allocations.hpp"
 
 namespace slalom::maps::reference_field_test {
 namespace {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <utility>
-
 #include "sim/rooms.hpp"
 #include "slalom/sim/lidar.hpp"
 #include "slalom/sim/shapes.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "support/allocations.hpp"
 #include "support/thrown_words.hpp"
 #include "vehicle/localiser_drive.hpp"
 

@@ -106,11 +106,7 @@ TEST(SingleTrack, StandsStillAtAStandstill) {
   const SingleTrackDynamics dynamics(car_options(), {});
   SingleTrackState<double> s{1, 2, 0.5, 0, 0, 0, 0};
   for (int k = 0; k < 100; ++k) s = dynamics.advance(s, 0.4, 0.0, 1.0489, 0.05);
-  EXPECT_EQ(s.x, 1);
-  EXPECT_EQ(s.y, 2);
-  EXPECT_EQ(s.yaw, 0.5);
-  EXPECT_EQ(s.yaw_rate, 0);
-  EXPECT_EQ(s.lateral, 0);
+  EXPECT_EQ(std::tuple(s.x, s.y, s.yaw, s.yaw_rate, s.lateral), std::tuple(1, 2, 0.5, 0, 0));
 }
 
 TEST(SingleTrack, IsTheKinematicBicycleAtLowSpeed) {

@@ -4,7 +4,6 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/results.hpp"
-#include "tools/command_line/words.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/comparison.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"

@@ -1,7 +1,5 @@
-#include <iostream>
 
 #include "json/json.hpp"
-#include "slalom/core/files/write_file.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"

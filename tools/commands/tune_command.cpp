@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <system_error>
 
 #include "tools/commands/commands.hpp"
 

@@ -7,7 +7,6 @@
 #include "slalom/core/read_file.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
-#include "tools/command_line/words.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <span>
 #include <stdexcept>
 
 #include "view/protocol/frame_writer.hpp"

@@ -1,6 +1,5 @@
 #include "view/protocol/frame_writer.hpp"
 
-#include <iterator>
 #include <sstream>
 
 namespace slalom::view {

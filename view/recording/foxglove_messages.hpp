@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "json/json.hpp"
 #include "slalom/maps/pose.hpp"

@@ -1,7 +1,5 @@
 #include "driving.hpp"
 
-#include <cmath>
-
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"

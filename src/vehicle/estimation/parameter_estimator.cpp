@@ -179,26 +179,23 @@ double ParameterEstimator::turning_share() const noexcept {
   return std::min(1.0, mean_square / square(turning));
 }
 
-/// Learns how long the car took to move, when its speed has reached `slowest`. If the speed rose in proportion
-/// to the time, the car drove for twice its way divided by its speed. One that moves at once says nothing of
-/// its steering, whose servo may be the slower part.
+/// Learns how long the car took to move, when its speed has reached `slowest`. If the speed rose in
+/// proportion to the time, the car drove for twice its way divided by its speed. One that moves at once says
+/// nothing of its steering, whose servo may be the slower part.
 void ParameterEstimator::watch_start(double speed) noexcept {
   if (start_ <= 0) {
     start_ = std::abs(speed) < standing ? 0 : -1;
     start_way_ = 0;
-    return;
-  }
-  start_way_ += period_ * speed;
-  if (speed < slowest) {
+  } else if (start_way_ += period_ * speed; speed < slowest) {
     ++start_;
-    return;
+  } else {
+    const double delay = (start_ + 1) * period_ - 2 * start_way_ / speed;
+    start_ = -1;
+    if (!(delay > delay_ && delay < max_delay)) return;
+    for (int i = 0; i < HypothesisGrid::count; ++i)
+      evidence_[i] -= 0.5 * square((delay_at(i / (gains * frictions)) - delay) / start_noise);
+    summarise();
   }
-  const double delay = (start_ + 1) * period_ - 2 * start_way_ / speed;
-  start_ = -1;
-  if (!(delay > delay_ && delay < max_delay)) return;
-  for (std::size_t i = 0; i < evidence_.size(); ++i)
-    evidence_[i] -= 0.5 * square((delay_at(static_cast<int>(i / (gains * frictions))) - delay) / start_noise);
-  summarise();
 }
 
 /// Updates the evidence for each hypothesis by the errors of its prediction of the window.

@@ -10,7 +10,6 @@
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 #include "slalom/vehicle/model/single_track.hpp"
-#include "support/allocations.hpp"
 
 namespace slalom::vehicle::detail::parameter_estimator_test {
 namespace {

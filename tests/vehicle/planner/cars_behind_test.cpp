@@ -4,7 +4,6 @@
 
 #include <numeric>
 
-#include "support/allocations.hpp"
 #include "support/predicted.hpp"
 #include "vehicle/planner/obstacles/cars_behind.hpp"
 #include "vehicle/planner/obstacles/obstacle_memory.hpp"
