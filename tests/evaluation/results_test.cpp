@@ -62,13 +62,10 @@ TEST(Results, TheTimeToOvertakeIsTheMeanOverAllOpponentsOvertaken) {
   rows[2].overtaking = {1, 0, 1, 0, 0, 0, 2};
   const auto results = summarise(rows, with);
   ASSERT_TRUE(results[0].overtaking);
-  EXPECT_EQ(results[0].overtaking->met, 7);
-  EXPECT_EQ(results[0].overtaking->overtaken, 4);
-  EXPECT_EQ(results[0].overtaking->not_overtaken, 2);
-  EXPECT_DOUBLE_EQ(results[0].overtaking->duration, (3 * 2.0 + 10) / 4);
-  EXPECT_EQ(results[0].overtaking->contacts, 5);
-  EXPECT_EQ(results[0].overtaking->caused, 3);
-  EXPECT_EQ(results[0].overtaking->side_changes, 8);
+  const auto& f = *results[0].overtaking;
+  EXPECT_EQ(std::tuple(f.met, f.overtaken, f.not_overtaken, f.contacts, f.caused, f.side_changes),
+            std::tuple(7, 4, 2, 5, 3, 8));
+  EXPECT_DOUBLE_EQ(f.duration, (3 * 2.0 + 10) / 4);
   EXPECT_FALSE(summarise(laps(), experiments)[0].overtaking) << "without opponents";
 }
 
