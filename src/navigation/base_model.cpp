@@ -142,7 +142,7 @@ class BaseModelOf final : public BaseModel {
     if (deadline_ > 0) request.deadline = deadline_;
     if (proposals_) request.proposals = *proposals_;
     const auto plan = controller_.solve(
-        {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, Base::input(velocity)},
+        {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, 0, Base::input(velocity)},
         request);
     command_ = controller_.problem().velocity(plan.states[1].before);
     for (std::size_t i = 0; i < plan_.size(); ++i)

@@ -235,7 +235,15 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
     collides = plan_collides(costmap, velocity);
   }
   if (collides) {
-    result = stand(NavigationStatus::braking, velocity, elapsed);
+    // A measurement that is too fast does not put off braking that was asked for.
+    const Velocity& asked = delay_.decided();
+    const auto slower = [](double v, double limit) {
+      return v * limit > 0 && std::abs(limit) < std::abs(v) ? limit : v;
+    };
+    result = stand(NavigationStatus::braking,
+                   {slower(velocity.forward, asked.forward), slower(velocity.left, asked.left),
+                    slower(velocity.turn, asked.turn)},
+                   elapsed);
   } else {
     result.command = model_->command();
     result.status = way_.is_detour() ? NavigationStatus::detour : NavigationStatus::following;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double longest_path = 2.1e5;  // steps of a path, which an update takes anew where it is blocked
 constexpr double search_period = 0.1;   // s between searches while there is no way
-constexpr int cells_of_update = 60000;  // cells that an update searches; the next goes on
+constexpr int cells_of_update = 16000;  // cells that an update searches; the next goes on
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
 constexpr double around_joint =
@@ -208,30 +208,42 @@ bool Way::is_closed(const Costmap& costmap, std::size_t point) const noexcept {
 /// of the path. To points off the costmap it goes straight on from the edge. Returns false and keeps the path
 /// if there is none that costs less than `most` (m), or while a search over a large costmap goes on.
 bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept {
-  if (!planner_.is_searching() && !planner_.begin(costmap, position(pose), chosen_, closed_.all()))
-    return false;
-  if (!planner_.advance(costmap, cells_of_update)) return false;
   const std::span<const maps::Pose> path = guide_.points();
-  double least = most;
+  // Where nothing is left out of the path, and the least of it is left.
+  const maps::Point behind =
+      position(path[std::min(closed + guide_.points_for(0.5 * options_.look_ahead), path.size() - 1)]);
+  if (!planner_.is_searching() && !planner_.begin(costmap, position(pose), chosen_, closed_.all(), &behind))
+    return false;
+  planner_.advance(costmap, cells_of_update);
+  double least = most, not_yet = infinity;  // m of cost, the least that was found, and that may be found yet
   std::size_t best = path.size();
   maps::Point end;
   const std::size_t unseen_stride = guide_.points_for(min_rejoin), most_unseen = 6 * unseen_stride;
   std::size_t unseen = 0;
   for (std::size_t i = closed + 1; i < path.size(); ++i) {
-    const double left = guide_.step() * (path.size() - 1 - i);
+    // The path is followed in order: what is left out, beside the place that is closed, counts twice.
+    const double left = guide_.step() * (path.size() - 1 - i),
+                 left_out = std::max(guide_.step() * (i - closed) - 0.5 * options_.look_ahead, 0.0),
+                 rest = left + 2 * left_out;
+    if (rest >= least) continue;
     const maps::Point here = position(path[i]);
-    if (left >= least || first_closed(costmap, i, min_rejoin) < path.size()) continue;
     const bool is_seen = planner_.knows(costmap, here);
+    const double known = is_seen ? planner_.known(here) : 0;
+    if (planner_.is_searching() && !(is_seen && planner_.cost_to(here) <= known)) {
+      not_yet = std::min(not_yet, known + rest);
+      continue;
+    }
+    if (first_closed(costmap, i, min_rejoin) < path.size()) continue;
     if (!is_seen && (++unseen > most_unseen || unseen % unseen_stride != 1)) continue;
     const auto way = is_seen ? PathPlanner::Way{here, planner_.cost_to(here)}
-                             : planner_.way_off(costmap, here, least - left);
-    // The path is followed in order: what is left out, beside the place that is closed, counts twice.
-    const double left_out = std::max(guide_.step() * (i - closed) - 0.5 * options_.look_ahead, 0.0);
-    if (way.cost + left + 2 * left_out >= least) continue;
-    least = way.cost + left + 2 * left_out;
+                             : planner_.way_off(costmap, here, least - rest);
+    if (way.cost + rest >= least) continue;
+    least = way.cost + rest;
     best = i;
     end = way.end;
   }
+  if (planner_.is_searching() && not_yet < least) return false;
+  planner_.cancel();
   if (best == path.size()) return false;
   const std::span<const maps::Point> way = planner_.path_to(end);
   if (way.empty()) return false;
