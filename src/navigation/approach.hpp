@@ -19,6 +19,7 @@ inline maps::Point position(const maps::Pose& pose) {
   return {pose.x, pose.y};
 }
 
+inline constexpr double least_way = 1e-3;  ///< m between poses, below which they are at the same place
 /// The index of no point.
 inline constexpr std::size_t no_stop = std::numeric_limits<std::size_t>::max();
 

@@ -98,7 +98,8 @@ class NavigationEvaluator final : public BatchEvaluator {
 
 /// The options for steps of this duration (s). Noise is smooth over a plan: in a longer one it turns farther.
 SolverOptions fitted(SolverOptions options, double step) {
-  constexpr double usual = 2.8;  // s, the plans for which variances are meant
+  // The plans for which variances are meant, s.
+  const double usual = svg_mppi_options(BaseOptions{}).horizon * NavigatorOptions{}.time_step;
   const double share = std::min(usual / (*options.find<int>("horizon") * step), 1.0);
   visit_options(options, [&](auto& option, const Declaration& about) {
     if constexpr (std::is_same_v<decltype(option), PerInput&>) {

@@ -5,8 +5,7 @@
 namespace slalom::navigation {
 namespace {
 
-constexpr double nearby = 1.2;       // half widths beside the corridor, and around the start
-constexpr double kept_reach = 1.6;   // half widths
+constexpr double nearby = 1.2;  // half widths beside the corridor, around the start and a way that was kept
 constexpr float other_price = 1.3F;  // times as much away from the path that was kept
 
 }  // namespace
@@ -36,7 +35,7 @@ bool PathPlanner::begin(const Costmap& costmap, const maps::Point& start, std::s
       {geometry_.center_x - 0.5 * geometry_.length_x(), geometry_.center_y - 0.5 * geometry_.length_y()});
   std::fill(marks_.begin(), marks_.end(), Mark::none);
   for (const maps::Pose& pose : kept)
-    grid_.visit_around({pose.x, pose.y}, kept_reach * half_width_,
+    grid_.visit_around({pose.x, pose.y}, nearby * half_width_,
                        [&](std::size_t cell) { marks_[cell] = kept_way; });
   for (const maps::ClosedDisc& disc : closed)
     grid_.visit_around(disc.middle, disc.radius, [&](std::size_t cell) { marks_[cell] = closed_place; });
@@ -124,7 +123,6 @@ std::span<const maps::Point> PathPlanner::path_to(const maps::Point& point) noex
 
 std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footprint, const maps::Pose& start,
                                   const maps::Pose& goal) {
-  constexpr double straight = 4 * PathPlanner::spacing;  // m before the goal
   const maps::GridGeometry& geometry = costmap.geometry();
   const double cells =
       static_cast<double>(geometry.rows) * geometry.columns;  // a way enters each once at most
@@ -138,7 +136,7 @@ std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footp
   // The last points are those of cells: straight to the goal, the path has no kink there.
   std::size_t kept = path.size();
   const auto from_goal = [&](std::size_t i) { return std::hypot(path[i].x - goal.x, path[i].y - goal.y); };
-  while (kept > 1 && from_goal(kept - 1) < straight) --kept;
+  while (kept > 1 && from_goal(kept - 1) < PathPlanner::joint) --kept;
   for (std::size_t i = kept; i < path.size(); ++i) {
     const double share = static_cast<double>(i - kept + 1) / static_cast<double>(path.size() - kept + 1);
     path[i] = {std::lerp(path[kept - 1].x, goal.x, share), std::lerp(path[kept - 1].y, goal.y, share), 0};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/maps/grid_search.hpp"
+#include "slalom/maps/path_curve.hpp"
 #include "slalom/navigation/costmap.hpp"
 
 namespace slalom::navigation {
@@ -11,7 +12,8 @@ namespace slalom::navigation {
 class PathPlanner {
  public:
   static constexpr std::size_t max_points = 4000;  ///< most points of a path, unless more are asked for
-  static constexpr double spacing = 0.05;          ///< m, between the points of a path
+  static constexpr double spacing = maps::PathCurve::spacing;  ///< m, between the points of a path
+  static constexpr double joint = 4 * spacing;  ///< m of its end, before a goal or another path
 
   /// For costmaps of this size, and a body with this half width (m).
   PathPlanner(const maps::GridGeometry& geometry, double half_width, std::size_t most_points = max_points);
@@ -22,7 +24,7 @@ class PathPlanner {
   bool has_room(const Costmap& costmap, const maps::Point& point) const noexcept;
 
   /// Begins a search from a position over a costmap, which must have the size given. Returns false if it is
-  /// off the costmap. `kept` is a path that was followed before: cells further than 1.6 half widths from it
+  /// off the costmap. `kept` is a path that was followed before: cells further than 1.2 half widths from it
   /// cost 1.3 times as much, so that the search prefers the way that was chosen. No way leads through the
   /// `closed` discs. It goes `towards` a point at first. Cells within 1.2 half widths of the start count as
   /// free, or those up to the nearest free place.
