@@ -45,8 +45,7 @@ class Approach {
  public:
   Approach(const NavigatorOptions& options, const Footprint& footprint);
 
-  /// Places the robot on a new path. `buffer` holds poses meanwhile; paths that do not fit in it are not
-  /// changed.
+  /// Places the robot on a new path. `buffer` holds poses meanwhile; those that do not fit are not changed.
   void place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
              std::vector<maps::Pose>& buffer) noexcept;
   /// The turn (rad) on the spot to a yaw on which the body is free, the shorter one if both are; 0 if neither

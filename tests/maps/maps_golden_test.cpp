@@ -68,8 +68,7 @@ TEST(GoldenMaps, ReferenceField) {
             << " samples compared; largest error " << worst << '\n';
 }
 
-/// The numbers behind a key of maps.json, in the file's order; the file is flat enough to be searched as
-/// text.
+/// The numbers behind a key of maps.json, in the file's order; it is flat enough to be searched as text.
 std::vector<std::pair<std::string, Point>> robot_positions(const std::filesystem::path& file) {
   std::ifstream stream(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

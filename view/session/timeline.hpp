@@ -72,8 +72,7 @@ class Timeline {
   std::size_t frame_bytes() const noexcept { return frame_bytes_; }  ///< bytes of the stored frames
   std::size_t copy_bytes() const noexcept;                           ///< bytes of all copies
 
-  /// Returns the message with the figures of past ticks, of as many as a message holds and as are still
-  /// known.
+  /// The message with the figures of past ticks, of as many as a message holds and as are still known.
   std::string past(int from, int to) const;
 
   /// Brings drives nearer to the beginning of a stored tick: to the copy before it if that is nearer, else

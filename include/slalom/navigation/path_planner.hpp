@@ -30,8 +30,7 @@ class PathPlanner {
   /// free, or those up to the nearest free place.
   bool begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept = {},
              std::span<const maps::ClosedDisc> closed = {}, const maps::Point* towards = nullptr) noexcept;
-  /// Goes on with the search from no more than so many cells. Returns whether it has ended: then all costs
-  /// are known.
+  /// Goes on from at most so many cells. Returns whether it has ended: then all costs are known.
   bool advance(const Costmap& costmap, int cells = std::numeric_limits<int>::max()) noexcept;
   bool is_searching() const noexcept { return is_searching_; }  ///< whether a search has begun and not ended
   void cancel() noexcept { is_searching_ = false; }             ///< ends a search without a result

@@ -117,9 +117,8 @@ class World {
   /// Removes a parked car, box or disc. The numbers of later bodies fall by one. Throws as move_body does.
   void remove_body(int body);
 
-  /// Puts a driven car into a state without a check for collisions. Delayed commands still take effect.
-  /// Throws std::invalid_argument on a state that is not finite and std::out_of_range on a car that does not
-  /// exist.
+  /// Puts a driven car into a state, unchecked for collisions. Delayed commands still take effect. Throws
+  /// std::invalid_argument on a state that is not finite and std::out_of_range on a car that does not exist.
   void set_state(std::size_t car, const CarState& state);
 
   /// Moves by one time step. Command i is for driven car i; cars without one roll on.

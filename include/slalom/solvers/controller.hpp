@@ -45,8 +45,7 @@ struct Plan {
 ///     if (plan.status == slalom::Status::ok) apply(plan.inputs[0]);
 ///
 /// Construction allocates and may throw std::invalid_argument; `solve` does neither. The inputs of a plan are
-/// always finite, within the bounds and within the rates; its cost and states are always finite
-/// (final_check.hpp).
+/// always finite, within bounds and rates; its cost and states are always finite (final_check.hpp).
 ///
 /// A copy continues bit for bit like the original. It has its own problem and solver and shares only the
 /// threads. Both controllers may be used at the same time (see ThreadPool).
