@@ -11,8 +11,7 @@ namespace {
 
 using slalom::testing::read_csv_numbers;
 
-/// Columns opt_x, opt_y, ref_v; the yaw is the direction to the next row, at the last row that of the row
-/// before.
+/// Columns opt_x, opt_y, ref_v; the yaw is the direction to the next row, at the last one as before.
 std::vector<ReferencePoint> load_path(const std::filesystem::path& file) {
   std::vector<ReferencePoint> path;
   for (const auto& row : read_csv_numbers(file, true)) path.push_back({row.at(0), row.at(1), 0, row.at(11)});

@@ -49,8 +49,7 @@ class Timeline {
   /// `control_period`: s per tick.
   explicit Timeline(double control_period = 1, Packing packing = {});
 
-  /// Keeps a copy of the drives if the last one is a second of the drive's time old. To be called before each
-  /// tick.
+  /// Keeps a copy of the drives if the last is a second of the drive's time old. To be called each tick.
   void checkpoint(const Drives& drives);
   /// Notes an action after `ticks` ticks, behind those that are noted there.
   void note(int ticks, Action action);

@@ -5,8 +5,7 @@
 
 namespace slalom::evaluation {
 
-/// Laps from which a bootstrap interval says something: that of fewer is too narrow, and that of one has no
-/// width.
+/// Laps from which a bootstrap interval says something: that of fewer is too narrow, of one without width.
 inline constexpr int fewest_laps = 5;
 
 /// Statistics of the laps of one experiment. Rates are fractions. Every lap counts, whether it finished or

@@ -24,8 +24,7 @@ struct ReferenceFieldOptions {
   double spacing = 0.1;
   ReferenceOutside outside{};  ///< result of a look-up off the map
 
-  /// With 0 the distance of positions behind the nearest point is that to the window's first point, not to
-  /// the path.
+  /// With 0 the distance of those behind the nearest point is to the window's first point, not the path.
   int points_behind = 10;
 };
 

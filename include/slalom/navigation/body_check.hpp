@@ -117,7 +117,7 @@ class BodyCheck {
 
   std::array<Part, Footprint::part_count> parts_;
   std::array<float, max_points + 32> x_, y_;  ///< m, points of the outline, and the first ones again
-  std::size_t count_ = 0;                     ///< of them
+  std::size_t count_ = 0;                     ///< number of points
   Coefficient unsure_;                        ///< m of clearance below which the outline decides
   Coefficient half_cell_;                     ///< m
   /// m to an obstacle, beyond which 1, 2, 4, ... points to each side are free

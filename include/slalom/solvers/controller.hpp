@@ -29,8 +29,7 @@ struct Plan {
   /// Number of values that the final check changed in this solve: inputs outside the bounds or rates, costs
   /// and states that are not finite, and invalid values given to `set_previous_input`. 0 in normal operation.
   int corrections = 0;
-  /// Whether the source file that solves is compiled with optimisation. Without, a solve takes about 40 times
-  /// longer.
+  /// Whether the file that solves is compiled with optimisation. Without, a solve takes 40 times as long.
 #ifdef __OPTIMIZE__
   static constexpr bool optimised = true;
 #else

@@ -53,8 +53,7 @@ WidestWay Passage::search(const maps::ClearanceMap& obstacles, const maps::Pose&
   return way;
 }
 
-/// The speed (m/s) in a place that leaves so much room (m) around the body. The map knows no more than the
-/// margins.
+/// The speed (m/s) where so much room (m) is left around the body. The map knows no more than the margins.
 double Passage::passing_speed(double room) const noexcept {
   const double root = scale_.speed;
   return room < std::min(0.2 * scale_.length, body_.margin + body_.soft_margin)
