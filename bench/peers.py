@@ -16,22 +16,14 @@ import numpy as np
 import slalom.gymnasium
 
 # Steps of the horizon and, at most, of an episode.
-STEPS = {"Pendulum-v1": (20, 200), "MountainCarContinuous-v0": (30, 999), "Reacher-v5": (15, 50), "Hopper-v5": (20, 50),
-         "HalfCheetah-v5": (15, 100)}
+STEPS = {"Pendulum-v1": (20, 200), "MountainCarContinuous-v0": (100, 999), "Reacher-v5": (15, 50), "Hopper-v5": (30, 1000),
+         "HalfCheetah-v5": (20, 1000)}
 SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 10
 
 
 def environment(env, seed):
     problem = slalom.gymnasium.Problem(env)
-    return slalom.Mppi(problem, horizon=STEPS[env.spec.id][0], samples=64, seed=seed).command
-
-
-def mountain(env, seed):
-    def energy(x):
-        return -1e5 * (x[:, 1] ** 2 / 2 + 0.0025 / 3 * np.sin(3 * x[:, 0]))
-
-    problem = slalom.gymnasium.Problem(env, terminal_cost=energy)
-    return slalom.Mppi(problem, horizon=STEPS[env.spec.id][0], samples=64, noise_knots=5, seed=seed).command
+    return slalom.SvgMppi(problem, horizon=STEPS[env.spec.id][0], samples=64, seed=seed).command
 
 
 def pendulum(m):
@@ -75,19 +67,18 @@ def drive(env, command, seed):
 
 
 def main():
-    ways = {"slalom `mppi`, the environment": environment, "slalom `mppi`, numpy callables": callables,
+    ways = {"slalom `svg_mppi`, the environment": environment, "slalom `mppi`, numpy callables": callables,
             "pytorch_mppi": pytorch_mppi}
-    print("| environment | planner | return: mean, least | a solve, ms (p50) | lines |\n|---|---|---|---|---|")
+    print("| environment | planner | return: mean, deviation, least | a solve, ms (p50) | lines |\n|---|---|---|---|---|")
     for name, (_, steps) in STEPS.items():
         for way, make in list(ways.items())[:3 if name == "Pendulum-v1" else 1]:
             if make is pytorch_mppi and not importlib.util.find_spec("pytorch_mppi"):
                 continue  # not installed
-            make = mountain if name.startswith("Mountain") else make
             env = gymnasium.make(name)
             runs = [drive(env, make(env, seed), seed) for seed in range(SEEDS)]
-            returns, lines = [total for total, _ in runs], sum(
+            returns, lines = [round(total, 1) for total, _ in runs], sum(
                 len(inspect.getsource(each).splitlines()) for each in [make] + [pendulum] * (make in (callables, pytorch_mppi)))
-            print(f"| {name}, {steps} steps | {way} | {np.mean(returns):.1f}, {min(returns):.1f} "
+            print(f"| {name}, {steps} steps | {way} | {np.mean(returns):.1f} +- {np.std(returns):.1f}, {min(returns)} "
                   f"| {1e3 * np.median(np.concatenate([times for _, times in runs])):.1f} | {lines + 2} |", flush=True)
 
 

@@ -30,6 +30,9 @@ TEST(CommandLoop, IsSafeWithoutAFreshStateOrAPlan) {
   loop.hear({NAN, 0, 0}, 6);
   EXPECT_EQ(loop.command(6)[0], 0.25);
   EXPECT_EQ(loop.why(), "non_finite_state");
+  loop.hear({3, 0.2, 0}, 7);  // within the disc of the example
+  EXPECT_EQ(loop.command(7)[0], 0.25);
+  EXPECT_EQ(loop.why(), "all_collided");
 }
 
 TEST(ProblemNode, TheExampleDrivesToItsGoalAndStopsWithoutStates) {

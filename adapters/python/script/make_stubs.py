@@ -91,10 +91,12 @@ def class_lines(name, cls):
         elif member == "__init__" and "->" in (value.__doc__ or ""):
             yield f"    def __init__({constructor(cls)}) -> None: ..."
         elif not member.startswith("_") and callable(getattr(value, "__func__", value)):
-            arguments, result = signature(getattr(value, "__func__", value))
+            function = getattr(value, "__func__", value)
+            arguments, result = signature(function)
             if isinstance(value, staticmethod):
                 yield "    @staticmethod"
-            yield f"    def {member}({arguments}) -> {result}: ..."
+            words = (function.__doc__ or "").replace("\\", "").replace('"', "'")
+            yield f'    def {member}({arguments}) -> {result}:\n        """{words}"""'
 
 
 def stub(module):
@@ -112,7 +114,7 @@ def stub(module):
             lines += [*class_lines(name, value), ""]
         else:
             arguments, result = signature(value)
-            lines += [f"def {name}({arguments}) -> {result}: ...", ""]
+            lines += [f'def {name}({arguments}) -> {result}:\n    """{value.__doc__}"""', ""]
     return "\n".join(lines)
 
 

@@ -24,12 +24,13 @@ from . import study  # noqa: E402
 
 if importlib.util.find_spec("slalom._driving"):
     from . import _driving
+    display.add_signatures(_driving)
     from ._driving import *  # noqa: F401,F403
 else:  # built without the layers for cars
     _driving = None  # type: ignore[assignment]
 
 _DRIVING = ("Costmap", "Course", "Footprint", "Navigator", "ObjectTracker", "Planner", "PredictedObstacle", "Predictor", "TrackedObject",
-            "World", "courses", "drive_lap", "plan_path")
+            "World", "courses", "drive_lap", "drop_readings_of", "plan_path")
 
 
 class SymptomWarning(RuntimeWarning):
@@ -39,7 +40,9 @@ class SymptomWarning(RuntimeWarning):
 
 def __getattr__(name: str) -> object:
     if name == "tune":  # needs Optuna
-        return importlib.import_module("slalom.tuner").tune
+        tuner = importlib.import_module("slalom.tuner")
+        display.describe_all({name: tuner.tune})
+        return tuner.tune
     if name in _DRIVING:
         raise AttributeError(f"slalom.{name} is not in this build, which has no cars, robots, courses and simulator: install it "
                              "with SLALOM_DRIVING=1 pip install, or build all layers with CMake")
@@ -55,3 +58,5 @@ for _module in filter(None, (_slalom, _driving)):
     display.set_pickles(_module)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
 __all__ += ["CompileError", "Feedback", "Linearization", "MlpProblem", "Run", "SymptomWarning", "__version__", "linearize", "run", "show"]
+display.describe_all({name: globals()[name] for name in __all__})
+display.describe_all(vars(plot), plot.__name__)

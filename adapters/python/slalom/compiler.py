@@ -35,15 +35,6 @@ def compile(source: str | os.PathLike[str] | _slalom.AnyProblem, problem: str | 
             **parameters: Any) -> _slalom.CompiledProblem:
     """A problem struct in C++ (docs/writing-a-problem.md) as a problem in Python, at the speed of C++.
 
-    source: the text of a header with the struct, or its file; for a GPU or derivatives also a built-in problem
-    problem: the name of the struct, with its namespace; needed only if the source has several problems
-    flags: further flags of the compiler, for instance "-I..."
-    gpu: architectures of GPUs for which it is compiled, too, for instance [90]; needs a CUDA toolkit (docs/gpu.md)
-    derivatives: whether slalom.linearize has the exact derivatives of the problem, which takes longer to compile
-    parameters: values for members of the struct; they are attributes of the problem. A `double` takes a number, an array
-        of it as many; a slalom::Mlp takes a slalom.mlp.Mlp or its file; a slalom::maps::Field takes a slalom.Field, or the
-        file of a map, of which it is the signed distance
-
     The compiler is $CXX, or the first one found of c++, g++ and clang++: g++ 12 or clang 14, or later. The result is
     kept in $XDG_CACHE_HOME/slalom (default: ~/.cache/slalom) and is compiled again only if the source, a header that it
     includes, the compiler's flags or Slalom have changed.

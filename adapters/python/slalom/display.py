@@ -1,6 +1,7 @@
 """The text of problems, controllers and plans, how problems are pickled, and what `inspect.signature` says.
 
-The classes are compiled. `install` adds the methods here, since text is easier to lay out in Python.
+The classes are compiled. `install` adds the methods here, since text is easier to lay out in Python. Docstrings get the forms
+and units of arguments and results from `reference.md`, which is docs/python-reference.md.
 """
 
 from __future__ import annotations
@@ -10,12 +11,16 @@ import copyreg
 import functools
 import inspect
 import re
+from pathlib import Path
 from types import ModuleType
 from typing import Any, Callable, Dict, Iterable, Tuple
 
 from . import plot
 
 _option_names: set[str] = set()  # names of the options of all methods
+
+_reference = {row[0].strip("`"): row[1:] for row in ([cell.strip() for cell in line.strip("|").split(" |")] for line in
+              Path(__file__).with_name("reference.md").read_text().splitlines() if line.startswith("| `"))}
 
 Arguments = Tuple[Tuple[Any, ...], Dict[str, Any]]  # arguments by position and by name
 
@@ -42,9 +47,8 @@ def install(solvers: ModuleType) -> None:
                                                for name in inspect.signature(solvers.Problem).parameters}),
         solvers.RiskEvaluator: lambda risk: ((risk.problem, risk.randomize), risk.options),
         solvers.CompiledProblem: lambda problem: ((problem.file,), problem.parameters)}
-    _add_signatures(solvers, solvers)
+    add_signatures(solvers)
     for cls in [each for each in vars(solvers).values() if isinstance(each, type)]:
-        _add_signatures(solvers, cls)
         if issubclass(cls, solvers.Controller):
             setattr(cls, "__repr__", _controller_text)
             setattr(cls, "__setattr__", _refuse_attribute)
@@ -66,7 +70,7 @@ def add_methods(solvers: ModuleType) -> None:
     for method in solvers.methods():
         name = "".join(word.capitalize() for word in method.split("_"))
         text = (f"A controller that solves its problem by the method `{method}`.\n\nThe problem is copied: `controller.problem` "
-                "is the copy, whose parameters may change between solves. Keyword arguments with their defaults:\n\n")
+                "is the copy, whose parameters may change between solves.")
         setattr(solvers, name, type(base)(name, (base,), {
             "__module__": solvers.__name__, "__doc__": text + getattr(solvers, "_options_text")(method), "__init__": make,
             "_method": method}))
@@ -96,15 +100,54 @@ def _refuse_attribute(controller: Any, name: str, value: Any) -> None:
     object.__setattr__(controller, name, value)
 
 
+def add_signatures(module: ModuleType) -> None:
+    """Wraps the compiled functions of a module and its classes in those whose signatures Python can tell."""
+    for each in [module, *(value for value in vars(module).values() if isinstance(value, type))]:
+        _add_signatures(module, each)
+
+
 def _add_signatures(solvers: ModuleType, cls: Any) -> None:
-    """Wraps the compiled functions of a class or module in those whose signatures Python can tell."""
     for name, method in list(vars(cls).items()):
         function = getattr(method, "__func__", method)
         first = re.match(r"\w+\((.*)\) -> ", getattr(function, "__doc__", None) or "")
         if isinstance(method, property) and method.fset:
             setattr(cls, name, method.setter(_with_signature(method.fset, [])))
-        elif first and (name == "__init__" or not name.startswith("_")) and not isinstance(method, (staticmethod, type)):
-            setattr(cls, name, _with_signature(function, _parameters(solvers, cls, first[1])))
+        elif first and (name == "__init__" or not name.startswith("_")) and not isinstance(method, type):
+            wrapped = _with_signature(function, _parameters(cls, first[1]))
+            setattr(cls, name, staticmethod(wrapped) if isinstance(method, staticmethod) else wrapped)
+
+
+def describe_all(values: dict[str, Any], module: str = "") -> None:
+    """Describes functions and classes, with `module` those that it defines."""
+    place = f"{module.rpartition('.')[2]}." if module else ""
+    for name, value in values.items():
+        if callable(value) and not name.startswith("_") and module in ("", getattr(value, "__module__", None)):
+            describe(place + name, value)
+
+
+def describe(name: str, value: Any) -> None:
+    """Adds the sections of numpy's style that docstrings lack to those of a function, or of a class and its functions."""
+    for member, function in list(vars(value).items()) * isinstance(value, type):
+        if not member.startswith("_") and inspect.isroutine(getattr(value, member)):
+            describe(f"{name}.{member}", getattr(function, "__func__", function))
+    text, rows = inspect.cleandoc(value.__doc__ or ""), ""
+    told = ", ".join(re.findall(r"^[\w, ]+(?= : )", text, re.M)).split(", ")
+    try:
+        parameters = [*inspect.signature(value).parameters.values()]
+    except ValueError:  # made by no call
+        parameters = []
+    for each in parameters:
+        form, meaning = _reference.get(f"{name}: {each.name}") or _reference.get(each.name) or ("", "")
+        value_text = f", default {each.default}" if len(str(each.default)) < 20 else ", optional"
+        default = "" if each.default in (each.empty, None) or "optional" in form else value_text
+        rows += f"{each.name} : {form}{default}\n    {meaning}\n" * (bool(form) and each.name not in told)
+    if rows and "Parameters\n---" not in text:
+        text += "\n\nParameters\n----------\n"
+    text = text.replace("Parameters\n----------\n", f"Parameters\n----------\n{rows}", 1).rstrip()
+    for title, words in zip(("Returns", "Raises"), _reference.get(name, ())):
+        lines = [f"{kind}\n    {meaning}" for kind, _, meaning in (each.partition(": ") for each in words.split(". ") if each)]
+        text += "\n".join(["", "", title, "-" * len(title), *lines]) * bool(lines and f"{title}\n---" not in text)
+    value.__doc__ = text
 
 
 def _with_signature(function: Callable[..., Any], parameters: list[inspect.Parameter]) -> Callable[..., Any]:
@@ -119,7 +162,7 @@ def _with_signature(function: Callable[..., Any], parameters: list[inspect.Param
     return method
 
 
-def _parameters(solvers: ModuleType, cls: type, text: str) -> list[inspect.Parameter]:
+def _parameters(cls: type, text: str) -> list[inspect.Parameter]:
     """The parameters in the first line of a compiled function's docstring; for `**kwargs`, the options of the class."""
     found: list[inspect.Parameter] = []
     kind: Any = inspect.Parameter.POSITIONAL_OR_KEYWORD
@@ -127,7 +170,8 @@ def _parameters(solvers: ModuleType, cls: type, text: str) -> list[inspect.Param
         if part.startswith("*"):
             kind = inspect.Parameter.KEYWORD_ONLY
             if part.startswith("**"):
-                found += [inspect.Parameter(name, kind, default=value) for name, value in _keywords(solvers, cls)]
+                found += [inspect.Parameter(option, kind, default=_value(default)) for option, default in
+                          re.findall(r"^(\w+) : .*default (.+)$", cls.__doc__ or "", re.M)]
             continue
         name, _, rest = part.partition(":")
         value = rest.partition(" = ")[2]
@@ -138,19 +182,9 @@ def _parameters(solvers: ModuleType, cls: type, text: str) -> list[inspect.Param
 def _value(text: str) -> Any:
     """The value of a default in a docstring; the text if it is not a literal."""
     try:
-        return float(text) if text == "inf" else ast.literal_eval(text)
+        return float(text) if text.lstrip("-") == "inf" else ast.literal_eval(text)
     except (SyntaxError, ValueError):
         return text
-
-
-def _keywords(solvers: ModuleType, cls: type) -> list[tuple[str, Any]]:
-    if issubclass(cls, solvers.Controller):
-        words = (cls.__doc__ or "").split("`")
-        return [(o["name"], o["default"]) for o in solvers.options(words[1])] if len(words) > 1 else []
-    if cls is solvers.CompiledProblem:
-        return [(name, None) for name in _settable(cls)]
-    default = cls()
-    return [(name, getattr(default, name)) for name in _settable(cls) if name != "discs"]
 
 
 def _settable(cls: type) -> list[str]:

@@ -16,7 +16,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _slalom
+from . import _slalom, display
 from .closed_loop import Array, Run, drive, step_cost
 
 
@@ -50,23 +50,12 @@ def _access(env: gymnasium.Env[Any, Any]) -> tuple[Callable[[], Array], Callable
 
 
 def state_of(env: gymnasium.Env[Any, Any]) -> Array:
-    """The state of an environment, shape (states,), as its Problem has it: positions and velocities of MuJoCo, or the
-    attribute `state`, or all attributes that are numbers."""
+    """The state of an environment."""
     return _access(env)[0]()
 
 
 class Problem(_slalom.Problem):
-    """An environment as a problem: rollouts are steps of a copy, costs are rewards less than 0.
-
-    Parameters
-    ----------
-    env : gymnasium.Env
-        whose actions are a Box (inputs,), and which has been reset or made with `gymnasium.make`
-    terminal_cost : callable (x [K, states]) -> [K], optional
-        a further cost of the last states, where rewards come late
-    **parts
-        of slalom.Problem: input_rate_max, input_levels, sampler
-    """
+    """An environment as a problem: rollouts are steps of a copy, costs are rewards less than 0. `terminal_cost` helps where rewards come late."""
 
     def __init__(self, env: gymnasium.Env[Any, Any], terminal_cost: Callable[[Array], Array] | None = None, **parts: Any) -> None:
         env.reset()
@@ -105,21 +94,7 @@ def _copied(env: gymnasium.Env[Any, Any]) -> Any:
 
 
 def episode(env: gymnasium.Env[Any, Any], controller: _slalom.Controller, seed: int | None = None, steps: int = 1_000_000) -> Run:
-    """Drives an environment until its episode ends, or for a number of steps.
-
-    Parameters
-    ----------
-    env : gymnasium.Env
-    controller : Controller
-        of the environment's Problem
-    seed : int, optional
-        of the environment's reset
-
-    Returns
-    -------
-    Run
-        whose costs are the rewards less than 0
-    """
+    """Drives an environment until its episode ends, or for a number of steps."""
     def step(_: int, x: Array, u: Array) -> tuple[Array, float, bool]:
         _, reward, terminated, truncated, _ = env.step(u.astype(getattr(env.action_space, "dtype")))
         return state_of(env), -float(reward), terminated or truncated
@@ -129,16 +104,7 @@ def episode(env: gymnasium.Env[Any, Any], controller: _slalom.Controller, seed: 
 
 
 class Env(gymnasium.Env[Array, Array]):
-    """A problem as an environment: observations are states, actions inputs, rewards costs less than 0.
-
-    Parameters
-    ----------
-    problem : AnyProblem
-    start : array_like (states,), or callable (numpy Generator) -> (states,)
-        the first state of an episode
-    steps : int
-        after which an episode is truncated; a collision terminates it
-    """
+    """A problem as an environment: observations are states, actions inputs, rewards costs less than 0."""
 
     def __init__(self, problem: _slalom.AnyProblem, start: ArrayLike | Callable[[np.random.Generator], ArrayLike],
                  steps: int = 200) -> None:
@@ -159,3 +125,6 @@ class Env(gymnasium.Env[Array, Array]):
         self.state = self.problem.step(self.state, u)
         self._done += 1
         return self.state.copy(), reward, self.problem.collides(self.state), self._done >= self.steps, {}
+
+
+display.describe_all(globals(), __name__)

@@ -8,7 +8,7 @@ from typing import Any, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _slalom
+from . import _slalom, display
 
 Array = NDArray[Any]
 
@@ -35,12 +35,7 @@ def _activate(name: str, x: Array) -> tuple[Array, Array]:
 
 class Mlp:
     """A network of dense layers. `network(x)` returns the outputs [K, outputs] for inputs [K, inputs].
-
-    layers: pairs (weights [outputs, inputs], biases [outputs]), the last one linear
-    activation: of the hidden layers: "tanh", "relu", "softplus" or "silu"
-    input_mean, input_scale, output_mean, output_scale: normalisation; the network computes with
-        (x - input_mean) / input_scale, and its outputs are multiplied by output_scale before output_mean is added
-    residual: whether the first inputs are added to the outputs
+    It computes with (x - input_mean) / input_scale, multiplies by output_scale and adds output_mean.
     """
 
     def __init__(self, layers: Sequence[tuple[ArrayLike, ArrayLike]], activation: str = "tanh", *,
@@ -154,3 +149,6 @@ def _gradients(parameters: list[Array], activation: str, x: Array, y: Array) -> 
         if layer:
             error = error @ parameters[2 * layer] * slopes[layer - 1]
     return gradients[::-1]
+
+
+display.describe_all(globals(), __name__)

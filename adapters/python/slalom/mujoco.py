@@ -22,20 +22,6 @@ from .closed_loop import Array
 class Problem(_slalom.Problem):
     """A model of MuJoCo as a problem. A state is qpos, qvel and act; inputs are ctrl, within its ctrlrange.
 
-    Parameters
-    ----------
-    model : mujoco.MjModel, or str or path
-        a model, the text of one, or its file
-    cost : callable (x [N, states], u [N, inputs]) -> [N]
-        of all steps of all samples in one call; with a third argument `sensors` [N, nsensordata], the sensors in x
-    terminal_cost : callable (x [N, states]) -> [N], optional
-    physics_steps : int
-        time steps of the model in a step of the problem
-    threads : int, optional
-        of the simulation; by default those of the processor
-    **parts
-        of slalom.Problem: input_min, input_max, input_rate_max, input_levels, sampler
-
     Attributes
     ----------
     model : mujoco.MjModel
@@ -78,3 +64,6 @@ class Problem(_slalom.Problem):
     def state_of(self, data: Any) -> Array:
         """The state of a simulation, shape (states,)."""
         return np.concatenate([data.qpos, data.qvel, data.act])
+
+
+display.describe_all(globals(), __name__)

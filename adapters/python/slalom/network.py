@@ -24,25 +24,6 @@ def MlpProblem(network: Mlp, *, goal: ArrayLike = 0, state_weights: ArrayLike = 
                gpu: int | Sequence[int] = ()) -> _slalom.CompiledProblem:
     """A problem whose dynamics is a network, compiled once for each size (slalom.compile). The cost of a state is the sum
     of weight * (state - goal)^2, that of inputs the sum of weight * input^2. All parts are attributes.
-
-    Parameters
-    ----------
-    network : slalom.mlp.Mlp
-        maps a state and the inputs of a step to the next state (with `residual`: to its change), at most 64 values
-    goal, state_weights, terminal_weights : float or [states]
-    input_weights, input_min, input_max : float or [inputs]
-    discs : sequence of (x, y, radius)
-        in the plane of the first two states, m; a state within one collides
-    disc_weight : float
-        cost of a state that collides, with a disc or a wall
-    walls : Field, optional
-        distance from the nearest wall, m: a state collides where it is below `clearance`
-    field : Field, optional
-        its value times `field_weight` is a part of the cost of a state
-    dt : float
-        s, duration of a step; 0: unknown
-    gpu : int or sequence of int
-        as in slalom.compile
     """
     if not isinstance(network, Mlp):
         raise TypeError(f"MlpProblem.network: {network!r} must be a slalom.mlp.Mlp")

@@ -7,15 +7,14 @@ from typing import Any, Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _slalom
+from . import _slalom, display
 
 
 class Loop:
     """Commands of a controller from the newest state of a robot.
 
-    `safe`, shape (inputs,), is sent where no plan can be trusted: without a state that is at most `timeout` (s) old, or where
-    the solver has no answer. A solve may take `deadline` (s). `plan` is that of the last command, or None; `why` is the reason
-    for which it was `safe`, or empty.
+    `safe` is sent without a state that is at most `timeout` old, where the solver has no answer, and where all samples and the
+    plan collide. `plan` is that of the last command, or None; `why` is the reason for which it was `safe`, or empty.
     """
 
     def __init__(self, controller: _slalom.Controller, safe: ArrayLike, *, timeout: float = 0.1, deadline: float = 0.01) -> None:
@@ -38,7 +37,8 @@ class Loop:
         elif self._state is not None:
             elapsed = 0 if np.isnan(self._solved) else max(now - self._solved, 0)
             self.plan, self._solved = self.controller.solve(self._state, elapsed=elapsed, deadline=self.deadline), now
-            self.why = "" if self.plan.status in ("ok", "deadline", "all_collided") else self.plan.status
+            trusted = ("ok", "deadline") if self.plan.collided else ("ok", "deadline", "all_collided")
+            self.why = "" if self.plan.status in trusted else self.plan.status
         return self.safe if self.why else self.plan.inputs[0]
 
 
@@ -81,3 +81,6 @@ def spin(loop: Loop, state: tuple[type, str, Callable[[Any], ArrayLike]], comman
         commands.publish(command[2](loop.safe))
         node.destroy_node()
         rclpy.shutdown()
+
+
+display.describe_all(globals(), __name__)

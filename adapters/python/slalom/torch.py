@@ -8,18 +8,14 @@ from typing import Any, Callable
 import numpy as np
 import torch
 
+from . import display
 from .mlp import Mlp
 
 _ACTIVATIONS = {torch.nn.Tanh: "tanh", torch.nn.ReLU: "relu", torch.nn.Softplus: "softplus", torch.nn.SiLU: "silu"}
 
 
 def to_mlp(network: torch.nn.Sequential, *, residual: bool = False) -> Mlp:
-    """The Mlp of a trained network, for instance to save it for slalom::load_mlp in C++.
-
-    network: torch.nn.Sequential of Linear, with the same one of Tanh, ReLU, Softplus or SiLU after each but the last.
-        Identity and Dropout, which has no effect after training, are left out.
-    residual: whether the network was trained to predict the change of its first inputs
-    """
+    """The Mlp of a trained network, for instance to save it for slalom::load_mlp in C++."""
     layers: list[tuple[Any, Any]] = []
     activations: list[str] = []
     for i, part in enumerate(network):
@@ -72,3 +68,6 @@ class _Memory:
 
 def _writable(array: Any) -> Any:
     return array if array.flags.writeable else np.asarray(_Memory(array))
+
+
+display.describe_all(globals(), __name__)

@@ -51,7 +51,7 @@ py::object state_of(const py::object& self) {
         "controller: has been used, and its state cannot be pickled: pickle it before its first solve, or "
         "copy it with copy.copy");
   const std::string method = std::string(controller.on_gpu() ? gpu_prefix : "") + controller.solver().name();
-  return py::make_tuple(method, self.attr("problem"), values_of(controller.options()));
+  return py::make_tuple(method, self.attr("problem"), values_of(list_options(controller.options())));
 }
 /// Makes a controller from the state of a pickled one, or as a copy of another one.
 std::unique_ptr<Controller> from_state(const py::object& state) {
@@ -107,23 +107,18 @@ void bind_controller(py::module_& module) {
   base.def(py::init(&make_controller), "method"_a, "problem"_a)
       .def("solve", &solve, "state"_a, "elapsed"_a = 0.0,
            "deadline"_a = std::numeric_limits<double>::infinity(), "proposals"_a = Numbers(),
-           "Returns the plan from `state`. The warm start is shifted by `elapsed` (s), the time since the "
-           "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
-           "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
-           "inputs), or (horizon, inputs) for one.")
+           "Plans from a state.")
       .def("command", &command, "state"_a,
-           "The inputs float64 [inputs] for now, at `state`: those of a plan, when a step of the problem has "
-           "passed since the last one.")
+           "The inputs for now: those of a plan a step of the problem after the last one.")
       .def(py::pickle(&state_of, &from_state))
       .def("__copy__", &copy)
       .def("__deepcopy__", [](const py::object& self, const py::dict&) { return copy(self); })
       .def(
           "reset",
           [](Controller& self, std::optional<std::uint64_t> seed) {
-            self.reset(seed ? *seed : values_of(self.options())["seed"].cast<std::uint64_t>());
+            self.reset(seed ? *seed : values_of(list_options(self.options()))["seed"].cast<std::uint64_t>());
           },
-          "seed"_a = py::none(),
-          "Discards all state and starts the random numbers from `seed`, by default that of the options.")
+          "seed"_a = py::none(), "Discards all state and starts the random numbers again.")
       .def("set_previous_input", &Controller::set_previous_input, "input"_a,
            "Sets the input applied before the next solve, for problems with limits on their input rates. By "
            "default it is the input that the last plan had for that time.")
@@ -139,7 +134,7 @@ void bind_controller(py::module_& module) {
        [](const Controller& c) { return std::string(c.solver().name()); });
   read("horizon", "steps", [](const Controller& c) { return c.solver().horizon(); });
   read("options", "the options in use, by name", [](const Controller& c) -> py::dict {
-    return py::module_::import("slalom.display").attr("Options")(values_of(c.options()));
+    return py::module_::import("slalom.display").attr("Options")(values_of(list_options(c.options())));
   });
 }
 
@@ -148,11 +143,11 @@ void bind_controller(py::module_& module) {
 void bind_controllers(py::module_& module) {
   bind_plan(module);
   bind_controller(module);
-  module.def("solve_batch", &solve_batch, "controllers"_a, "states"_a, "elapsed"_a = 0.0,
-             "deadline"_a = std::numeric_limits<double>::infinity(), "threads"_a = 1,
-             "The plans of many controllers, each from its own state and its own last plan, in parallel on "
-             "`threads` threads; with callables on one. Copies of one controller draw the same noise unless "
-             "each is reset with a seed of its own.");
+  module.def(
+      "solve_batch", &solve_batch, "controllers"_a, "states"_a, "elapsed"_a = 0.0,
+      "deadline"_a = std::numeric_limits<double>::infinity(), "threads"_a = 1,
+      "The plans of many controllers, in parallel. Copies of one controller draw the same noise unless "
+      "each is reset with a seed of its own.");
   module.def(
       "methods",
       [] {
@@ -160,10 +155,12 @@ void bind_controllers(py::module_& module) {
         return std::vector<std::string>(all.begin(), all.end());
       },
       "The names of all methods.");
-  module.def("_options_text", [](const std::string& method) { return options_text(solver_options(method)); });
+  module.def("_options_text",
+             [](const std::string& method) { return options_text(list_options(solver_options(method))); });
   module.def(
-      "options", [](const std::string& method) { return describe_options(solver_options(method)); },
-      "method"_a, "The options of a method: a dictionary for each.");
+      "options",
+      [](const std::string& method) { return describe_options(list_options(solver_options(method))); },
+      "method"_a, "The options of a method.");
 }
 
 }  // namespace slalom::python

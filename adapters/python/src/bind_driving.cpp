@@ -73,9 +73,7 @@ void bind_planner(py::module_& module) {
                                      vehicle::make_vehicle_model(configuration.vehicle), environment.path,
                                      vehicle::make_solver(configuration, method, 1));
            }),
-           "course"_a, "method"_a = "svg_mppi", "options"_a = py::dict(), py::kw_only(), "config"_a = "",
-           "`config`: 'default', 'published' or a file; otherwise the defaults of the classes. `options`: "
-           "{'samples': 2000, 'planner.max_speed': 4, 'vehicle....': ...}")
+           "course"_a, "method"_a = "svg_mppi", "options"_a = py::dict(), py::kw_only(), "config"_a = "")
       .def(
           "update",
           [](vehicle::Planner& self, const Ranges& ranges, double angle_min, double angle_increment,
@@ -105,11 +103,7 @@ void bind_planner(py::module_& module) {
           "pose"_a, "speed"_a, "covariance"_a = vehicle::PoseCovariance{},
           "obstacles"_a = std::vector<std::array<double, 2>>{}, "imu"_a = py::none(),
           "others"_a = std::vector<Prediction>{}, "obeyed"_a = py::none(), "goal_speed"_a = py::none(),
-          "`pose`: (x, y, yaw) of the rear axle, with its `covariance` [3, 3]. `obstacles`: further points "
-          "[n, 2] (m), relative to the car. `imu`: yaw rate, and acceleration forward and to the left. "
-          "`others`: PredictedObstacle of other cars. `obeyed`: steer and speed, if the car obeys another "
-          "command. `goal_speed`: m/s, at most planner.max_speed. Returns status, steer (rad), speed (m/s), "
-          "predicted [n, 4], tick_time (s) and corrections, how many values the final check changed.")
+          "The command for the next control period.")
       .def("reset", &vehicle::Planner::reset, "seed"_a = 0,
            "Discards all state and starts the random numbers from `seed`.");
 }
@@ -138,9 +132,7 @@ void bind_laps(py::module_& module) {
       },
       "course"_a, "method"_a = "svg_mppi", py::kw_only(), "seed"_a = 0, "obstacles"_a = 0,
       "options"_a = py::dict(), "config"_a = "",
-      "Drives one lap in lockstep and returns its results, as `slalom eval` does, with the `path` of the car "
-      "[n, 4]: x, y, yaw, speed. A notebook draws them. `options` may also have those of the world, for "
-      "instance {'world.friction': 0.7}.");
+      "Drives one lap in lockstep, as `slalom eval` does. A notebook draws the results.");
 }
 
 }  // namespace
@@ -192,8 +184,7 @@ void bind_course(py::module_& module) {
                return std::const_pointer_cast<Environment>(evaluation::load_environment(
                    vehicle::find_course(name, folders), evaluation::protocol_named(evaluation), folders));
              }),
-             "course"_a, "evaluation"_a = "true",
-             "`course`: a name or a folder. `evaluation`: 'true' or 'published'.");
+             "course"_a, "evaluation"_a = "true");
   const auto read = reader(course);
   read("name", "of the course", [](const Environment& e) { return e.course.name; });
   read("length", "m", [](const Environment& e) { return e.course.length; });
@@ -223,9 +214,8 @@ std::vector<maps::Pose> to_poses(const Poses& poses) {
 
 void bind_simulated_world(py::module_& module) {
   const std::string words =
-      "Simulated cars with LiDAR on a course.\n\nKeyword arguments with the defaults of evaluation "
-      "'true':\n\n" +
-      options_text(default_options({}));
+      "Simulated cars with LiDAR on a course. The defaults are those of evaluation 'true'." +
+      options_text(list_options(default_options({})));
   py::class_<sim::World> world(module, "World", words.c_str(), guarded());
   world
       .def(py::init([](const Environment& environment, const py::kwargs& keywords) {
@@ -239,8 +229,7 @@ void bind_simulated_world(py::module_& module) {
           [](sim::World& self, std::uint64_t seed, const Poses& cars, const Poses& parked) {
             self.reset(seed, to_poses(cars), to_poses(parked));
           },
-          "seed"_a, "cars"_a, "parked"_a = Poses{},
-          "Restarts with driven cars at rest at `cars` and parked cars at `parked`, each (x, y, yaw).")
+          "seed"_a, "cars"_a, "parked"_a = Poses{}, "Restarts the world.")
       .def(
           "step",
           [](sim::World& self, const std::vector<std::array<double, 2>>& commands, int steps) {
@@ -259,14 +248,13 @@ void bind_simulated_world(py::module_& module) {
               if (k % 64 == 63) check_signals();
             }
           },
-          "commands"_a, "steps"_a = 1,
-          "Moves by `steps` time steps; a command is (steering angle rad, speed m/s).")
-      .def("observe", observe, "car"_a = 0,
-           "The measurements of a car, by name; `ranges` is a view that the next step overwrites.");
+          "commands"_a, "steps"_a = 1, "Moves by time steps.")
+      .def("observe", observe, "car"_a = 0, "The measurements of a car.");
   const auto read = reader(world);
   read("time", "s since the reset", &sim::World::time);
   read("cars", "number of cars that drive", [](const sim::World& w) { return w.cars(); });
-  read("options", "the options in use, by name", [](const sim::World& w) { return values_of(w.options()); });
+  read("options", "the options in use, by name",
+       [](const sim::World& w) { return values_of(list_options(w.options())); });
   read("time_step", "s", [](const sim::World& w) { return w.options().time_step; });
 }
 

@@ -14,10 +14,6 @@ using maps::FieldGeometry;
 using maps::Occupancy;
 using maps::OccupancyGrid;
 
-const std::string placement =
-    "`resolution` is the size of a cell, m; `origin` the pose (x, y, yaw) of the grid's lower left corner in "
-    "the map frame, as in a map of ROS map_server; by default (0, 0, 0).";
-
 constexpr const char* lower_left_corner = "x, y (m), yaw (rad) of the lower left corner";
 
 /// The argument `origin`, by default the origin of the map frame.
@@ -141,23 +137,18 @@ py::array_t<std::int8_t> cells_of(const OccupancyGrid& grid) {
 }
 
 void bind_field(py::module_& module) {
-  const std::string words =
+  constexpr const char* words =
       "A map that a problem looks up: a distance, a height, a cost. Its samples are interpolated bilinearly; "
-      "beyond the outermost ones the value is that of the nearest point of their edge.\n\n"
-      "samples: [row, column], row 0 at the smallest y. " +
-      placement;
-  py::class_<Field> field(module, "Field", words.c_str(), guarded());
+      "beyond the outermost ones the value is that of the nearest point of their edge.";
+  py::class_<Field> field(module, "Field", words, guarded());
   field.def(py::init(&make_field), "samples"_a, "resolution"_a, level())
       .def_static("from_function", &field_from_function, "function"_a, "width"_a, "height"_a, "resolution"_a,
-                  level(),
-                  "The field of function(x[height, width], y[height, width]), which is called once with the "
-                  "centres of all cells, m.")
-      .def("value", &look_up<false>, "x"_a, "y"_a,
-           "The value at positions of the map frame (m): arrays of one shape. float32 in, float32 out.")
+                  level(), "The field of a function.")
+      .def("value", &look_up<false>, "x"_a, "y"_a, "The value at positions.")
       .def("value_and_gradient", &look_up<true>, "x"_a, "y"_a,
-           "A tuple: the value at positions of the map frame, and its derivatives by x and y.")
+           "The value at positions, and its derivatives by x and y.")
       .def("relative_to", &Field::relative_to, "x"_a, "y"_a,
-           "The same field for positions relative to a point of the map frame, m.");
+           "The same field for positions relative to a point.");
   const auto read = reader(field);
   read("shape", "rows and columns of samples",
        [](const Field& f) { return py::make_tuple(f.geometry().height, f.geometry().width); });
@@ -168,12 +159,8 @@ void bind_field(py::module_& module) {
 }  // namespace
 
 void bind_maps(py::module_& module) {
-  const std::string words =
-      "A map of free, occupied and unknown cells.\n\n"
-      "cells: [row, column], row 0 at the smallest y: truth values (occupied or not), or numbers as in "
-      "nav_msgs/OccupancyGrid: 0 is free, 100 occupied, anything else unknown. " +
-      placement;
-  py::class_<OccupancyGrid> bound(module, "OccupancyGrid", words.c_str(), guarded());
+  py::class_<OccupancyGrid> bound(module, "OccupancyGrid", "A map of free, occupied and unknown cells.",
+                                  guarded());
   bound.def(py::init(&make_grid), "cells"_a, "resolution"_a, level());
   const auto read = reader(bound);
   read("cells", "int8 [row, column], a copy: 0 free, 100 occupied, -1 unknown", &cells_of);
@@ -199,9 +186,7 @@ void bind_maps(py::module_& module) {
         return maps::signed_distance(grid, {unknown_is_obstacle, outside_is_obstacle});
       },
       "grid"_a, "unknown_is_obstacle"_a = true, "outside_is_obstacle"_a = true,
-      py::call_guard<py::gil_scoped_release>(),
-      "The Field of the distance to the nearest edge of an obstacle, m: above 0 in free space, below 0 in "
-      "obstacles.");
+      py::call_guard<py::gil_scoped_release>(), "The distance to the nearest edge of an obstacle.");
 }
 
 }  // namespace slalom::python

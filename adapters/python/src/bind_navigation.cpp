@@ -4,6 +4,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "slalom/maps/pose_limits.hpp"
@@ -31,8 +32,7 @@ std::vector<maps::Pose> poses_of(const Numbers& rows, const char* what, py::ssiz
 }
 
 void bind_costmap(py::module_& module) {
-  py::class_<Footprint>(module, "Footprint", guarded(),
-                        "The outline of a robot: vertices [n, 2] (m), x forward, y to the left.")
+  py::class_<Footprint>(module, "Footprint", guarded(), "The outline of a robot.")
       .def(py::init([](const Numbers& vertices) {
              std::vector<maps::Point> points;
              for (const maps::Pose& each : poses_of(vertices, "vertices", 2))
@@ -41,10 +41,9 @@ void bind_costmap(py::module_& module) {
            }),
            "vertices"_a)
       .def_static("rectangle", &Footprint::rectangle, "front"_a, "rear"_a, "width"_a,
-                  "A rectangle: `front` and `rear` (m) are the distances from the origin to its sides.");
+                  "A rectangle around the origin.");
   py::class_<Costmap>(module, "Costmap", guarded(),
-                      "The distances from the cells of an OccupancyGrid to the nearest obstacle. `unknown`: "
-                      "whether unknown cells are an 'obstacle' or 'priced'.")
+                      "The distances from the cells of an OccupancyGrid to the nearest obstacle.")
       .def(py::init([](const maps::OccupancyGrid& grid, const std::string& unknown) {
              if (unknown != "obstacle" && unknown != "priced")
                throw py::value_error("Costmap.unknown: '" + unknown + "' must be one of obstacle, priced");
@@ -66,25 +65,22 @@ void bind_costmap(py::module_& module) {
                   "Costmap.update: grid and prices must have the size and resolution of the first grid, and "
                   "the grid the yaw 0");
           },
-          "grid"_a, "prices"_a = py::none(),
-          "Takes the cells of a grid, which may have moved, and your own prices [row, column] of them: being "
-          "in a cell with price 1 costs `unknown`, and a search pays twice its length.")
+          "grid"_a, "prices"_a = py::none(), "Takes the cells of a grid, which may have moved.")
       .def("distance", &Costmap::distance, "x"_a, "y"_a,
-           "The distance (m) from a position to the nearest obstacle.")
+           "The distance from a position to the nearest obstacle.")
       .def(
           "collides",
           [](const Costmap& self, const Footprint& footprint, const std::array<double, 3>& pose) {
             return self.collides(footprint, to_pose(pose));
           },
-          "footprint"_a, "pose"_a, "Whether the body overlaps an obstacle at (x, y, yaw).");
+          "footprint"_a, "pose"_a, "Whether the body overlaps an obstacle at a pose.");
   module.def(
       "plan_path",
       [](const Costmap& costmap, const Footprint& footprint, const std::array<double, 3>& start,
          const std::array<double, 3>& goal) {
         return rows_of(navigation::plan_path(costmap, footprint, to_pose(start), to_pose(goal)));
       },
-      "costmap"_a, "footprint"_a, "start"_a, "goal"_a,
-      "The cheapest path [n, 3] between two poses (x, y, yaw); no rows if there is none.");
+      "costmap"_a, "footprint"_a, "start"_a, "goal"_a, "The cheapest path between two poses.");
 }
 
 /// A term of the cost that is a function in Python.
@@ -131,9 +127,8 @@ struct PythonNavigator : Navigator {
 
 void bind_navigator(py::module_& module) {
   const std::string words =
-      "Drives a mobile robot along a path to a goal, between the obstacles of a costmap. `method` plans, "
-      "with the options of `solver`. Other options:\n\n" +
-      options_text(navigation::NavigatorOptions{});
+      "Drives a mobile robot along a path to a goal, between the obstacles of a costmap." +
+      options_text(list_options(navigation::NavigatorOptions{}));
   py::class_<PythonNavigator>(module, "Navigator", words.c_str(), collected<PythonNavigator>())
       .def(py::init([](const Footprint& footprint, const Costmap& costmap, const std::string& method,
                        const py::dict& solver, const py::kwargs& options) {
@@ -147,7 +142,7 @@ void bind_navigator(py::module_& module) {
       .def(
           "set_path",
           [](PythonNavigator& self, const Numbers& path) { self.set_path(poses_of(path, "path", 3)); },
-          "path"_a, "Follows a path [n, 3] from near the robot to the goal (docs/navigation.md).")
+          "path"_a, "Follows a path (docs/navigation.md).")
       .def(
           "update",
           [](PythonNavigator& self, const std::array<double, 3>& pose, const std::array<double, 3>& velocity,
@@ -167,14 +162,9 @@ void bind_navigator(py::module_& module) {
                             "plan"_a = rows_of(result.plan), "path"_a = rows_of(result.path));
           },
           "pose"_a, "velocity"_a, "costmap"_a, "elapsed"_a, "others"_a = std::vector<Prediction>{},
-          "The command for the next control period, `elapsed` (s) after the last update. `velocity` is that "
-          "of the robot: forward, left (m/s), turn (rad/s). `others`: PredictedObstacle of what moves, which "
-          "the costmap should not show. Returns status, command (as velocity), remaining (m of path), delay "
-          "(s), plan [n, 3] and path [n, 3].")
+          "The command for the next control period.")
       .def("set_cost", &PythonNavigator::set_term, "function"_a,
-           "Adds a term of your own to the cost of plans: function(x, y, yaw, forward, left, turn, step) "
-           "takes arrays [n] of the states of rollouts at a step, and returns their costs per second [n]. "
-           "None removes it. `update` raises what the function raises.")
+           "Adds a term of your own to the cost of plans.")
       .def(
           "reset", [](PythonNavigator& self, std::uint64_t seed) { self.reset(seed); }, "seed"_a = 0,
           "Forgets the path, and starts the random numbers from `seed`.");
@@ -216,13 +206,17 @@ Prediction make_prediction(const Numbers& poses, double length, double width, do
 void bind_objects(py::module_& module) {
   py::class_<TrackedObject> object(
       module, "TrackedObject", guarded(),
-      "Something that moves: of an ObjectTracker, or of a detector of your own. `id`: stays with it.");
+      "Something that moves: of an ObjectTracker, or of a detector of your own.");
   object.def(py::init([](int id, const std::array<double, 3>& pose, double speed, double yaw_rate,
                          double length, double width, const Covariance& covariance) {
                TrackedObject made{id, to_pose(pose), speed, yaw_rate, length, width};
                std::memcpy(made.covariance, covariance.data(), sizeof made.covariance);
                maps::check_pose("TrackedObject.pose", made.pose);
                check_finite("TrackedObject: sizes and speeds", std::array{length, width, speed, yaw_rate});
+               if (std::min({length, width, speed}) < 0)
+                 throw py::value_error(
+                     "TrackedObject: length, width and speed must be at least 0; who moves "
+                     "backwards has the yaw of the motion");
                check_finite("TrackedObject.covariance", {&made.covariance[0][0], 25});
                return made;
              }),
@@ -241,10 +235,8 @@ void bind_objects(py::module_& module) {
   });
   read("unseen", "s since it was last seen", [](const TrackedObject& o) { return o.unseen; });
 
-  py::class_<Prediction> predicted(
-      module, "PredictedObstacle", guarded(),
-      "A box that moves, in hypotheses with probabilities `weights`. `poses` [hypothesis, time, 5]: x, y, "
-      "yaw, standard deviations along and across (m, rad), now and every `interval` s. Of one: [time, 5].");
+  py::class_<Prediction> predicted(module, "PredictedObstacle", guarded(),
+                                   "A box that moves, in hypotheses.");
   predicted.def(py::init(&make_prediction), "poses"_a, py::kw_only(), "length"_a, "width"_a,
                 "interval"_a = 0.1, "weights"_a = std::vector<double>{1}, "id"_a = 0);
   const auto read_of = reader(predicted);
@@ -258,10 +250,8 @@ void bind_objects(py::module_& module) {
 }
 
 void bind_tracker(py::module_& module) {
-  const std::string words =
-      "Follows moving objects from scan to scan of a LiDAR: what is not on `map`, an OccupancyGrid, or "
-      "without one what moves. `people`: with the options for people on foot. Other options:\n\n" +
-      options_text(tracking::TrackerOptions{});
+  const std::string words = "Follows moving objects from scan to scan of a LiDAR." +
+                            options_text(list_options(tracking::TrackerOptions{}));
   py::class_<ObjectTracker>(module, "ObjectTracker", words.c_str(), guarded())
       .def(
           py::init([](const std::optional<maps::OccupancyGrid>& map, bool people, const py::kwargs& options) {
@@ -282,17 +272,13 @@ void bind_tracker(py::module_& module) {
                             "pose"_a = to_tuple(seen.sensor));
           },
           "ranges"_a, py::kw_only(), "angle_min"_a, "angle_increment"_a, "range_min"_a = 0.0, "range_max"_a,
-          "pose"_a, "stamp"_a, "position_deviation"_a = 0.0, "yaw_deviation"_a = 0.0,
-          "Takes a scan at `stamp` (s). `pose`: (x, y, yaw) of the LiDAR, with its standard deviations (m, "
-          "rad). Returns status, objects (TrackedObject) and pose, aligned with the map.")
+          "pose"_a, "stamp"_a, "position_deviation"_a = 0.0, "yaw_deviation"_a = 0.0, "Takes a scan.")
       .def("reset", &ObjectTracker::reset, "Forgets all objects and scans.");
 }
 
 void bind_predictor(py::module_& module) {
-  const std::string words =
-      "Predicts the ways of moving objects, in hypotheses with weights. `course`: points (x, y, yaw, speed) "
-      "of a line that they follow. `people`: with the options for people on foot. Other options:\n\n" +
-      options_text(tracking::PredictorOptions{});
+  const std::string words = "Predicts the ways of moving objects, in hypotheses with weights." +
+                            options_text(list_options(tracking::PredictorOptions{}));
   py::class_<Predictor>(module, "Predictor", words.c_str(), guarded())
       .def(py::init([](const std::optional<std::vector<std::array<double, 4>>>& course, bool people,
                        const py::kwargs& options) {
@@ -306,15 +292,32 @@ void bind_predictor(py::module_& module) {
       .def(
           "update",
           [](Predictor& self, const std::vector<TrackedObject>& objects, double stamp) {
+            check_finite("Predictor.update: stamp", {&stamp, 1});
+            std::set<int> ids;
+            for (const TrackedObject& each : objects)
+              if (!ids.insert(each.id).second)
+                throw py::value_error("Predictor.update: objects: the id " + std::to_string(each.id) +
+                                      " must be that of one object");
             std::vector<Prediction> all;
             for (const maps::PredictedObstacle& each : self.update(objects, stamp))
               all.push_back({each, {each.poses.begin(), each.poses.end()}});
             return all;
           },
-          "objects"_a, "stamp"_a,
-          "Returns a PredictedObstacle for each object that moves, for `others` of a Planner or a Navigator. "
-          "`objects`: as they are at `stamp` (s).")
+          "objects"_a, "stamp"_a, "Predicts the objects that move.")
       .def("reset", &Predictor::reset, "Forgets all objects.");
+  module.def(
+      "drop_readings_of",
+      [](const std::vector<Prediction>& others, const Ranges& ranges, double angle_min,
+         double angle_increment, const std::array<double, 3>& pose, double margin) {
+        Ranges kept(ranges.size(), ranges.data());
+        const std::span<float> values(kept.mutable_data(), static_cast<std::size_t>(kept.size()));
+        const auto scan = scan_of(ranges, angle_min, angle_increment, 0, 0);
+        for (const auto& each : views_of(others))
+          maps::drop_readings_of(each, margin, to_pose(pose), scan, values);
+        return kept;
+      },
+      "others"_a, "ranges"_a, py::kw_only(), "angle_min"_a, "angle_increment"_a, "pose"_a, "margin"_a = 0.15,
+      "The ranges of a scan for a map that must not keep who moves.");
 }
 
 }  // namespace

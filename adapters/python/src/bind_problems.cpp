@@ -7,27 +7,47 @@ namespace slalom::python {
 
 namespace {
 
+/// The options of a built-in problem.
+struct Access {
+  Entries (*list)(const AnyProblem&);
+  bool (*set)(AnyProblem&, const std::string&, const std::string&);
+};
+
+/// Adds the options as attributes: once for all problems, since pybind11 takes long to compile.
+void bind_attributes(py::class_<AnyProblem> bound, const Access& access, const Entries& entries,
+                     const char* name) {
+  for (const OptionEntry& entry : entries) {
+    const std::string key = entry.declaration.name;
+    bound.def_property(
+        key.c_str(),
+        [=](const AnyProblem& self) { return py::object(values_of(access.list(self))[key.c_str()]); },
+        [=](AnyProblem& self, const py::object& value) {
+          set_from_keywords(
+              [&](const auto& option, const auto& text) { return access.set(self, option, text); },
+              access.list(self), py::kwargs(py::dict(py::arg(key.c_str()) = value)), name);
+        },
+        entry.declaration.help);
+  }
+}
+
 template <class P>
 py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char* name,
                                                 const std::string& words) {
   using Bound = BuiltIn<P>;
-  const std::string text =
-      words + "\n\nKeyword arguments, also attributes, with their defaults:\n\n" + options_text(P{});
+  const Entries entries = list_options(P{});
+  const std::string text = words + " The parameters are also attributes." + options_text(entries);
   py::class_<Bound, AnyProblem> bound(module, name, text.c_str());
   bound.def(py::init([name](const py::kwargs& keywords) {
     P problem;
     set_from_keywords(problem, keywords, name);
     return std::make_unique<Bound>(problem);
   }));
-  for (const OptionEntry& entry : list_options(P{})) {
-    const std::string key = entry.declaration.name;
-    bound.def_property(
-        key.c_str(), [key](const Bound& self) { return py::object(values_of(self.problem())[key.c_str()]); },
-        [key, name](Bound& self, const py::object& value) {
-          set_from_keywords(self.problem(), py::kwargs(py::dict(py::arg(key.c_str()) = value)), name);
-        },
-        entry.declaration.help);
-  }
+  bind_attributes(py::reinterpret_borrow<py::class_<AnyProblem>>(bound),
+                  {[](const AnyProblem& p) { return list_options(dynamic_cast<const Bound&>(p).problem()); },
+                   [](AnyProblem& p, const std::string& option, const std::string& value) {
+                     return set_option(dynamic_cast<Bound&>(p).problem(), option, value);
+                   }},
+                  entries, name);
   if constexpr (requires(P & p) { p.discs[0].radius; }) {
     bound.def_property(
         "discs", [](const Bound& self) { return discs_of(self.problem().discs); },
@@ -70,8 +90,7 @@ void bind_any_problem(py::module_& module) {
             return array_of(self.step(vector_of(state, self.states(), "state"),
                                       vector_of(input, self.inputs(), "input"), k));
           },
-          "state"_a, "input"_a, "k"_a = 0,
-          "The state after one step, in double. `k` is the index of the step, for dynamics that take it.")
+          "state"_a, "input"_a, "k"_a = 0, "The state after one step, in double.")
       .def("_expand",
            [](const AnyProblem& self, const Numbers& state, const Numbers& input, int k) {
              return self.expand(
@@ -102,47 +121,18 @@ void bind_any_problem(py::module_& module) {
                 Numbers({inputs.shape(0) + 1, py::ssize_t{self.states()}}, found.known_states().data()),
                 found.cost);
           },
-          "state"_a, "inputs"_a,
-          "The states float64 [steps + 1, states] under the inputs [steps, inputs] from `state`, and the "
-          "cost of the sequence, in double. Limits of rates and levels are not applied.")
+          "state"_a, "inputs"_a, "The states and the cost of a control sequence.")
       .def(
           "collides",
           [](AnyProblem& self, const Numbers& state) {
             return self.predict(vector_of(state, self.states(), "state"), {}).collided;
           },
-          "state"_a, "Whether a state collides, according to the terminal cost.");
+          "state"_a, "Whether a state collides.");
 }
 
-constexpr const char* callable_words = R"(A problem of your own: callables on batches of K samples.
-
-Parameters
-----------
-dynamics : callable (x [K, states], u [K, inputs]) -> x [K, states]
-cost : callable (x, u) -> [K]
-    or in terms, {name: [K]}; or a pair (cost, collided [K])
-terminal_cost : callable (x) -> [K], optional
-    as of cost
-states, inputs : int
-dt : float, optional
-    s, duration of a step
-input_min, input_max : float or [inputs], optional
-    bounds in addition to those of the options
-input_rate_max : float or [inputs], optional
-    largest rate of the inputs, per s, in rollouts and plans; requires dt
-input_levels : float or [inputs], optional
-    number of values, evenly spaced from input_min to input_max, that an input takes; 0: all
-sampler : callable (random, samples, horizon, inputs) -> [samples, horizon, inputs], optional
-    noise instead of standard normal values, drawn only from the numpy Generator `random`
-rollout : callable (x [states], u [K, T, inputs]) -> costs [K]
-    whole rollouts, in place of dynamics and costs; with their states a pair (costs,
-    states [K, T + 1, states]). K and T differ from call to call
-
-dynamics and cost may take a third argument: the index of the step, an int. Their x and u are float32, with
-contiguous columns. No argument must be written; u is a view of the solver's memory, valid during the call.
-The result of dynamics is not copied.)";
-
 void bind_callable_problem(py::module_& module) {
-  py::class_<CallableProblem, AnyProblem> problem(module, "Problem", callable_words,
+  py::class_<CallableProblem, AnyProblem> problem(module, "Problem",
+                                                  "A problem of your own: callables on batches of K samples.",
                                                   collected<CallableProblem>());
   problem
       .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,

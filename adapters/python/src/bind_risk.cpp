@@ -250,20 +250,14 @@ void bind_risk(py::module_& module) {
   py::class_<RandomStream>(module, "RandomStream", "Random numbers of one variant of the world.", guarded())
       .def(
           "uniform", [](RandomStream& r, double low, double high) { return r.uniform(low, high); },
-          "low"_a = 0.0, "high"_a = 1.0, "A uniform value in [low, high).")
+          "low"_a = 0.0, "high"_a = 1.0, "A uniform value.")
       .def("normal", &RandomStream::normal, "A standard normal value.");
   py::class_<RiskProblem, AnyProblem>(
       module, "RiskEvaluator",
       "A problem in several variants of the world: a controller of it finds inputs that are good in all of "
-      "them.\n\n"
-      "problem: the first variant\n"
-      "randomize(random) -> problem: makes another one, with random numbers drawn from the RandomStream\n"
-      "variants: 1 ... 32; an odd number deviates to all sides alike, since the random numbers come in "
-      "mirrored pairs\n"
-      "measure: which measure of their costs counts: 'mean', 'worst', 'cvar' (mean of the worst share "
-      "`tail`) or 'exponential' (weight `aversion` of high costs)\n\n"
-      "The variants are made once, so all samples of all solves meet the same ones. A sequence collides if "
-      "it collides in any.",
+      "them. The variants are made once, so all samples of all solves meet the same ones. A sequence "
+      "collides "
+      "if it collides in any.",
       collected<RiskProblem>())
       .def(py::init(&make_risk), "problem"_a, "randomize"_a, py::kw_only(), "variants"_a = 9,
            "measure"_a = "mean", "tail"_a = RiskOptions{}.tail, "aversion"_a = RiskOptions{}.aversion,

@@ -65,8 +65,8 @@ class PythonSubject final : public view::SolverSubject {
   const SolverOptions* options() const override { return &controller().options(); }
   void set_options(const SolverOptions& options) override {
     const py::gil_scoped_acquire lock;
-    set_controller(
-        py::type::of<Controller>()(options.method(), controller_.attr("problem"), **values_of(options)));
+    set_controller(py::type::of<Controller>()(options.method(), controller_.attr("problem"),
+                                              **values_of(list_options(options))));
   }
 
   const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {

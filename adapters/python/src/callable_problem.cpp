@@ -232,8 +232,12 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
   const py::ssize_t rows = together ? py::ssize_t{count} * batch.steps() : 0;
   py::array_t<float> all_x = columns(rows, parts_.states), all_u = columns(rows, parts_.inputs);
   const auto keep = [&](const py::array& from, py::array_t<float>& all, int k) {
-    for (py::ssize_t i = 0; i < from.shape(1); ++i)
-      add_column(from, i, count, all.mutable_data() + i * rows + py::ssize_t{k} * count);
+    const bool contiguous = py::isinstance<py::array_t<float>>(from) && from.strides(0) == width;
+    for (py::ssize_t i = 0; i < from.shape(1); ++i) {
+      float* const to = all.mutable_data() + i * rows + py::ssize_t{k} * count;
+      if (!contiguous) add_column(from, i, count, to);
+      if (contiguous) std::memcpy(to, from.data(0, i), static_cast<std::size_t>(width * count));
+    }
   };
   for (int k = 0; k < batch.steps(); ++k) {
     const py::array u = lent_inputs(sequences + k * (step / width), {count, parts_.inputs}, {width, row});

@@ -87,12 +87,8 @@ struct CallableParts {
   std::array<py::object*, 5> callables() { return {&dynamics, &cost, &terminal_cost, &sampler, &rollout}; }
 };
 
-/// A problem made of callables on batches of K samples: dynamics(x[K, nx], u[K, nu]) -> x[K, nx],
-/// cost(x, u) -> [K], terminal_cost(x) -> [K]. Dynamics and cost may take the index of the step as a
-/// third parameter. A cost may consist of terms, {name: [K]}, or be a pair
-/// (cost, collided). In place of these, rollout(x[nx], u[K, steps, nu]) -> [K] computes whole rollouts; with
-/// their states it returns a pair. The functions get arrays that must not be written: views of the solver's
-/// memory, and what dynamics returned, which is not copied.
+/// A problem made of callables on batches (docs/python-reference.md), which get arrays that must not be
+/// written: views of the solver's memory, and what dynamics returned, which is not copied.
 class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
   /// Throws std::invalid_argument with the rule that a part breaks.

@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <functional>
 #include <span>
 #include <string>
 #include <variant>
@@ -238,23 +239,30 @@ inline std::string text_of(const py::handle& value) {
   return text.empty() ? "[]" : text + "]";
 }
 
-/// Sets the options that are given. Throws ValueError with `where`, the name, the value and its rule, or
-/// TypeError if there is no option of a name.
-template <class Options>
-void set_from_keywords(Options& options, const py::kwargs& keywords, const std::string& where) {
+using Entries = std::vector<OptionEntry>;
+
+/// Sets options by `set(name, text)`, which returns false if there is none of that name. Throws ValueError
+/// with `where`, the name, the value and its rule, or TypeError if there is no option of a name.
+inline void set_from_keywords(const std::function<bool(const std::string&, const std::string&)>& set,
+                              const Entries& entries, const py::kwargs& keywords, const std::string& where) {
   for (const auto& [key, value] : keywords) {
     const auto name = value_as<std::string>(key, where + ": the name of an option");
     try {
-      if (set_option(options, name, text_of(value))) continue;
+      if (set(name, text_of(value))) continue;
     } catch (const std::invalid_argument& error) {
       throw py::value_error(where + "." + name + ": " + error.what());
     }
     std::vector<std::string> names;
-    for (const OptionEntry& entry : list_options(options)) names.emplace_back(entry.declaration.name);
+    for (const OptionEntry& entry : entries) names.emplace_back(entry.declaration.name);
     const std::string nearest = nearest_name(name, names);
     throw py::type_error(shortened(where + ": unknown option '" + name + "'" +
                                    (nearest.empty() ? "" : "; did you mean '" + nearest + "'?")));
   }
+}
+template <class Options>
+void set_from_keywords(Options& options, const py::kwargs& keywords, const std::string& where) {
+  set_from_keywords([&](const auto& name, const auto& text) { return set_option(options, name, text); },
+                    list_options(options), keywords, where);
 }
 
 inline py::object to_python(const OptionValue& value) {
@@ -269,10 +277,9 @@ inline py::object to_python(const OptionValue& value) {
 }
 
 /// The options as a list of dictionaries.
-template <class Options>
-py::list describe_options(const Options& options) {
+inline py::list describe_options(const Entries& entries) {
   py::list all;
-  for (const OptionEntry& entry : list_options(options)) {
+  for (const OptionEntry& entry : entries) {
     const Declaration& d = entry.declaration;
     all.append(py::dict("name"_a = d.name, "type"_a = type_name(entry), "default"_a = to_python(entry.value),
                         "symbol"_a = d.symbol, "unit"_a = d.unit, "min"_a = d.min, "max"_a = d.max,
@@ -282,22 +289,25 @@ py::list describe_options(const Options& options) {
 }
 
 /// The values of the options by name.
-template <class Options>
-py::dict values_of(const Options& options) {
+inline py::dict values_of(const Entries& entries) {
   py::dict all;
-  for (const OptionEntry& entry : list_options(options)) all[entry.declaration.name] = to_python(entry.value);
+  for (const OptionEntry& entry : entries) all[entry.declaration.name] = to_python(entry.value);
   return all;
 }
 
-/// A line for every option, for docstrings.
-template <class Options>
-std::string options_text(const Options& options) {
-  std::string text;
-  for (const OptionEntry& entry : list_options(options)) {
+/// The options as a docstring lists parameters.
+inline std::string options_text(const Entries& entries) {
+  std::string text = "\n\nParameters\n----------\n";
+  for (const OptionEntry& entry : entries) {
     const Declaration& d = entry.declaration;
-    text += "    " + std::string(d.name) + " = " + py::repr(to_python(entry.value)).cast<std::string>();
-    if (*d.unit) text += " [" + std::string(d.unit) + "]";
-    text += ": " + std::string(d.help);
+    const std::string kind = type_name(entry);
+    text += std::string(d.name) + " : " +
+            (kind == "flag"      ? "bool"
+             : kind == "integer" ? "int"
+             : kind == "choice"  ? "str"
+                                 : "float") +
+            (kind == "numbers" ? " or (inputs,)" : "") + (*d.unit ? ", " + std::string(d.unit) : "") +
+            ", default " + py::repr(to_python(entry.value)).cast<std::string>() + "\n    " + d.help;
     for (std::size_t i = 0; i < entry.choices.size(); ++i)
       text += (i ? ", " : "; one of ") + entry.choices[i];
     text += "\n";

@@ -56,6 +56,9 @@ def test_a_loop_for_ros_is_safe_where_no_plan_can_be_trusted():
     loop.hear([1, 0], 1.4)
     loop.deadline = 1e-9
     assert loop.command(1.4) != 0.25 and loop.plan.status == "deadline"
+    walled = slalom.ros.Loop(slalom.Mppi(linear(cost=lambda x, u: (x[:, 0] ** 2, x[:, 0] > 0)), horizon=5), safe=[0.25], deadline=1)
+    walled.hear([1, 0], 0)
+    assert walled.command(0) == 0.25 and walled.why == "all_collided" and walled.plan.collided
 
 
 @pytest.mark.parametrize("limits", LIMITS)

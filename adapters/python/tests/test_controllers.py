@@ -1,4 +1,5 @@
 import inspect
+import re
 import threading
 import warnings
 
@@ -235,19 +236,31 @@ def test_a_sampler_brings_its_own_noise():
         slalom.Mppi(pushed(sampler=lambda *_: np.zeros(2)), horizon=6).solve([2, 0])
 
 
-def test_everything_public_says_what_it_is():
-    silent = []
-    for name in slalom.__all__:
-        value = getattr(slalom, name)
-        if name.startswith("__") or isinstance(value, type) and issubclass(value, Exception):
-            continue
-        members = vars(value).items() if isinstance(value, type) else []
-        silent += [name] * (not value.__doc__)
-        for member, what in members:
-            own = (what.__doc__ or "").strip()
-            if not member.startswith("_") and (not own or own.endswith(("-> None", "-> object")) and "\n" not in own):
-                silent.append(f"{name}.{member}")
-    assert not silent
+def public():
+    """[(name, function, class or property)] of the package and the modules that need nothing else."""
+    import slalom.mlp
+    import slalom.ros
+
+    for module in slalom, slalom.mlp, slalom.plot, slalom.ros:
+        names = slalom.__all__ if module is slalom else [n for n, v in vars(module).items() if getattr(v, "__module__", "") == module.__name__]
+        for name in [each for each in names if not each.startswith("_")]:
+            value = getattr(module, name)
+            if not (isinstance(value, type) and issubclass(value, (Exception, tuple, dict))):
+                yield name, value
+                yield from ((f"{name}.{member}", getattr(what, "__func__", what)) for member, what in vars(value).items()
+                            if isinstance(value, type) and not member.startswith("_") and (callable(getattr(value, member)) or isinstance(what, property)))
+
+
+def test_everything_public_says_what_it_is_and_what_it_takes_and_returns():
+    missing = []
+    for name, value in public():
+        words = re.sub(r"^\w+\(.*\) -> .*", "", value.__doc__ or "").strip()
+        told, parameters = ", ".join(re.findall(r"^([\w, ]+) : \S", words, re.M)).split(", "), []
+        if callable(value) and name not in ("AnyProblem", "Plan", "RandomStream"):  # not constructed by users
+            parameters = inspect.signature(value).parameters
+        missing += [f"{name}: {each}" for each in parameters if each not in ("self", "cls", "kwargs", "drawing", *told)]
+        missing += [name] * (not words or inspect.isfunction(value) and "Returns\n---" not in words)
+    assert not missing
 
 
 def test_a_symptom_that_stays_is_reported_once():

@@ -74,6 +74,11 @@ def test_people_in_scans_are_tracked_and_predicted():
     assert seen["status"] == "ok" and seen["pose"] == tuple(pose) and found.unseen == 0 and 0.4 < found.width < 0.6
     assert np.hypot(*(found.pose[:2] - person)) < 0.1 and found.speed == pytest.approx(0.6, abs=0.1) and found.covariance[3, 3] > 0
     assert np.allclose(other.poses[np.argmax(other.weights), 10, :2], person + [0, 0.6], atol=0.15), "a second later"
+    seen = scan(pose, person)
+    kept = slalom.drop_readings_of(others, seen["ranges"], angle_min=-np.pi, angle_increment=np.pi / 360, pose=pose)
+    on_person = seen["ranges"] < scan(pose, np.array([50, 50]))["ranges"] - 0.1
+    assert on_person.sum() > 5 and np.isnan(kept[on_person]).all() and np.isnan(kept).sum() < on_person.sum() + 9
+    seen = tracker.update(**seen, pose=pose, stamp=4)
     with pytest.raises(TypeError, match="others: .*_driving.PredictedObstacle"):
         slalom.Navigator.update(others=seen["objects"])
     thing, box = {"id": 1, "pose": (0, 0, 0), "speed": 1}, {"poses": np.zeros((3, 5)), "length": 1, "width": 1}
@@ -86,6 +91,10 @@ def test_people_in_scans_are_tracked_and_predicted():
             (slalom.PredictedObstacle, {**box, "interval": 0}, "must be positive"),
             (slalom.TrackedObject, {**thing, "pose": (0, np.nan, 0)}, "TrackedObject.pose"),
             (slalom.TrackedObject, {**thing, "speed": np.nan}, "sizes and speeds: must be finite"),
+            (slalom.TrackedObject, {**thing, "speed": -0.1}, "speed must be at least 0; who moves backwards"),
+            (slalom.TrackedObject, {**thing, "length": -1}, "length, width and speed must be at least 0"),
+            (predictor.update, {"objects": [], "stamp": np.nan}, "update: stamp: must be finite"),
+            (predictor.update, {"objects": [found, found], "stamp": 9}, f"the id {found.id} must be that of one object"),
             (slalom.TrackedObject, {**thing, "covariance": np.full((5, 5), np.nan)}, "covariance: must be finite"),
             (slalom.ObjectTracker, {"gate": 0}, "gate: '0' must be in"), (slalom.Predictor, {"course": [(0, 0, 0, 1)]}, "path")]:
         with pytest.raises(ValueError, match=words):

@@ -17,7 +17,9 @@ class CommandLoop {
   using Inputs = typename slalom::Controller<P>::Inputs;  ///< inputs of a step
 
   struct Options {
-    Inputs safe{};           ///< sent without a state that is new enough, and where the solver has no answer
+    /// Sent without a state that is new enough, without an answer of the solver, and where all samples and
+    /// the plan collide.
+    Inputs safe{};
     double timeout = 0.1;    ///< s, from which age on a state is too old
     double deadline = 0.01;  ///< s, that a solve may take
   };
@@ -58,7 +60,8 @@ class CommandLoop {
   bool is_trusted() const noexcept {
     using slalom::Status;
     const Status status = plan_->status;
-    return status == Status::ok || status == Status::deadline || status == Status::all_collided;
+    return status == Status::ok || status == Status::deadline ||
+           (status == Status::all_collided && !plan_->collided);
   }
 
   slalom::Controller<P> controller_;
