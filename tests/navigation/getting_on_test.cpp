@@ -164,10 +164,9 @@ TEST(Replanning, AHeadingThatIsAskedForOnTheWayIsTakenUnlessItsPlaceIsClosed) {
       drive.navigator->set_path(path(-1.5));  // another heading is another path
       if (closed) drive.block(4.9, 2.9, 5.1, 3.1);
       double least = 1;
-      for (int i = 0; i < 1000 && !is_there(drive, drive.step()); ++i) {
+      for (int i = 0; i < 1000 && !is_there(drive, drive.step()); ++i)
         if (std::hypot(drive.pose.x - 5, drive.pose.y - 3) < 0.11)
           least = std::min(least, std::abs(maps::wrap_angle(drive.pose.yaw + 1.5)));
-      }
       EXPECT_EQ(least < 0.16, !closed) << enum_names(kind)[static_cast<int>(kind)] << ", " << least;
       EXPECT_LT(drive.goal_distance(), 0.1) << enum_names(kind)[static_cast<int>(kind)];
       EXPECT_FALSE(drive.collided);

@@ -103,8 +103,7 @@ class World {
   World(const WorldOptions& options, std::shared_ptr<const Track> track);
 
   /// Starts again with driven cars at rest at `cars` and parked ones at `parked`, without other bodies.
-  /// Throws std::invalid_argument on poses that are not finite and a driven car that starts in a wall or a
-  /// body.
+  /// Throws std::invalid_argument on poses that are not finite and driven cars that start in walls or bodies.
   void reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked = {});
 
   /// Adds a parked car and returns its index. It may be placed onto a car. Throws std::invalid_argument if
