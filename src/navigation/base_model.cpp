@@ -123,15 +123,17 @@ class BaseModelOf final : public BaseModel {
         deadline_(options.deadline),
         plan_(controller_.solver().horizon() + 1) {
     if (!controller_.solver().takes_proposals()) return;
-    // Braking, reversing, and turns either way.
+    // Braking, reversing, and turns either way; of a car, also straight on, or it would start with a turn.
     const BaseOptions& base = options.base;
     const double way = steers<Base> ? base.max_forward : 0;
-    proposals_.emplace(controller_, 6);
+    proposals_.emplace(controller_, steers<Base> ? 7 : 6);
+    const auto add = [&](double forward, double turn) {
+      const auto input = Base::input({forward, 0, turn});
+      proposals_->add({&input, 1});
+    };
     for (const double forward : {way, -base.max_reverse})
-      for (const double turn : {base.max_turn, -base.max_turn, 0.0}) {
-        const auto input = Base::input({turn == 0 ? std::min(forward, 0.0) : forward, 0, turn});
-        proposals_->add({&input, 1});
-      }
+      for (const double turn : {base.max_turn, -base.max_turn, 0.0}) add(forward, turn);
+    if (steers<Base>) add(0, 0);
   }
   std::unique_ptr<BaseModel> clone() const override { return std::make_unique<BaseModelOf>(*this); }
 
