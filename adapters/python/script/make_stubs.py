@@ -11,8 +11,11 @@ from slalom import _slalom  # noqa: E402
 
 OPTIONS = {"flag": "bool", "integer": "int", "number": "float", "numbers": "float | Sequence[float]", "choice": "str"}
 GENERIC = {"dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "list": "list[Any]", "object": "Any", "function": "Any"}
-HEAD = """from typing import Any, Callable, Sequence
+HEAD = """import collections.abc
+import typing
+from typing import Any, Callable, Sequence
 
+import numpy.typing
 from numpy.typing import ArrayLike, NDArray
 """
 
@@ -23,7 +26,7 @@ def translate(kind, argument):
     if kind == "List[object]" and argument:
         return "Sequence[Any]"
     if kind.startswith("numpy.ndarray") or kind.startswith("List[") and argument:
-        return "ArrayLike" if argument else "NDArray[Any]"
+        return "ArrayLike" if argument else "NDArray[numpy.float64]" if "float64" in kind else "NDArray[Any]"
     if kind.startswith("Union["):
         return " | ".join(translate(part, argument) for part in re.findall(r"[\w.]+(?:\[[^]]*\])?", kind[6:-1]))
     if kind.startswith("Optional["):
@@ -45,7 +48,7 @@ def argument(text):
 
 def signature(function):
     """Arguments and result, from the signature at the start of a bound function's docstring."""
-    match = re.match(r"\w+\((.*)\) -> (.*)$", (function.__doc__ or "").split("\n")[0])
+    match = re.match(r"\w+\((.*)\) -> (.*)$", getattr(function, "declared", function.__doc__ or "").split("\n")[0])
     if not match:
         plain = inspect.signature(function)
         return ", ".join(plain.parameters), "Any"

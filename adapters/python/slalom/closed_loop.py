@@ -30,12 +30,12 @@ class Run:
     """
 
     def __init__(self, states: ArrayLike, inputs: ArrayLike, costs: ArrayLike, times: ArrayLike, time_step: float) -> None:
-        self.states, self.inputs, self.costs, self.times = (np.array(each, float) for each in (states, inputs, costs, times))
+        values: list[NDArray[np.float64]] = [np.array(each, float) for each in (states, inputs, costs, times)]
+        self.states, self.inputs, self.costs, self.times = values
         self.time_step = time_step
 
     def frame(self) -> Any:
-        """All as a pandas.DataFrame with a row for each state; the index is the time (s), or the step. The last state has no
-        inputs."""
+        """All as a pandas.DataFrame, a row for each state, the last without inputs; the index is the time, s, or the step."""
         pandas = importlib.import_module("pandas")
         columns = {f"{name} {i}": column for name, values in (("state", self.states), ("input", self.inputs))
                    for i, column in enumerate(values.T)}

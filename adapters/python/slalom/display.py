@@ -131,6 +131,9 @@ def describe(name: str, value: Any) -> None:
         if not member.startswith("_") and inspect.isroutine(getattr(value, member)):
             describe(f"{name}.{member}", getattr(function, "__func__", function))
     text, rows = inspect.cleandoc(value.__doc__ or ""), ""
+    if compiled := re.match(r"\w+\(.*\) -> .*\n*", text):
+        setattr(value, "declared", compiled[0])
+        text = text[compiled.end():]
     told = ", ".join(re.findall(r"^[\w, ]+(?= : )", text, re.M)).split(", ")
     try:
         parameters = [*inspect.signature(value).parameters.values()]

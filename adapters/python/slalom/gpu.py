@@ -1,8 +1,4 @@
-"""Controllers that solve on a GPU: docs/gpu.md.
-
-    problem = slalom.compile("robot.hpp", gpu=[90])
-    controller = slalom.gpu.SvgMppi(problem, horizon=20, batches=1, temperature=1, ...)
-"""
+"""Controllers that solve on a GPU (docs/gpu.md)."""
 
 from __future__ import annotations
 

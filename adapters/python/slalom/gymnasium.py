@@ -1,11 +1,4 @@
-"""Environments of gymnasium: an Env as a Problem, and a Problem as an Env.
-
-    import gymnasium, slalom.gymnasium
-
-    env = gymnasium.make("Pendulum-v1")
-    controller = slalom.SvgMppi(slalom.gymnasium.Problem(env), horizon=20, samples=64)
-    print(-slalom.gymnasium.episode(env, controller, seed=0).costs.sum())          # the return
-"""
+"""Environments of gymnasium: an Env as a Problem, and a Problem as an Env (docs/python.md)."""
 
 from __future__ import annotations
 

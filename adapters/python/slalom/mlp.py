@@ -35,8 +35,7 @@ def _activate(name: str, x: Array) -> tuple[Array, Array]:
 
 class Mlp:
     """A network of dense layers. `network(x)` returns the outputs [K, outputs] for inputs [K, inputs].
-    It computes with (x - input_mean) / input_scale, multiplies by output_scale and adds output_mean.
-    """
+    It computes with (x - input_mean) / input_scale, multiplies by output_scale and adds output_mean."""
 
     def __init__(self, layers: Sequence[tuple[ArrayLike, ArrayLike]], activation: str = "tanh", *,
                  input_mean: ArrayLike | None = None, input_scale: ArrayLike | None = None,
@@ -89,8 +88,7 @@ def train_mlp(inputs: ArrayLike, outputs: ArrayLike, *, hidden: Sequence[int] = 
 
     Adam (Kingma and Ba, 2015) on batches, with a learning rate that falls to 0 along a cosine. With `residual` the
     network learns the differences between the outputs and the first m inputs: use it to learn the next state.
-    The same data and seed give the same network.
-    """
+    The same data and seed give the same network."""
     inputs, outputs = np.asarray(inputs, np.float64), np.asarray(outputs, np.float64)
     if inputs.ndim != 2 or outputs.ndim != 2 or len(inputs) != len(outputs) or len(inputs) == 0:
         raise ValueError(f"train_mlp: inputs {inputs.shape} and outputs {outputs.shape} must be arrays [K, n] and [K, m]")

@@ -1,10 +1,4 @@
-"""Models of MuJoCo as problems, simulated on several threads.
-
-    import slalom.mujoco
-
-    problem = slalom.mujoco.Problem("model.xml", lambda x, u: x[:, 0] ** 2, physics_steps=4)
-    drive = slalom.run(problem, slalom.SvgMppi(problem, horizon=25, samples=64), problem.start, steps=200)
-"""
+"""Models of MuJoCo as problems, simulated on several threads (docs/python.md)."""
 
 from __future__ import annotations
 

@@ -18,6 +18,23 @@ py::array_t<float> columns(py::ssize_t rows, py::ssize_t count) {
   return values;
 }
 
+/// The same without zeros, in memory that is used again if nobody keeps it: new one is cleared by the system.
+py::array_t<float> room(py::array_t<float>& kept, py::ssize_t rows, py::ssize_t count) {
+  constexpr py::ssize_t width = sizeof(float);
+  if (kept.ref_count() > 1 || kept.size() < rows * count) kept = py::array_t<float>(rows * count);
+  return {{rows, count}, {width, width * rows}, kept.data(), kept};
+}
+
+/// Copies the columns of an array [count, columns] to places that are `stride` apart.
+void copy_columns(const py::array& from, py::ssize_t count, float* to, py::ssize_t stride) {
+  const bool contiguous = py::isinstance<py::array_t<float>>(from) && from.strides(0) == sizeof(float);
+  for (py::ssize_t i = 0; i < from.shape(1); ++i, to += stride) {
+    std::fill_n(to, contiguous ? 0 : count, 0.0f);
+    if (!contiguous) add_column(from, i, count, to);
+    if (contiguous) std::memcpy(to, from.data(0, i), sizeof(float) * static_cast<std::size_t>(count));
+  }
+}
+
 /// Values as the only row of an array.
 py::array_t<double> row(std::span<const double> values) {
   return py::array_t<double>({py::ssize_t{1}, static_cast<py::ssize_t>(values.size())}, values.data());
@@ -230,20 +247,12 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
   // The costs of a small batch are computed for all steps in one call.
   const bool together = count <= small_batch && !cost_takes_k_;
   const py::ssize_t rows = together ? py::ssize_t{count} * batch.steps() : 0;
-  py::array_t<float> all_x = columns(rows, parts_.states), all_u = columns(rows, parts_.inputs);
-  const auto keep = [&](const py::array& from, py::array_t<float>& all, int k) {
-    const bool contiguous = py::isinstance<py::array_t<float>>(from) && from.strides(0) == width;
-    for (py::ssize_t i = 0; i < from.shape(1); ++i) {
-      float* const to = all.mutable_data() + i * rows + py::ssize_t{k} * count;
-      if (!contiguous) add_column(from, i, count, to);
-      if (contiguous) std::memcpy(to, from.data(0, i), static_cast<std::size_t>(width * count));
-    }
-  };
+  py::array_t<float> all_x = room(all_x_, rows, parts_.states), all_u = room(all_u_, rows, parts_.inputs);
   for (int k = 0; k < batch.steps(); ++k) {
     const py::array u = lent_inputs(sequences + k * (step / width), {count, parts_.inputs}, {width, row});
     if (together) {
-      keep(x, all_x, k);
-      keep(u, all_u, k);
+      copy_columns(x, count, all_x.mutable_data() + py::ssize_t{k} * count, rows);
+      copy_columns(u, count, all_u.mutable_data() + py::ssize_t{k} * count, rows);
     } else {
       add_cost("cost", stage_cost(x, u, k), count, costs, collided);
     }

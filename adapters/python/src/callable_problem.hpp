@@ -168,8 +168,9 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   bool dynamics_take_k_ = false, cost_takes_k_ = false;  ///< the index of the step
   std::vector<double> state_;
   std::vector<float> previous_;
-  py::handle owner_;                  ///< during a solve
-  mutable std::exception_ptr error_;  ///< the first of a solve; guarded by the interpreter lock
+  mutable py::array_t<float> all_x_, all_u_;  ///< memory of the last rollout of a small batch
+  py::handle owner_;                          ///< during a solve
+  mutable std::exception_ptr error_;          ///< the first of a solve; guarded by the interpreter lock
 };
 
 }  // namespace slalom::python

@@ -28,11 +28,16 @@ def test_messages_do_not_repeat_long_values(call):
         call("a" * 5000)
 
 
-def test_dynamics_may_return_their_own_buffer():
+def test_dynamics_may_return_their_own_buffer_and_costs_keep_their_states():
     buffer = np.zeros((1000, 2), np.float32)
     problem = linear(dynamics=lambda x, u: np.add(dynamics(x, u), 0, out=buffer) if len(x) == 1000 else dynamics(x, u))
     slalom.Mppi(problem, horizon=4, samples=1000).solve([1, 0])
     assert buffer.flags.writeable and buffer.any()
+    kept = []
+    controller = slalom.Mppi(linear(cost=lambda x, u: kept.append((x, x.copy())) or cost(x, u)), horizon=4, samples=64)
+    for x in [1, 0], [5, 0]:
+        controller.solve(x)
+    assert len(kept) > 3 and all(np.array_equal(x, before) for x, before in kept)
 
 
 def spoilt(values):
