@@ -134,7 +134,7 @@ def describe(name: str, value: Any) -> None:
     if compiled := re.match(r"\w+\(.*\) -> .*\n*", text):
         setattr(value, "declared", compiled[0])
         text = text[compiled.end():]
-    told = ", ".join(re.findall(r"^[\w, ]+(?= : )", text, re.M)).split(", ")
+    told = ", ".join(re.findall(r"^[\w, ]+(?= : )", text.partition("Attributes\n---")[0], re.M)).split(", ")
     try:
         parameters = [*inspect.signature(value).parameters.values()]
     except ValueError:  # made by no call
