@@ -89,8 +89,7 @@ void report(benchmark::State& state) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// The same robot with all optional parts of a problem: cost in named terms, bounds on inputs and on their
-/// rates.
+/// The robot with all optional parts of a problem: cost in named terms, bounds on inputs and on their rates.
 struct WithParts : problems::DifferentialDrive {
   static constexpr std::array cost_names{"distance", "turning", "collision"};
   double input_min = -2, input_max = 2;

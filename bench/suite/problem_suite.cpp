@@ -1,6 +1,5 @@
 // Solves the tasks of the suite in closed loop with several methods and numbers of rollouts, and writes one
-// line of CSV for each task, method and number. script/problem-suite runs it and makes the table and the
-// plot.
+// line of CSV for each task, method and number. script/problem-suite runs it and makes table and plot.
 
 #include <cstdio>
 

@@ -17,8 +17,7 @@ struct RolloutSpeed {
   TimeStatistics yardstick;              ///< ns per step
   std::vector<TimeStatistics> rollouts;  ///< ns per step with its cost, in the order of the problems
 };
-/// Measures the yardstick and the rollouts of each problem alternately, so that all run at the same clock
-/// frequency.
+/// Measures the yardstick and the rollouts of each problem alternately, so that all have one clock frequency.
 RolloutSpeed measure_rollouts(const ReferenceWorkload& workload,
                               std::span<const vehicle::VehicleOptions> problems, int samples, int steps,
                               simd::Target target, double seconds);

@@ -82,8 +82,7 @@ class ReferenceWorkload {
 
   Yardstick yardstick() const { return {reference_problem(), field_, cost_map_, robot_}; }
 
-  /// The vehicle model with maps and start set, for one instruction set. It refers to the maps of this
-  /// object.
+  /// The vehicle model with maps and start set, for one instruction set. It refers to this object's maps.
   std::unique_ptr<vehicle::VehicleModel> model(const vehicle::VehicleOptions& options,
                                                simd::Target target) const;
 

@@ -26,9 +26,8 @@ void pause() noexcept {
 #endif
 }
 
-/// Waits until `value` differs from `seen`: spins for about 50 microseconds, longer than the guides of
-/// `svg_mppi` keep one thread busy, then sleeps on a futex. A thread that sleeps starts 30 to 40 microseconds
-/// late.
+/// Waits until `value` differs from `seen`: spins for about 50 microseconds, longer than guides of `svg_mppi`
+/// keep one busy, then sleeps on a futex. A thread that sleeps starts 30 to 40 microseconds late.
 std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t seen) noexcept {
   const auto until = Clock::now() + std::chrono::microseconds(50);
   for (;;) {

@@ -103,8 +103,7 @@ double LapSetup::length() const {
   const sim::LapPath& path = *environment->track->lap_path();
   if (!ends_with_path(*this)) return settings.rounds * path.length();
   const double arc = path.project(start()).arc, end = environment->course.length;
-  // Beyond the end of an open path lies the way back to its beginning, where the first point itself may
-  // project.
+  // Beyond the end of an open path lies the way back to its beginning, where the first point may project.
   return end - (arc > end ? 0 : arc) - finish_tolerance;
 }
 

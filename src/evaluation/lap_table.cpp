@@ -80,8 +80,7 @@ void parse_cell(const std::string& text, const std::string& column, Value& value
     if (error != std::errc{} || end != text.data() + text.size() || text.empty())
       throw std::invalid_argument(column + ": '" + text + "' must be a number");
     if constexpr (std::is_floating_point_v<Value>) {
-      // Without a wall the clearance is infinite. All other values must be finite, since their means are
-      // computed.
+      // Without a wall the clearance is infinite. All others must be finite, since their means are computed.
       const bool may_be_infinite = column == "min_clearance" && std::isinf(value) && value > 0;
       if (!std::isfinite(value) && !may_be_infinite)
         throw std::invalid_argument(column + ": '" + text + "' must be a finite number");
@@ -234,8 +233,7 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
 
 namespace {
 
-/// Parses a line of a stored table. Throws std::invalid_argument if it is damaged or has the seed of another
-/// lap.
+/// Parses a line of a stored table. Throws std::invalid_argument if it is damaged or of another lap's seed.
 LapRow parse_checked_line(const std::string& line, const std::vector<Experiment>& experiments,
                           std::uint64_t seed0) {
   const auto comma = line.rfind(',');

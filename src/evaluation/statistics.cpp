@@ -63,8 +63,7 @@ double normal_tail(double z) {
   return 0.5 * std::erfc(z / std::sqrt(2.0));
 }
 
-/// The mean, at most `most`, of the Poisson distribution of which a draw is at most `count` with this
-/// probability.
+/// The mean, at most `most`, of the Poisson distribution with draws up to `count` with this probability.
 double poisson_mean(std::int64_t count, double probability, double most) {
   const double log_factorial = std::lgamma(static_cast<double>(count) + 1);
   double low = 0, high = most;

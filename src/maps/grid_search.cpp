@@ -51,36 +51,14 @@ void GridSearch::open_around(const Point& point, double reach) noexcept {
   });
 }
 
-void GridSearch::begin(int from) noexcept {
+void GridSearch::begin(int from, const Point& towards, double weight) noexcept {
   std::fill(costs_.begin(), costs_.end(), unreached);
-  queue_.assign(1, {0, from});
+  weight_ = static_cast<float>(weight);
+  towards_x_ = static_cast<float>((towards.x - corner_.x) / cell_size_ - 0.5);
+  towards_y_ = static_cast<float>((towards.y - corner_.y) / cell_size_ - 0.5);
+  queue_.assign(1, {away(from), from});
   costs_[from] = 0;
   previous_[from] = -1;
-}
-
-bool GridSearch::advance(int cells) noexcept {
-  for (; cells > 0 && !queue_.empty(); --cells) {
-    std::pop_heap(queue_.begin(), queue_.end());
-    const Reached here = queue_.back();
-    queue_.pop_back();
-    if (here.cost > costs_[here.cell]) continue;
-    const int column = here.cell % columns_, row = here.cell / columns_;
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const int x = column + dx, y = row + dy;
-        if ((dx == 0 && dy == 0) || x < 0 || x >= columns_ || y < 0 || y >= rows_) continue;
-        const auto next = static_cast<std::size_t>(y * columns_ + x);
-        if (!(prices_[next] > 0)) continue;
-        const float step = static_cast<float>(cell_size_) * (dx != 0 && dy != 0 ? 1.41421356f : 1.0f);
-        const float cost = here.cost + step * prices_[next];
-        if (cost >= costs_[next]) continue;
-        costs_[next] = cost;
-        previous_[next] = here.cell;
-        queue_.push_back({cost, static_cast<int>(next)});
-        std::push_heap(queue_.begin(), queue_.end());
-      }
-  }
-  return queue_.empty();
 }
 
 /// Whether no cell on the straight line between two cells is closed or has a higher price than both of them:

@@ -67,8 +67,7 @@ double PathCurve::turn_at(std::size_t i) const noexcept {
   return std::abs(wrap_angle(direction(points_[i], points_[after]) - direction(points_[before], points_[i])));
 }
 
-/// Whether a leg ends at a point: the direction of travel changes there, or it is the sharpest point of a
-/// corner.
+/// Whether a leg ends at a point: the direction of travel changes there, or it is a corner's sharpest point.
 bool PathCurve::is_boundary(std::size_t i, bool turns_on_the_spot) const noexcept {
   if (backward_[i] != backward_[i - 1]) return true;
   if (!turns_on_the_spot) return false;

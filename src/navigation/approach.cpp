@@ -5,11 +5,9 @@
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr int max_points = 240;     // points of the window
-constexpr double behind = 0.3;      // m of the window behind the robot
-constexpr double margin = 0.4;      // m of it beyond the reach of plans
-constexpr double least_way = 1e-3;  // m between poses, below which there is no direction
-constexpr double aligned = 0.5;     // cosine of the largest angle between yaws that count and the path
+constexpr int max_points = 240;  // points of the window
+constexpr double behind = 0.3;   // m of the window behind the robot, and beyond the reach of plans
+constexpr double aligned = 0.5;  // cosine of the largest angle between a yaw and the path that it is on
 
 double direction(const maps::Pose& a, const maps::Pose& b) {
   return std::atan2(b.y - a.y, b.x - a.x);
@@ -35,9 +33,8 @@ bool yaws_count(std::span<const maps::Pose> path) {
   return true;
 }
 
-constexpr double wrong_way = std::numbers::pi / 3;  // rad from the path, from which the robot first turns
-constexpr std::size_t most_goals = 30;              // poses, as goals of a search
-constexpr double more_room = 0.1;                   // radii of room that a manoeuvre keeps if it can
+constexpr std::size_t most_goals = 30;  // poses, as goals of a search
+constexpr double more_room = 0.1;       // radii of room that a manoeuvre keeps if it can
 
 maps::ManoeuvreOptions search_options(const NavigatorOptions& options, const Footprint& footprint) {
   const bool turns = turns_on_the_spot(options.base);
@@ -100,7 +97,7 @@ void PathGuide::write(const maps::Pose& robot, double left, std::size_t stop, Na
   const double spacing_here = std::max(step(), 1e-3);
   const auto back = saturate_cast<std::size_t>(behind / spacing_here);
   const std::size_t first = std::max(at.first, nearest() > back ? nearest() - back : 0);
-  const auto wanted = first + saturate_cast<std::size_t>((reach_ + margin + behind) / spacing_here) + 3;
+  const auto wanted = first + saturate_cast<std::size_t>((reach_ + 2 * behind) / spacing_here) + 3;
   const std::size_t last = std::max(first, std::min({wanted, at.last, stop}));
   const std::size_t stride = (last - first) / max_points + 1;
   const double turned = at.backward ? std::numbers::pi : 0;
@@ -144,10 +141,11 @@ Approach::Approach(const NavigatorOptions& options, const Footprint& footprint)
 
 double Approach::free_turn(const maps::Pose& robot, double yaw, const Costmap& costmap,
                            double rate) const noexcept {
-  constexpr double step = 0.1;  // rad between the poses that are checked
+  // Between the poses that are checked no vertex moves by more than a cell.
+  const double step = costmap.geometry().resolution / footprint_.circumscribed_radius();
   double shorter = maps::wrap_angle(yaw - robot.yaw);
   double longer = shorter - std::copysign(2 * std::numbers::pi, shorter);
-  if (rate * shorter < 0 && std::abs(shorter) > std::numbers::pi - wrong_way) std::swap(shorter, longer);
+  if (rate * shorter < 0 && std::cos(shorter) < -aligned) std::swap(shorter, longer);
   for (const double turn : {shorter, longer}) {
     const int steps = saturate_cast<int>(std::ceil(std::abs(turn) / step));
     int i = 1;
@@ -276,7 +274,7 @@ void Approach::place(PathGuide& guide, const maps::Pose& robot, const Costmap& c
       std::min(guide.nearest() + guide.points_for(0.7 * footprint_.circumscribed_radius()),
                std::max(guide.leg().last, std::size_t{1}) - 1);
   const double direction = guide.points()[std::max(ahead, guide.leg().first)].yaw;
-  if (guide.leg().turns || std::abs(maps::wrap_angle(direction - robot.yaw)) <= wrong_way) return;
+  if (guide.leg().turns || std::cos(direction - robot.yaw) >= aligned) return;
   if (turns_on_the_spot(options_.base) && free_turn(robot, direction, costmap) != 0)
     return guide.turn_first(direction);
   if (join(guide, robot, costmap, buffer)) guide.place(position(robot));

@@ -19,6 +19,7 @@ inline maps::Point position(const maps::Pose& pose) {
   return {pose.x, pose.y};
 }
 
+inline constexpr double least_way = 1e-3;  ///< m between poses, below which they are at the same place
 /// The index of no point.
 inline constexpr std::size_t no_stop = std::numeric_limits<std::size_t>::max();
 
@@ -44,8 +45,7 @@ class Approach {
  public:
   Approach(const NavigatorOptions& options, const Footprint& footprint);
 
-  /// Places the robot on a new path. `buffer` holds poses meanwhile; paths that do not fit in it are not
-  /// changed.
+  /// Places the robot on a new path. `buffer` holds poses meanwhile; those that do not fit are not changed.
   void place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
              std::vector<maps::Pose>& buffer) noexcept;
   /// The turn (rad) on the spot to a yaw on which the body is free, the shorter one if both are; 0 if neither

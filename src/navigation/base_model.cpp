@@ -98,7 +98,8 @@ class NavigationEvaluator final : public BatchEvaluator {
 
 /// The options for steps of this duration (s). Noise is smooth over a plan: in a longer one it turns farther.
 SolverOptions fitted(SolverOptions options, double step) {
-  constexpr double usual = 2.8;  // s, the plans for which variances are meant
+  // The plans for which variances are meant, s.
+  const double usual = svg_mppi_options(BaseOptions{}).horizon * NavigatorOptions{}.time_step;
   const double share = std::min(usual / (*options.find<int>("horizon") * step), 1.0);
   visit_options(options, [&](auto& option, const Declaration& about) {
     if constexpr (std::is_same_v<decltype(option), PerInput&>) {
@@ -122,15 +123,17 @@ class BaseModelOf final : public BaseModel {
         deadline_(options.deadline),
         plan_(controller_.solver().horizon() + 1) {
     if (!controller_.solver().takes_proposals()) return;
-    // Braking, reversing, and turns either way.
+    // Braking, reversing, and turns either way; of a car, also straight on, or it would start with a turn.
     const BaseOptions& base = options.base;
     const double way = steers<Base> ? base.max_forward : 0;
-    proposals_.emplace(controller_, 6);
+    proposals_.emplace(controller_, steers<Base> ? 7 : 6);
+    const auto add = [&](double forward, double turn) {
+      const auto input = Base::input({forward, 0, turn});
+      proposals_->add({&input, 1});
+    };
     for (const double forward : {way, -base.max_reverse})
-      for (const double turn : {base.max_turn, -base.max_turn, 0.0}) {
-        const auto input = Base::input({turn == 0 ? std::min(forward, 0.0) : forward, 0, turn});
-        proposals_->add({&input, 1});
-      }
+      for (const double turn : {base.max_turn, -base.max_turn, 0.0}) add(forward, turn);
+    if (steers<Base>) add(0, 0);
   }
   std::unique_ptr<BaseModel> clone() const override { return std::make_unique<BaseModelOf>(*this); }
 
@@ -142,7 +145,7 @@ class BaseModelOf final : public BaseModel {
     if (deadline_ > 0) request.deadline = deadline_;
     if (proposals_) request.proposals = *proposals_;
     const auto plan = controller_.solve(
-        {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, Base::input(velocity)},
+        {pose.x - maps.origin.x, pose.y - maps.origin.y, pose.yaw, maps.progress, 0, Base::input(velocity)},
         request);
     command_ = controller_.problem().velocity(plan.states[1].before);
     for (std::size_t i = 0; i < plan_.size(); ++i)

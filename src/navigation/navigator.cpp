@@ -18,8 +18,6 @@ namespace {
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
 constexpr double least_command = 0.05;  // m/s and rad/s, of commands that move a robot
 constexpr double share_followed = 0.2;  // least share of a command that a robot follows
-constexpr double ignored_after = 0.8;   // s
-constexpr int longest_stop = 100;       // steps of braking that are checked
 constexpr double max_period = 0.2;      // s for which the robot brakes in one command
 
 bool plausible(const Velocity& v) {
@@ -143,7 +141,7 @@ bool Navigator::Implementation::watch_commands(const Velocity& velocity, double 
                      std::abs(velocity.turn) < share_followed * std::abs(command_.turn);
   const bool moves = driven > least_command || std::abs(velocity.turn) > least_command;
   ignored_for_ = (drives || turns) && !moves ? ignored_for_ + elapsed : 0;
-  return ignored_for_ > ignored_after + delay_.longest();
+  return ignored_for_ > options_.stuck_after / 5 + delay_.longest();
 }
 
 /// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that overlaps an
@@ -163,8 +161,9 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   // After the first step the robot can still stop: speed and yaw rate fall by their own limits.
   Velocity v = model_->command();
   maps::Pose at = plan.front();
-  const double step = std::max(options_.time_step, braking_time(v, options_.base) / longest_stop);
-  for (int i = 0; i < longest_stop && (v.forward != 0 || v.left != 0 || v.turn != 0); ++i) {
+  const double step =
+      std::max(options_.time_step, braking_time(v, options_.base) / static_cast<double>(plan.size()));
+  for (std::size_t i = 0; i < 2 * plan.size() && (v.forward != 0 || v.left != 0 || v.turn != 0); ++i) {
     const double yaw = at.yaw + 0.5 * step * v.turn, c = std::cos(yaw), s = std::sin(yaw);
     const maps::Pose next{at.x + step * (c * v.forward - s * v.left),
                           at.y + step * (s * v.forward + c * v.left), at.yaw + step * v.turn};
@@ -235,7 +234,15 @@ NavigationResult Navigator::Implementation::plan(const maps::Pose& pose, const V
     collides = plan_collides(costmap, velocity);
   }
   if (collides) {
-    result = stand(NavigationStatus::braking, velocity, elapsed);
+    // A measurement that is too fast does not put off braking that was asked for.
+    const Velocity& asked = delay_.decided();
+    const auto slower = [](double v, double limit) {
+      return v * limit > 0 && std::abs(limit) < std::abs(v) ? limit : v;
+    };
+    result = stand(NavigationStatus::braking,
+                   {slower(velocity.forward, asked.forward), slower(velocity.left, asked.left),
+                    slower(velocity.turn, asked.turn)},
+                   elapsed);
   } else {
     result.command = model_->command();
     result.status = way_.is_detour() ? NavigationStatus::detour : NavigationStatus::following;

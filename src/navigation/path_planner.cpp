@@ -5,8 +5,7 @@
 namespace slalom::navigation {
 namespace {
 
-constexpr double nearby = 1.2;       // half widths beside the corridor, and around the start
-constexpr double kept_reach = 1.6;   // half widths
+constexpr double nearby = 1.2;  // half widths beside the corridor, around the start and a way that was kept
 constexpr float other_price = 1.3F;  // times as much away from the path that was kept
 
 }  // namespace
@@ -30,63 +29,59 @@ bool PathPlanner::has_room(const Costmap& costmap, const maps::Point& point) con
 }
 
 bool PathPlanner::begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept,
-                        std::span<const maps::ClosedDisc> closed) noexcept {
+                        std::span<const maps::ClosedDisc> closed, const maps::Point* towards) noexcept {
   geometry_ = costmap.geometry();
   grid_.set_corner(
       {geometry_.center_x - 0.5 * geometry_.length_x(), geometry_.center_y - 0.5 * geometry_.length_y()});
   std::fill(marks_.begin(), marks_.end(), Mark::none);
   for (const maps::Pose& pose : kept)
-    grid_.visit_around({pose.x, pose.y}, kept_reach * half_width_,
+    grid_.visit_around({pose.x, pose.y}, nearby * half_width_,
                        [&](std::size_t cell) { marks_[cell] = kept_way; });
   for (const maps::ClosedDisc& disc : closed)
     grid_.visit_around(disc.middle, disc.radius, [&](std::size_t cell) { marks_[cell] = closed_place; });
   elsewhere_ = kept.empty() ? 1 : other_price;
-  start_ = start;
-  priced_ = 0;
-  is_searching_ = grid_.cell_at(start) >= 0;
-  return is_searching_;
+  const int cell = grid_.cell_at(start);
+  is_searching_ = cell >= 0;
+  if (!is_searching_) return false;
+  std::ranges::fill(grid_.prices(), maps::GridSearch::unpriced);
+  // Cells at the start are open. From within an obstacle, as in a zone that was switched on, they reach as
+  // far as the nearest free place.
+  double reach = nearby * half_width_;
+  for (bool found = false; !found && reach < geometry_.length_x() + geometry_.length_y();
+       reach *= found ? 1 : 1.5)
+    grid_.visit_around(start, reach, [&](std::size_t here) {
+      if (grid_.prices()[here] < 0) price(costmap, static_cast<int>(here));
+      found = found || grid_.prices()[here] > 0;
+    });
+  grid_.open_around(start, reach);
+  towards ? grid_.begin(cell, *towards) : grid_.begin(cell);
+  return true;
 }
 
 bool PathPlanner::advance(const Costmap& costmap, int cells) noexcept {
-  if (priced_ < grid_.size()) {
-    const int end = priced_ + std::min(cells, grid_.size() - priced_);
-    price(costmap, priced_, end);
-    cells -= end - priced_;
-    priced_ = end;
-    if (priced_ < grid_.size()) return false;
-    open_start();
-    grid_.begin(grid_.cell_at(start_));
-  }
-  is_searching_ = !grid_.advance(cells);
+  is_searching_ = !grid_.advance(cells, [&](int cell) { price(costmap, cell); });
   return !is_searching_;
 }
 
-/// Sets the prices of the cells from `first` to `end`.
-void PathPlanner::price(const Costmap& costmap, int first, int end) noexcept {
+/// Sets the prices of a cell and of those around it that have none, which is faster than one by one.
+void PathPlanner::price(const Costmap& costmap, int cell) noexcept {
+  constexpr int edge = 8;  // cells
   // One cell more than `has_room` asks for, since corners are rounded.
   const double needed = half_width_ + geometry_.resolution;
   const GridView<1> own = costmap.prices();
   const std::span<float> prices = grid_.prices();
-  for (int cell = first; cell < end; ++cell) {
-    const auto index = static_cast<std::size_t>(cell);
-    const maps::Point at = grid_.centre_of(cell);
-    float& price = prices[index];
-    price = maps::GridSearch::price_of(costmap.distance(at.x, at.y) - needed, nearby * half_width_);
-    if (marks_[index] == closed_place) price = 0;
-    if (!(price > 0)) continue;
-    price += look_up(own, static_cast<float>(at.x), static_cast<float>(at.y));
-    if (marks_[index] == none) price *= elsewhere_;
-  }
-}
-
-/// Opens the cells at the start. From within an obstacle, as in a zone that was switched on, they reach as
-/// far as the nearest free place.
-void PathPlanner::open_start() noexcept {
-  double reach = nearby * half_width_;
-  for (bool found = false; !found && reach < geometry_.length_x() + geometry_.length_y();
-       reach *= found ? 1 : 1.5)
-    grid_.visit_around(start_, reach, [&](std::size_t cell) { found = found || grid_.prices()[cell] > 0; });
-  grid_.open_around(start_, reach);
+  const int columns = geometry_.rows, column = cell % columns / edge * edge,
+            row = cell / columns / edge * edge;
+  for (int y = row; y < std::min(row + edge, geometry_.columns); ++y)
+    for (int x = column; x < std::min(column + edge, columns); ++x) {
+      const auto index = static_cast<std::size_t>(y * columns + x);
+      if (prices[index] >= 0) continue;
+      const maps::Point at = grid_.centre_of(y * columns + x);
+      float price = maps::GridSearch::price_of(costmap.distance(at.x, at.y) - needed, nearby * half_width_);
+      if (marks_[index] == closed_place) price = 0;
+      if (price > 0) price += look_up(own, static_cast<float>(at.x), static_cast<float>(at.y));
+      prices[index] = marks_[index] == none ? price * elsewhere_ : price;
+    }
 }
 
 double PathPlanner::cost_to(const maps::Point& point) const noexcept {
@@ -128,7 +123,6 @@ std::span<const maps::Point> PathPlanner::path_to(const maps::Point& point) noex
 
 std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footprint, const maps::Pose& start,
                                   const maps::Pose& goal) {
-  constexpr double straight = 4 * PathPlanner::spacing;  // m before the goal
   const maps::GridGeometry& geometry = costmap.geometry();
   const double cells =
       static_cast<double>(geometry.rows) * geometry.columns;  // a way enters each once at most
@@ -142,7 +136,7 @@ std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footp
   // The last points are those of cells: straight to the goal, the path has no kink there.
   std::size_t kept = path.size();
   const auto from_goal = [&](std::size_t i) { return std::hypot(path[i].x - goal.x, path[i].y - goal.y); };
-  while (kept > 1 && from_goal(kept - 1) < straight) --kept;
+  while (kept > 1 && from_goal(kept - 1) < PathPlanner::joint) --kept;
   for (std::size_t i = kept; i < path.size(); ++i) {
     const double share = static_cast<double>(i - kept + 1) / static_cast<double>(path.size() - kept + 1);
     path[i] = {std::lerp(path[kept - 1].x, goal.x, share), std::lerp(path[kept - 1].y, goal.y, share), 0};

@@ -7,14 +7,6 @@ namespace slalom::navigation::detail {
 namespace {
 
 constexpr double longest_path = 2.1e5;  // steps of a path, which an update takes anew where it is blocked
-constexpr double search_period = 0.1;   // s between searches while there is no way
-constexpr int cells_of_update = 60000;  // cells that an update searches; the next goes on
-constexpr double least_period = 1e-3;   // s
-constexpr double progress_turn = 0.3;   // m of progress that a turn by 1 rad counts as
-constexpr double around_joint =
-    4 * PathPlanner::spacing;           // m behind the end of a detour, where the path may have a corner
-constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
-constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
 
 /// A robot without progress tries another way, five times. Then it stands for a while.
 maps::RecoveryLengths recovery_lengths(const NavigatorOptions& options, const Footprint& footprint) {
@@ -38,6 +30,27 @@ bool ends_alike(const maps::PathCurve& path, const maps::PathCurve& longer, doub
     if (distance(position(here), position(there)) > close || std::cos(here.yaw - there.yaw) < 0) return false;
   }
   return true;
+}
+
+/// The pose to which the robot drives first: one on the way with another yaw than the first one at its place,
+/// which is asked for, or else the goal.
+std::size_t next_stop(std::span<const maps::Pose> path, const NavigatorOptions& options) {
+  for (std::size_t i = 1, last; options.base.max_turn > 0 && i < path.size(); i = last + 1) {
+    last = i;
+    while (last + 1 < path.size() && distance(position(path[i]), position(path[last + 1])) <= least_way)
+      ++last;
+    if (std::abs(maps::wrap_angle(path[last].yaw - path[i].yaw)) > options.goal_angle) return last;
+  }
+  return path.size() - 1;
+}
+
+/// The yaws (rad) that are asked for on the way.
+std::vector<double> stops_of(std::span<const maps::Pose> path, const NavigatorOptions& options) {
+  std::vector<double> stops;
+  for (std::size_t at = 0; !path.empty() && (at = next_stop(path, options)) + 1 < path.size();
+       path = path.subspan(at))
+    stops.push_back(path[at].yaw);
+  return stops;
 }
 
 }  // namespace
@@ -67,29 +80,41 @@ void Way::advance(const maps::Pose& robot, const Velocity& velocity, const Costm
     const double free = approach_.free_turn(robot, guide_.leg().yaw, costmap, velocity.turn);
     return free != 0 ? free : maps::wrap_angle(guide_.leg().yaw - robot.yaw);
   };
-  if (!waiting_.empty() && !(waits_ && approach_.manoeuvres(remaining()))) {
-    set_yaws(waiting_, options_.base);
-    follow(waiting_);
-    waiting_.clear();
-    detour_left_ = infinity;
-  }
+  if (waiting_.empty() && !later_.empty() && stops_at(robot)) waiting_.swap(later_);
+  if (!waiting_.empty() && !(waits_ && approach_.manoeuvres(guide_.remaining()))) take_up();
   if (std::exchange(is_new_, false)) {
     approach_.place(guide_, robot, costmap, poses_);
     legs_.begin(robot, turn());
   }
   const double speed = std::hypot(velocity.forward, velocity.left);
   position_ = position(robot);
-  speed_ = speed + progress_turn * std::abs(velocity.turn);
+  speed_ = speed + footprint_.circumscribed_radius() * std::abs(velocity.turn);
   legs_.update(guide_, robot, {speed, velocity.turn}, elapsed, turn);
   make_room_for_turn(costmap);
+}
+
+/// Follows the new path up to its next stop.
+void Way::take_up() noexcept {
+  const auto stop = waiting_.begin() + static_cast<std::ptrdiff_t>(next_stop(waiting_, options_));
+  later_.assign(stop, waiting_.end());
+  waiting_.erase(stop + 1, waiting_.end());
+  later_length_ = 0;
+  for (std::size_t i = 1; i < later_.size(); ++i)
+    later_length_ += distance(position(later_[i]), position(later_[i - 1]));
+  if (later_.size() == 1) later_.clear();
+  set_yaws(waiting_, options_.base);
+  follow(waiting_);
+  waiting_.clear();
+  detour_left_ = infinity;
 }
 
 /// Where there is no room for the next turn on the spot, the robot drives past the corner without it, and
 /// into the goal's heading by a manoeuvre, as an Ackermann base always does.
 void Way::make_room_for_turn(const Costmap& costmap) noexcept {
   if (options_.base.kind == BaseKind::ackermann) {
-    if (checked_ == no_stop && remaining() < approach_.longest_change() + guide_.reach() &&
-        !approach_.manoeuvres(remaining())) {
+    const double left = guide_.remaining();
+    if (checked_ == no_stop && left < approach_.longest_change() + guide_.reach() &&
+        !approach_.manoeuvres(left)) {
       checked_ = guide_.nearest();
       const double error = maps::wrap_angle(guide_.goal().yaw - guide_.legs().back().yaw);
       if (std::abs(error) > 0.5 * options_.goal_angle) approach_.face_goal(guide_, costmap, poses_);
@@ -119,12 +144,14 @@ void Way::set_path(std::span<const maps::Pose> path) {
   maps::PathCurve given;
   given.reserve(most);
   given.set(path, false);
-  if (is_followed(given)) return;
-  waits_ = !guide_.empty() && !is_stuck() && !is_done_ && approach_.manoeuvres(remaining()) &&
+  std::vector<double> stops = stops_of(path, options_);
+  if (is_followed(given, stops)) return;
+  waits_ = !guide_.empty() && !is_stuck() && !is_done_ && approach_.manoeuvres(guide_.remaining()) &&
            is_goal(given.goal());
+  const bool goes_on = !guide_.empty() && distance(position(given_.goal()), position(path.back())) <=
+                                              footprint_.circumscribed_radius();
   given_ = std::move(given);
-  const bool goes_on =
-      !guide_.empty() && distance(position(guide_.goal()), position(path.back())) <= min_rejoin;
+  given_stops_ = std::move(stops);
   if (!goes_on) {
     planner_.cancel();
     chosen_.clear();
@@ -133,7 +160,7 @@ void Way::set_path(std::span<const maps::Pose> path) {
   }
   if (!goes_on || is_stuck() || is_done_) recovery_.reset();
   guide_.reserve(most);
-  for (auto* const poses : {&poses_, &chosen_, &waiting_}) poses->reserve(most);
+  for (auto* const poses : {&poses_, &chosen_, &waiting_, &later_}) poses->reserve(most);
   waiting_.assign(path.begin(), path.end());
   is_done_ = false;
 }
@@ -146,12 +173,16 @@ bool Way::is_goal(const maps::Pose& pose) const noexcept {
 
 /// Whether a path changes nothing: it ends like the one that was given, or the robot is at its end, where no
 /// way is left to decide about.
-bool Way::is_followed(const maps::PathCurve& path) const noexcept {
+bool Way::is_followed(const maps::PathCurve& path, std::span<const double> stops) const {
+  const std::size_t to_come = later_.empty() ? 0 : 1 + stops_of(later_, options_).size();
+  if (stops.size() < to_come || stops.size() > given_stops_.size() ||
+      !std::equal(stops.rbegin(), stops.rend(), given_stops_.rbegin()))
+    return false;
   if (guide_.empty() || is_stuck() || (is_done_ && speed_ < recovery_.lengths().standing) ||
       !is_goal(path.goal()))
     return false;
   const double near = 2 * options_.goal_distance;
-  return (guide_.remaining() <= near && distance(position_, position(guide_.goal())) <= near) ||
+  return (remaining() <= near && distance(position_, position(guide_.goal())) <= near) ||
          ends_alike(path, given_, std::max(0.5 * options_.goal_distance, PathGuide::spacing));
 }
 
@@ -159,6 +190,8 @@ void Way::clear() noexcept {
   guide_.clear();
   given_.clear();
   waiting_.clear();
+  later_.clear();
+  later_length_ = 0;
   chosen_.clear();
   closed_.forget_dead_ends();
   planner_.cancel();
@@ -176,7 +209,8 @@ void Way::follow(std::span<const maps::Pose> path, double smooth) noexcept {
   checked_ = stop_ = no_stop;
 }
 
-bool Way::ends_at(const maps::Pose& pose) const noexcept {
+/// Whether a robot is at the end of the present part of the path, within the tolerances.
+bool Way::stops_at(const maps::Pose& pose) const noexcept {
   const maps::Pose& goal = guide_.goal();
   return guide_.on_last_leg() && guide_.remaining() <= 2 * options_.goal_distance &&
          distance(position(pose), position(goal)) <= options_.goal_distance &&
@@ -184,127 +218,9 @@ bool Way::ends_at(const maps::Pose& pose) const noexcept {
           std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle);
 }
 
-/// The first closed point of a part of the path (m); the number of points if there is none.
-std::size_t Way::first_closed(const Costmap& costmap, std::size_t first, double length) const noexcept {
-  const std::size_t count = guide_.points().size();
-  const std::size_t end = std::min(count, first + guide_.points_for(length) + 1);
-  for (std::size_t i = first; i < end; ++i)
-    if (is_closed(costmap, i)) return i;
-  return count;
-}
-
-/// Whether a point is closed: the body has no room there, in a manoeuvre at just this yaw but for a rim that
-/// the search did not see, or it is in a closed place.
-bool Way::is_closed(const Costmap& costmap, std::size_t point) const noexcept {
-  const maps::Pose& pose = guide_.points()[point];
-  const maps::Point place = position(pose);
-  if (closed_.contain(place)) return true;
-  const double left = guide_.step() * static_cast<double>(guide_.points().size() - 1 - point);
-  return planner_.knows(costmap, place) &&
-         (approach_.manoeuvres(left) ? costmap.collides(inner_, pose) : !planner_.has_room(costmap, place));
-}
-
-/// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
-/// of the path. To points off the costmap it goes straight on from the edge. Returns false and keeps the path
-/// if there is none that costs less than `most` (m), or while a search over a large costmap goes on.
-bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept {
-  if (!planner_.is_searching() && !planner_.begin(costmap, position(pose), chosen_, closed_.all()))
-    return false;
-  if (!planner_.advance(costmap, cells_of_update)) return false;
-  const std::span<const maps::Pose> path = guide_.points();
-  double least = most;
-  std::size_t best = path.size();
-  maps::Point end;
-  const std::size_t unseen_stride = guide_.points_for(min_rejoin), most_unseen = 6 * unseen_stride;
-  std::size_t unseen = 0;
-  for (std::size_t i = closed + 1; i < path.size(); ++i) {
-    const double left = guide_.step() * (path.size() - 1 - i);
-    const maps::Point here = position(path[i]);
-    if (left >= least || first_closed(costmap, i, min_rejoin) < path.size()) continue;
-    const bool is_seen = planner_.knows(costmap, here);
-    if (!is_seen && (++unseen > most_unseen || unseen % unseen_stride != 1)) continue;
-    const auto way = is_seen ? PathPlanner::Way{here, planner_.cost_to(here)}
-                             : planner_.way_off(costmap, here, least - left);
-    // The path is followed in order: what is left out, beside the place that is closed, counts twice.
-    const double left_out = std::max(guide_.step() * (i - closed) - 0.5 * options_.look_ahead, 0.0);
-    if (way.cost + left + 2 * left_out >= least) continue;
-    least = way.cost + left + 2 * left_out;
-    best = i;
-    end = way.end;
-  }
-  if (best == path.size()) return false;
-  const std::span<const maps::Point> way = planner_.path_to(end);
-  if (way.empty()) return false;
-  poses_.clear();
-  for (const maps::Point& point : way) poses_.push_back({point.x, point.y, 0});
-  const std::size_t joint = poses_.size();
-  poses_.insert(poses_.end(), path.begin() + best, path.end());
-  double length = 0;
-  for (std::size_t i = 0; i < joint && i + 1 < poses_.size(); ++i) {
-    poses_[i].yaw = std::atan2(poses_[i + 1].y - poses_[i].y, poses_[i + 1].x - poses_[i].x);
-    length += distance(position(poses_[i]), position(poses_[i + 1]));
-  }
-  poses_.back() = guide_.goal();
-  detour_left_ = guide_.step() * (path.size() - 1 - best);
-  follow(poses_, length + around_joint);
-  chosen_.assign(guide_.points().begin(), guide_.points().end());
-  return true;
-}
-
-/// Takes a way past somebody on the path, as around an obstacle at the place where they meet. If there is
-/// none, the plans alone avoid them.
-void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
-                        double elapsed) noexcept {
-  since_meeting_ += elapsed;
-  if (!planner_.is_searching() && since_meeting_ < search_period) return;
-  const auto place = others.meeting(guide_.points().subspan(guide_.nearest()), guide_.step());
-  if (!place) return planner_.cancel();
-  since_meeting_ = 0;
-  closed_.begin_meeting(*place);
-  const std::size_t closed = first_closed(costmap, guide_.nearest(), options_.look_ahead);
-  if (closed < guide_.points().size()) find_way(pose, costmap, closed, guide_.remaining() + longest_way_past);
-  closed_.end_meeting();
-}
-
-bool Way::keep(const maps::Pose& pose, const Costmap& costmap, const Others& others,
-               double elapsed) noexcept {
-  watch_progress(pose, costmap, others, elapsed);
-  stop_ = no_stop;
-  if (!options_.find_detours) return true;
-  const std::size_t closed = first_closed(costmap, guide_.nearest(), options_.look_ahead);
-  if (closed == guide_.points().size()) {
-    without_way_ = 0;
-    avoid_meeting(pose, costmap, others, elapsed);
-    return true;
-  }
-  since_search_ += elapsed;
-  bool found = false;
-  if (planner_.is_searching() || without_way_ == 0 || since_search_ >= search_period) {
-    if (!planner_.is_searching()) since_search_ = 0;
-    found = find_way(pose, costmap, closed, infinity);
-    if (!planner_.is_searching()) since_search_ = -since_search_;  // rests for as long as the search took
-  }
-  if (found || waits_at_goal(costmap, closed)) {
-    without_way_ = 0;
-    return true;
-  }
-  if (!planner_.is_searching() || without_way_ > 0) without_way_ += std::max(elapsed, least_period);
-  return without_way_ < options_.patience;
-}
-
-/// Whether the goal is closed; then the robot drives up to it.
-bool Way::waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept {
-  const std::size_t last = guide_.points().size() - 1;
-  if (!is_closed(costmap, last) || closed_.contain(position(guide_.points()[last]))) return false;
-  const std::size_t room =
-      guide_.points_for(footprint_.circumscribed_radius() - footprint_.half_width() + options_.goal_room);
-  stop_ = closed > room ? closed - room : 0;
-  return true;
-}
-
 void Way::watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
                          double elapsed) noexcept {
-  const double left = guide_.remaining() + progress_turn * std::abs(legs_.turn_left());
+  const double left = guide_.remaining() + footprint_.circumscribed_radius() * std::abs(legs_.turn_left());
   const std::size_t count = guide_.points().size();
   if (std::exchange(count_, count) != count) other_ += left - left_;  // another path: the progress goes on
   left_ = left;

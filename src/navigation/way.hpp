@@ -29,7 +29,8 @@ class Way {
 
   /// Whether the robot is at the end of the path, within the tolerances. Then the same path may be set again.
   bool has_ended(const maps::Pose& robot) noexcept { return is_done_ = ends_at(robot); }
-  bool ends_at(const maps::Pose& robot) const noexcept;  ///< whether a robot there would be
+  /// Whether a robot there would be.
+  bool ends_at(const maps::Pose& robot) const noexcept { return later_.empty() && stops_at(robot); }
   /// Whether the robot has made no progress for so long that it stands for a while before it tries again.
   bool is_stuck() const noexcept { return recovery_.state() == maps::DriveState::stuck; }
   /// Whether it has stood for so long that it tries another way, or would if it did not wait for somebody.
@@ -40,19 +41,21 @@ class Way {
     return stop_ != no_stop && guide_.nearest() + guide_.points_for(options_.goal_distance) >= stop_;
   }
 
-  double remaining() const noexcept { return guide_.remaining(); }                 ///< m
-  std::span<const maps::Pose> points() const noexcept { return guide_.points(); }  ///< the path
+  double remaining() const noexcept { return guide_.remaining() + later_length_; }  ///< m
+  std::span<const maps::Pose> points() const noexcept { return guide_.points(); }   ///< the path
   /// Sets the part of the path around the robot in `maps`.
   void write(const maps::Pose& robot, NavigationMaps& maps) noexcept {
     guide_.write(robot, legs_.turn_left(), stop_, maps);
-    maps.manoeuvres = approach_.manoeuvres(remaining());
+    maps.manoeuvres = approach_.manoeuvres(guide_.remaining());
   }
 
  private:
   std::size_t first_closed(const Costmap& costmap, std::size_t first, double length) const noexcept;
   bool is_closed(const Costmap& costmap, std::size_t point) const noexcept;
+  bool stops_at(const maps::Pose& robot) const noexcept;
+  void take_up() noexcept;
   void make_room_for_turn(const Costmap& costmap) noexcept;
-  bool is_followed(const maps::PathCurve& path) const noexcept;
+  bool is_followed(const maps::PathCurve& path, std::span<const double> stops) const;
   bool is_goal(const maps::Pose& pose) const noexcept;
   void follow(std::span<const maps::Pose> path, double smooth = 0) noexcept;
   bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
@@ -73,6 +76,9 @@ class Way {
   maps::LegFollower legs_;
   maps::Recovery recovery_;
   maps::PathCurve given_;               ///< the path that was set
+  std::vector<double> given_stops_;     ///< rad, the yaws that are asked for on its way
+  ReservedVector<maps::Pose> later_;    ///< the path from the next of these on; empty if there is none
+  double later_length_ = 0;             ///< m
   ReservedVector<maps::Pose> poses_;    ///< a path that is being made
   ReservedVector<maps::Pose> waiting_;  ///< a new path, which the next update takes up, or
   bool waits_ = false;                  ///< only at the end of the present manoeuvre, to the same goal

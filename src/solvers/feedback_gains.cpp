@@ -148,8 +148,7 @@ void FeedbackGains::begin_step(int k) noexcept {
   w.gradient.tail(m) += b.transpose().lazyProduct(w.value_gradient);
 }
 
-/// Lists the inputs that may move: all but those at a bound beyond which the cost would fall. Returns their
-/// number.
+/// Lists inputs that may move: but those at a bound beyond which costs fall. Returns their number.
 int FeedbackGains::choose_free_inputs(int k) noexcept {
   const std::span<const double> u = part(plan_inputs_, k, count(inputs_));
   int free = 0;

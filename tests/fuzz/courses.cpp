@@ -52,8 +52,7 @@ const Target image_target(
       return true;
     });
 
-/// The first second of a lap on a course, and what its commands promise. Returns whether a car can drive
-/// there.
+/// The first second of a lap on a course, and its commands' promises. Returns whether a car can drive there.
 bool drive(const std::filesystem::path& folder) {
   static const vehicle::Configuration configuration = [] {
     auto made = vehicle::load_configuration(SLALOM_CONFIGS "/default.yaml");

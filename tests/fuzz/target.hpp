@@ -50,8 +50,7 @@ struct Target {
 /// All targets.
 std::vector<const Target*>& targets();
 
-/// `count` texts of `size` random bytes, the same at every call; `first` in place of the first if it is
-/// given.
+/// `count` texts of `size` random bytes, the same at every call; `first` in place of the first if given.
 Seeds random_bytes(int count, std::size_t size, std::string_view first = {});
 
 /// The folder of this process for files of targets.

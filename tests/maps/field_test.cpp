@@ -209,8 +209,7 @@ TEST(Field, RejectsWhatCannotBeAMap) {
   EXPECT_THROW(Field().relative_to(nan, 0), std::invalid_argument);
 }
 
-/// To the nearest edge of an obstacle cell, in cells; columns and rows outside the grid are obstacles if
-/// said.
+/// To the nearest edge of an obstacle cell, in cells; those outside the grid are obstacles if said.
 double distance_to_cells(const OccupancyGrid& grid, int column, int row, bool obstacles, bool outside) {
   double best = std::numeric_limits<double>::infinity();
   for (int r = -1; r <= grid.height; ++r) {

@@ -59,8 +59,7 @@ GridMap<Layers> load_grid_map(const std::vector<std::filesystem::path>& layer_fi
   return map;
 }
 
-/// The obstacle map `<id>_obstacle.csv` of golden data, in the robot's frame: 10 x 10 m, centre (3, 0);
-/// outside -1.
+/// The obstacle map `<id>_obstacle.csv` of golden data, robot's frame: 10 x 10 m, centre (3, 0); outside -1.
 inline GridMap<1> load_obstacle_map(const std::filesystem::path& folder, const std::string& id) {
   return load_grid_map<1>({folder / (id + "_obstacle.csv")}, 0.05, 3, 0, {-1});
 }

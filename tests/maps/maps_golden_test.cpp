@@ -11,8 +11,7 @@ namespace {
 
 using slalom::testing::read_csv_numbers;
 
-/// Columns opt_x, opt_y, ref_v; the yaw is the direction to the next row, at the last row that of the row
-/// before.
+/// Columns opt_x, opt_y, ref_v; the yaw is the direction to the next row, at the last one as before.
 std::vector<ReferencePoint> load_path(const std::filesystem::path& file) {
   std::vector<ReferencePoint> path;
   for (const auto& row : read_csv_numbers(file, true)) path.push_back({row.at(0), row.at(1), 0, row.at(11)});
@@ -68,8 +67,7 @@ TEST(GoldenMaps, ReferenceField) {
             << " samples compared; largest error " << worst << '\n';
 }
 
-/// The numbers behind a key of maps.json, in the file's order; the file is flat enough to be searched as
-/// text.
+/// The numbers behind a key of maps.json, in the file's order; it is flat enough to be searched as text.
 std::vector<std::pair<std::string, Point>> robot_positions(const std::filesystem::path& file) {
   std::ifstream stream(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -144,8 +144,8 @@ TEST(Costmap, RolloutsMissNoCollisionDeeperThanHalfACell) {
   int collisions = 0;
   for (int i = 0; i < 20000; ++i) {
     const Pose pose{-1.5 + 4 * random.uniform(), 10.5 + 3 * random.uniform(), 6.28 * random.uniform()};
-    const auto contact =
-        check.check<double>(costmap.distances(), pose.x, pose.y, std::sin(pose.yaw), std::cos(pose.yaw));
+    const auto contact = check.check<double>(costmap.distances(), pose.x, pose.y, std::sin(pose.yaw),
+                                             std::cos(pose.yaw), true);
     collisions += contact.collided;
     EXPECT_TRUE(!contact.collided || costmap.collides(body, pose)) << pose.x << ", " << pose.y;
     EXPECT_TRUE(contact.collided || !costmap.collides(core, pose)) << pose.x << ", " << pose.y;

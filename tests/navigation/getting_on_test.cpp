@@ -152,6 +152,27 @@ TEST(Replanning, ThePathThatIsFollowedChangesNothingBitForBit) {
   }
 }
 
+TEST(Replanning, AHeadingThatIsAskedForOnTheWayIsTakenUnlessItsPlaceIsClosed) {
+  const auto path = [](double yaw) {
+    return std::vector<maps::Pose>{{2, 3, 0}, {5, 3, 0}, {5, 3, yaw}, {8, 3, 0}};
+  };
+  for (const BaseKind kind : {BaseKind::differential, BaseKind::omnidirectional, BaseKind::ackermann})
+    for (const bool closed : {false, true}) {
+      Drive drive(kind);
+      drive.restart_fast();
+      drive.start({2, 3, 0}, path(1.5));
+      drive.navigator->set_path(path(-1.5));  // another heading is another path
+      if (closed) drive.block(4.9, 2.9, 5.1, 3.1);
+      double least = 1;
+      for (int i = 0; i < 1000 && !is_there(drive, drive.step()); ++i)
+        if (std::hypot(drive.pose.x - 5, drive.pose.y - 3) < 0.11)
+          least = std::min(least, std::abs(maps::wrap_angle(drive.pose.yaw + 1.5)));
+      EXPECT_EQ(least < 0.16, !closed) << enum_names(kind)[static_cast<int>(kind)] << ", " << least;
+      EXPECT_LT(drive.goal_distance(), 0.1) << enum_names(kind)[static_cast<int>(kind)];
+      EXPECT_FALSE(drive.collided);
+    }
+}
+
 TEST(Replanning, ARobotThatTurnsAtItsGoalIsThereAsSoonWithNewPaths) {
   const maps::Pose goal{6, 3, pi};
   double alone = 0;

@@ -5,8 +5,7 @@
 
 namespace slalom::testing {
 
-/// `svg_mppi` as a closed form for inputs of order one: one batch of white noise, fixed temperature and
-/// variances.
+/// `svg_mppi` as a closed form for inputs of order one: white noise in one batch, nothing adapts.
 inline SvgMppiOptions closed_form(double temperature) {
   SvgMppiOptions o{.batches = 1};
   o.temperature = o.guides.gradient_temperature = temperature;

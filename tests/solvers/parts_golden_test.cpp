@@ -1,6 +1,5 @@
 /// The parts of the solvers against those of the published program; svg_trace_golden_test.cpp has those of
-/// SVG-MPPI.
-/// Whole solves of the published SVG-MPPI, stage by stage, each stage from what the trace says went into it.
+/// SVG-MPPI. Whole solves of the published SVG-MPPI, each stage from what the trace says went into it.
 #include "solvers/golden_json.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/guides.hpp"
@@ -89,8 +88,7 @@ TEST(SolverGolden, SvMpcPhi) {
     detail::kernels::stein_directions(rows_of(pair), rows_of(zeros), 2, h, all_of(pair), rows_of(out));
     auto repulsion = sequence(out, 1);  // half of grad_{x0} k(x0, x1)
     for (float& v : repulsion) v *= 2;
-    // The repulsion is a summand of phi and as exact as that: particles may differ by less than float32
-    // tells.
+    // The repulsion is a summand of phi as exact as that: particles may differ by less than float32 tells.
     double scale = 0;
     for (const Json& direction : json["phi"])
       for (const double entry : numbers<double>(direction)) scale = std::max(scale, std::abs(entry));
@@ -188,8 +186,7 @@ TEST(SolverGolden, RejectionProbability) {
     std::vector<float> logarithms(samples.stride());
     detail::kernels::published_rejection(rows_of(samples), densities.rows(), all_of(samples),
                                          logarithms.data());
-    // The program divides by min(sum, 1e-10); only ratios matter, so both are compared as ratios to the
-    // whole.
+    // The program divides by min(sum, 1e-10); only ratios matter, so both are compared as shares.
     std::vector<double> raw, expected = numbers<double>(json["prob_raw"]);
     for (std::size_t k = 0; k < expected.size(); ++k)
       raw.push_back(std::exp(-static_cast<double>(logarithms[k])));

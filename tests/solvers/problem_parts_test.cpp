@@ -1,5 +1,4 @@
-// Controllers of problems that state bounds, limits of rates, or noise of their own; trajectories by cost
-// term.
+// Controllers of problems with bounds, limits of rates, or noise of their own; trajectories by cost term.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -8,8 +8,7 @@
 
 namespace slalom::testing {
 
-/// Sets an option of any method by its name, without a check of its range; false if the method has no such
-/// option.
+/// Sets an option of any method by its name, unchecked; false if the method has no such option.
 inline bool set_if_any(SolverOptions& options, std::string_view name, const PerInput& value) {
   bool found = false;
   visit_options(options, [&](auto& field, const Declaration& declaration) {

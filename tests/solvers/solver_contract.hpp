@@ -51,8 +51,7 @@ inline SolverOptions published_options(const char* method) {
   return options;
 }
 
-/// Every registered method with its defaults, those of the library with the published options, and variants
-/// of them.
+/// Every registered method with its defaults, the library's with the published options, and variants of them.
 inline std::vector<OptionSet> option_sets() {
   std::vector<OptionSet> sets;
   for (const char* name : solver_names()) sets.push_back({name, solver_options(name)});

@@ -27,8 +27,7 @@ void release(void* memory) {
 
 }  // namespace
 
-// Not inlined: where the compiler sees malloc and free at a call of new and delete, it warns that they do not
-// match.
+// Not inlined: where a compiler sees malloc and free at new and delete, it warns that they do not match.
 __attribute__((noinline)) void* operator new(std::size_t size) {
   count_call();
   void* const memory = std::malloc(size ? size : 1);

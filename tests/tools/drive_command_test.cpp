@@ -1,5 +1,4 @@
-// `slalom drive`: results in JSON, exit status, repeatability, interruption, and every bad input named in
-// words.
+// `slalom drive`: results in JSON, exit status, repeatability, interruption, and bad inputs named in words.
 #include "slalom/evaluation/hardware.hpp"
 #include "tools/program_test.hpp"
 #include "view/recording/mcap_reader.hpp"

@@ -123,8 +123,7 @@ class Bench {
     std::fprintf(words_, "; %.0f GFLOP/s, %.0f %% of this core's %.0f", rate, 100 * rate / peak, peak);
   }
 
-  /// Measures rollouts of each vehicle model over plans as long as those of the configuration `default`,
-  /// alternately.
+  /// Measures rollouts of each vehicle model over plans as long as of `default`, alternately.
   void vehicle_models() {
     const auto times =
         workload::measure_rollouts(workload_, models_to_compare(), 2000, 20, target_, arguments_.seconds)

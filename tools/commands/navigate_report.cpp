@@ -134,8 +134,7 @@ std::vector<maps::Point> circle(const maps::Point& middle, double radius) {
   return points;
 }
 
-/// Draws the ways of the people of a drive, and robot and people at one moment: when somebody is nearest to
-/// it.
+/// Draws the ways of the people of a drive, and robot and people at one moment: with somebody nearest to it.
 void draw_people(MapPicture& picture, const RoomDrive& drive, const RoomScenario& scenario,
                  const Colour& colour) {
   std::size_t moment = 0;

@@ -66,8 +66,7 @@ struct CellValues {
   }
 };
 
-/// Values that are 1 on the cells of one kind and 0 elsewhere, blurred a little: its contours lack the cells'
-/// steps.
+/// Values of 1 on the cells of a kind and 0 elsewhere, blurred a little: contours lack the cells' steps.
 CellValues smoothed_cells(const maps::OccupancyGrid& map, maps::Occupancy kind) {
   static constexpr std::array<double, 3> weights = {0.40, 0.24, 0.06};  // a Gaussian of about one cell
   CellValues smoothed{map.width, map.height, {}}, across = smoothed;
@@ -89,8 +88,7 @@ CellValues smoothed_cells(const maps::OccupancyGrid& map, maps::Occupancy kind) 
   return smoothed;
 }
 
-/// The depth of a pixel inside a contour at `level`, 0..1, over about one pixel; `cell` is a cell's size in
-/// pixels.
+/// The depth of a pixel inside a contour at `level`, 0..1, over about a pixel; `cell` is its size in pixels.
 double edge(double value, double level, double cell) {
   return std::clamp(0.5 + (value - level) * 2.5 * std::max(cell, 1.0), 0.0, 1.0);
 }

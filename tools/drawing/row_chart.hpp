@@ -31,8 +31,7 @@ struct Span {
   double value = 0, low = 0, high = 0;
 };
 
-/// The contents of a row of a panel: all values (a box), or one value with a span. Empty if there is no
-/// value.
+/// The contents of a row of a panel: all values (a box), or one value with a span. Empty without values.
 struct Marks {
   std::vector<double> values;
   std::optional<Span> span;

@@ -26,8 +26,7 @@ struct RacingMap {
 /// Loads `folder/NAME/NAME.yaml` and `NAME_centerline.csv`, or both from `folder` itself. Throws IoError.
 RacingMap load_racing_map(const std::filesystem::path& folder, const std::string& name);
 
-/// Returns the command for the next control period. A time that is not later than the last one means a new
-/// lap.
+/// The command for the next control period. A time that is not later than the last one means a new lap.
 using RacingDriver = std::function<Command(const sim::RacingObservation& seen)>;
 
 /// The driver by which the world is compared with the published one (sim::FollowTheGap).

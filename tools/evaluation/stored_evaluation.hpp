@@ -28,9 +28,8 @@ StoredEvaluation parse_evaluation(const std::string& settings, const std::filesy
 ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std::string& course);
 
 /// Drives the laps `part` ("EXPERIMENT:LAP EXPERIMENT:LAP ...", experiments by their index) of the evaluation
-/// whose settings.json is `settings`, and prints their rows as laps.csv has them. Throws IoError if another
-/// build or instruction set is to drive it, CommandLineError if there is no such part. False if it was
-/// interrupted.
+/// whose settings.json is `settings`, and prints rows as laps.csv has them. Throws IoError if another build
+/// or instruction set is to drive it, CommandLineError if there is no such part. False if it was interrupted.
 bool drive_part(const std::string& settings, const std::string& part);
 
 /// Restores the evaluation so that its laps can be repeated: course, configuration, all options. `course`

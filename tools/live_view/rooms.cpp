@@ -22,8 +22,7 @@ maps::Pose pose_of(std::span<const double> state) {
   return {state[0], state[1], state[2]};
 }
 
-/// A navigator in its room. Its state is that of the robot; the room, the people and the map of the scans are
-/// members.
+/// A navigator in its room. Its state is that of the robot; room, people and map of the scans are members.
 class RoomSubject final : public view::SolverSubject {
  public:
   RoomSubject(const RoomScenario& scenario, const std::string& method, std::uint64_t seed)

@@ -45,8 +45,7 @@ RaceStatistics race_statistics(const RaceResult& race, bool standing);
 /// The lap of the profile with the start of `lap`.
 const evaluation::RacingLap& profile_of(const RaceResult& race, const evaluation::RacingLap& lap);
 
-/// The lap that stands for a race: the best flying one, or else the best standing start. None without
-/// completed laps.
+/// The lap that stands for a race: the best flying one, or else standing start. None without completed laps.
 const evaluation::RacingLap* best_lap(const RaceResult& race);
 
 /// `length_m`, `friction_circle_mps2`, `profile` and `profile_from_rest`, `flying` and `standing`

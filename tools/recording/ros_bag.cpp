@@ -99,8 +99,7 @@ std::vector<T> in_order(std::vector<T> values) {
   return values;
 }
 
-/// The topic to use: the first whose name ends in one of `preferred`, else that with most messages, else
-/// null.
+/// The topic to use: the first whose name ends in one of `preferred`, else that of most messages, else null.
 template <class Topics>
 const typename Topics::value_type* chosen(const Topics& topics,
                                           std::initializer_list<std::string_view> preferred) {

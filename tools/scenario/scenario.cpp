@@ -29,8 +29,7 @@ Json value_json(const OptionValue& value) {
   return std::visit([](const auto& each) { return Json(each); }, value);
 }
 
-/// Lists the gaps in the course's files, and the places where its line and profile ask for more than the car
-/// can.
+/// Lists the gaps in the course's files, and the places where its line and profile ask too much of the car.
 std::vector<std::string> notes_on(const evaluation::Environment& environment,
                                   const vehicle::Configuration& configuration) {
   const vehicle::Course& course = environment.course;

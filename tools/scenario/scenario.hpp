@@ -23,8 +23,7 @@ std::filesystem::path program_folder();
 /// Help of --car.
 inline constexpr const char* car_help = "Car: f1tenth, passenger, or a configuration (name or file)";
 
-/// The car of a course: one of racing_car_names(), or that of a configuration. Throws CommandLineError,
-/// IoError.
+/// The car of a course: one of racing_car_names(), or a configuration's. Throws CommandLineError, IoError.
 vehicle::RacingCar find_racing_car(const std::string& name);
 
 /// The pose `x,y,yaw` (m, m, rad) of an option. Throws CommandLineError.

@@ -10,8 +10,7 @@
 namespace slalom::tools {
 
 /// A line in a terminal that shows how a lap, a race or an evaluation goes, about twenty times a second.
-/// Where the stream is no terminal, an evaluation prints a line for every tenth, laps and races print
-/// nothing.
+/// Where the stream is no terminal, evaluations print a line for every tenth, laps and races print nothing.
 class ProgressLine {
  public:
   explicit ProgressLine(std::FILE* stream);

@@ -31,8 +31,7 @@ class TextTable {
 std::string escaped(const std::string& text);
 /// "12.346"; "-" if it is not finite.
 std::string number_cell(double value, int digits = 3);
-/// "0.412 (0.398-0.427)", with an interval of 95 %; without it below fewest_laps, "-" for what is not a
-/// number.
+/// "0.412 (0.398-0.427)", with an interval of 95 %; none below fewest_laps, "-" for what is not a number.
 std::string mean_cell(double mean, const evaluation::Interval& interval, int laps, int digits = 3);
 /// "12.5 (10.1-15.3)", a rate and its interval in percent; "-" without one.
 std::string rate_cell(const std::optional<double>& rate, const std::optional<evaluation::Interval>& interval);

@@ -59,8 +59,7 @@ class FrameWriter {
     for (const double value : values) put_f32(value);
   }
   void put_pose(const maps::Pose& pose) { put({pose.x, pose.y, pose.yaw}); }
-  /// Writes the block with a map: runs of equal cells, the value in the upper 8 bits, the length in the
-  /// lower 24.
+  /// Writes the block with a map: runs of equal cells, values in the upper 8 bits, lengths in the lower 24.
   void put_grid(const maps::OccupancyGrid& grid);
 
   /// Begins a list of points with their origin and unit (m), of which 16 bits reach 32767 either way. Each

@@ -5,8 +5,7 @@
 
 namespace slalom::view {
 
-/// Returns the page with a drive inside: with `everything` all that a drive has, else half of the frames, in
-/// short.
+/// The page with a drive inside: with `everything` all that a drive has, else half of the frames, in short.
 std::string replay_page(const StoredDrive& drive, bool everything);
 
 /// Lets a session store its frames compressed, and send its drive as a recording or replay, which a thread

@@ -7,9 +7,8 @@
 #include <vector>
 
 /// A replay: the messages of a live drive in their order, in segments that are compressed one by one. A
-/// message is stored as its kind (a byte: 0 text, 1 binary), its length (u32) and its bytes.
-/// Recordings are small unless everything is asked for: what a reader of a drive looks at, not what a
-/// developer of a solver does.
+/// message is stored as its kind (a byte: 0 text, 1 binary), its length (u32) and its bytes. They are small
+/// unless everything is asked for: what a reader of a drive looks at, not what a developer of a solver does.
 namespace slalom::view {
 
 /// Cuts messages into segments.

@@ -70,8 +70,7 @@ Verdict judge(const Connections& all, const http::request<http::empty_body>& req
     return {401, "open the printed address, which contains the token\n"};
   const bool is_upgrade = websocket::is_upgrade(request);
   if (is_upgrade && path_of(target) == "/ws") {
-    // A browser always sends an Origin with a WebSocket; a client that sends none is not a page of another
-    // site.
+    // A browser always sends an Origin with a WebSocket; a client without is no page of another site.
     const std::string_view origin = view_of(request[field::origin]);
     if (!origin.empty() && origin != "http://" + std::string(host) &&
         origin != "https://" + std::string(host))

@@ -97,8 +97,7 @@ class Server {
 /// The address of a page.
 std::string address_of(const Server& server, const ServerOptions& options, const std::string& path = "/");
 
-/// Whether an address can be reached from this machine only. Throws std::invalid_argument if it is not an IP
-/// address.
+/// Whether only this machine reaches an address. Throws std::invalid_argument if it is no IP address.
 bool is_loopback(const std::string& host);
 
 }  // namespace slalom::view

@@ -79,8 +79,7 @@ class Session {
   /// Throws std::invalid_argument if the subject or the method of the ghost is not valid.
   Session(std::unique_ptr<Subject> subject, Server& server, SessionOptions options = {});
 
-  /// Executes the commands that have come, and drives one step if it is due; waits for one, for `at_most` at
-  /// most.
+  /// Executes the commands received, and drives one step if it is due; waits for one, for `at_most` at most.
   void turn(std::chrono::nanoseconds at_most = {});
   /// Drives until the drive has some steps, and returns it. For a session without a page.
   StoredDrive record(int steps);

@@ -56,8 +56,7 @@ OptionTexts settings_in(const Json& command) {
   return texts;
 }
 
-/// Returns the scenario that the command scenario chooses; only listed courses and configurations are
-/// allowed.
+/// The scenario that the command scenario chooses; only listed courses and configurations are allowed.
 ScenarioNames chosen_scenario(ScenarioNames names, const Json& command, const Choices& choices) {
   const auto choose = [&](const char* key, std::string& name, const std::vector<std::string>& all) {
     if (!command.contains(key)) return;

@@ -49,8 +49,7 @@ class Timeline {
   /// `control_period`: s per tick.
   explicit Timeline(double control_period = 1, Packing packing = {});
 
-  /// Keeps a copy of the drives if the last one is a second of the drive's time old. To be called before each
-  /// tick.
+  /// Keeps a copy of the drives if the last is a second of the drive's time old. To be called each tick.
   void checkpoint(const Drives& drives);
   /// Notes an action after `ticks` ticks, behind those that are noted there.
   void note(int ticks, Action action);
@@ -72,8 +71,7 @@ class Timeline {
   std::size_t frame_bytes() const noexcept { return frame_bytes_; }  ///< bytes of the stored frames
   std::size_t copy_bytes() const noexcept;                           ///< bytes of all copies
 
-  /// Returns the message with the figures of past ticks, of as many as a message holds and as are still
-  /// known.
+  /// The message with the figures of past ticks, of as many as a message holds and as are still known.
   std::string past(int from, int to) const;
 
   /// Brings drives nearer to the beginning of a stored tick: to the copy before it if that is nearer, else

@@ -149,8 +149,7 @@ void CallableProblem::carry(std::span<const float> wanted, std::span<const doubl
   }
 }
 
-/// The sequences of a batch within rates or in levels, [step][input][sample]; none if there are no such
-/// limits.
+/// The sequences of a batch within rates or in levels, [step][input][sample]; none without such limits.
 std::vector<float> CallableProblem::held_sequences(const SequenceBatch& batch, int first, int count) const {
   std::vector<float> all;
   if (!holds()) return all;

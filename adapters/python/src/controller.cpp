@@ -132,8 +132,7 @@ bool Controller::start(py::handle owner, std::vector<double> state, const SolveR
   return true;
 }
 
-/// Takes the plan from the solver, of whose samples some had a cost of nan. Rethrows the exception of a
-/// callable.
+/// Takes the plan from the solver, of whose samples some had a cost of nan. Rethrows a callable's exception.
 void Controller::finish(std::int64_t nan_costs) {
   core_.finish(*problem_);
   problem_->finish();

@@ -63,8 +63,7 @@ inline py::custom_type_setup guarded() {
   return py::custom_type_setup([](PyHeapTypeObject* heap) { guard_attributes(heap->ht_type); });
 }
 
-/// The object of class `T` that a Python object owns, or null: before `__init__`, or if it only refers to
-/// one.
+/// The object of class `T` that a Python object owns, or null: before `__init__`, if it only refers to one.
 template <class T>
 T* owned_by(PyObject* self) {
   const auto* const instance = reinterpret_cast<py::detail::instance*>(self);
@@ -72,8 +71,7 @@ T* owned_by(PyObject* self) {
   return static_cast<T*>(instance->simple_value_holder[0]);
 }
 
-/// An attribute of a class_ for `T`, whose `each_object(f)` calls f with a pointer to each py::object it
-/// holds.
+/// An attribute of a class_ for `T`, whose `each_object(f)` calls f with a pointer to each py::object in it.
 template <class T>
 py::custom_type_setup collected() {
   return py::custom_type_setup([](PyHeapTypeObject* heap) {

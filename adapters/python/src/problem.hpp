@@ -56,8 +56,7 @@ class AnyProblem : public ControlledProblem {
   virtual Trajectories roll_out(std::span<const double> state, std::span<const float> sequences, int steps,
                                 std::span<const std::string> terms);
   /// Exact derivatives (linearize.hpp) at a state and the inputs of step `k`: next state, A, B, cost,
-  /// gradient, Hessian, kink; without inputs, those of the terminal cost. Empty if the problem has no code
-  /// for them.
+  /// gradient, Hessian, kink; without inputs, those of the terminal cost. Empty if it has no code for them.
   virtual std::vector<std::vector<double>> expand(std::span<const double> /*state*/,
                                                   std::span<const double> /*input*/, int /*k*/) const {
     return {};

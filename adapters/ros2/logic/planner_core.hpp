@@ -82,8 +82,7 @@ class PlannerCore {
   /// The covariance (x, y, yaw) of the pose in tf.
   void hear_covariance(Stamp stamp, const vehicle::PoseCovariance& covariance);
   void hear_executed(const Command& command);  ///< the car executes this, where others may command it
-  /// Points of obstacles (m) in a sensor's frame; their heights do not count. Once heard they must stay
-  /// recent.
+  /// Points of obstacles (m) in a sensor's frame; heights do not count. Once heard they must stay recent.
   void hear_points(Stamp stamp, const std::string& frame, std::span<const std::array<double, 3>> points);
   /// The objects that another node tracks, map frame; needed with `others` = "topic".
   void hear_objects(Stamp stamp, std::span<const tracking::TrackedObject> objects);

@@ -89,8 +89,7 @@ KernelPointer<Kernel> kernel(Target target) {
 #endif
 }
 
-/// Returns a kernel's function for `active_target()`, chosen at the first call. Throws as `active_target()`
-/// does.
+/// A kernel's function for `active_target()`, chosen at the first call. Throws as `active_target()` does.
 template <class Kernel>
 KernelPointer<Kernel> kernel() {
   static const KernelPointer<Kernel> chosen = kernel<Kernel>(active_target());

@@ -9,8 +9,7 @@
 /// The final check of a control sequence before it leaves the library.
 namespace slalom {
 
-/// Bounds of the inputs, [input]: finite values with `low` <= `high`, or infinities where an input has no
-/// bound.
+/// Bounds of the inputs, [input]: finite values with `low` <= `high`, or infinities without a bound.
 struct InputBounds {
   InputBounds() = default;
   /// No bounds.
@@ -21,8 +20,7 @@ struct InputBounds {
   std::vector<double> low;   ///< least value of each input
   std::vector<double> high;  ///< largest value of each input
 
-  /// Returns the value within the bounds of `input` that is nearest to `value`, or to 0 if `value` is not a
-  /// number.
+  /// The value within the bounds of `input` that is nearest to `value`, or to 0 if `value` is not a number.
   double nearest(std::size_t input, double value) const noexcept {
     return std::clamp(std::isnan(value) ? 0.0 : value, low[input], high[input]);
   }
@@ -47,8 +45,7 @@ int check_inputs(std::span<double> u, std::span<double> previous, const InputBou
   return changed;
 }
 
-/// Replaces a cost that is infinite or not a number by the largest double. Returns 1 if it was replaced,
-/// otherwise 0.
+/// Replaces a cost that is infinite or not a number by the largest double. Returns 1 if so, otherwise 0.
 inline int check_cost(double& cost) noexcept {
   if (std::isfinite(cost)) return 0;
   cost = std::numeric_limits<double>::max();

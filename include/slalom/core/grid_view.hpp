@@ -13,11 +13,10 @@ struct GridAxis {
 /// Nearest-cell look-ups in a map of `Layers` float32 values a cell (1, or 4: then one 128-bit load fetches a
 /// cell), from scalar code and from SIMD lanes alike.
 ///
-/// The grid is that of grid_map 1.6.4 (ROS): row 0 lies at the largest x, column 0 at the
-/// largest y, and the upper edge of the map is inside, the lower one outside. All round lies a ring of cells
-/// that hold the values for "outside", so an index that is out of range, or made from a NaN, is clamped into
-/// the ring and needs no mask. Storage: (rows + 2) x 2^stride_log2 cells, 2^stride_log2 >= columns + 2, the
-/// ring included.
+/// The grid is that of grid_map 1.6.4 (ROS): row 0 lies at the largest x, column 0 at the largest y, and the
+/// upper edge of the map is inside, the lower one outside. All round lies a ring of cells that hold the
+/// values for "outside", so an index that is out of range, or made from a NaN, is clamped into the ring and
+/// needs no mask. Storage: (rows + 2) x 2^stride_log2 cells, 2^stride_log2 >= columns + 2, the ring included.
 ///
 /// Lanes are float32, which at 1e6 m resolves 0.06 m. So rollouts look up a view that is `relative_to` a
 /// point near the robot, and their positions are relative to it. That point itself then falls into the same
@@ -131,8 +130,7 @@ class GridView {
         saturate_cast<int>(-(((position - half) - static_cast<T>(center)) / static_cast<T>(resolution_)));
     return std::min(cell, count - 1) + 1;
   }
-  /// Truncates; negative values and NaN become huge as unsigned numbers and are clamped into the ring with
-  /// the rest.
+  /// Truncates; negative values and NaN become huge unsigned numbers, clamped into the ring with the rest.
   template <class Target>
   SLALOM_INLINE static simd::IntPack<Target> clamped_index(const Pack<Target>& cell, int last) {
     using I = typename simd::IntPack<Target>::Vector;

@@ -103,8 +103,7 @@ struct Unfused : T {
   static constexpr bool fused = false;  ///< products are rounded
 };
 
-/// Batches are padded to a multiple of this many samples, the lanes of the widest pack, whatever the
-/// instruction set.
+/// Batches are padded to a multiple of this many samples, the lanes of the widest pack of all sets.
 inline constexpr int padding = 16;
 
 }  // namespace slalom::simd

@@ -52,8 +52,7 @@ inline constexpr bool names_costs = requires {
   std::size(P::cost_names);
 };
 
-/// The terms of a problem's cost, all 0: the stage's in one piece, those it names, the terminal one in one
-/// piece.
+/// The terms of a problem's cost, all 0: the stage's in one piece, those it names, the terminal one.
 template <class P>
 constexpr auto cost_terms_of() {
   constexpr int before = terms_in<StageCostOf<P>> == 0, after = terms_in<TerminalCostOf<P>> == 0;

@@ -122,8 +122,7 @@ SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& st
 
 #undef SLALOM_UNROLL
 
-/// Computes the rollouts of the samples from `sample` to `end`, `packs` packs at a time and the rest one by
-/// one.
+/// Computes the rollouts of samples from `sample` to `end`, `packs` packs at a time and the rest one by one.
 template <int packs, int ahead, class P, class F>
 SLALOM_INLINE_CALLS void roll_out_all(const P& problem, const RolloutStart<P, F>& start,
                                       const InputRows& rows, int sample, int end, float* costs,

@@ -8,8 +8,7 @@ namespace slalom {
 /// A fixed set of threads that works through numbered tasks. The caller works too: a pool of one has no other
 /// thread, and running tasks on it takes no lock and makes no system call.
 ///
-/// Any thread may run any task. Give each task its own slot for its partial result and combine the slots in
-/// order.
+/// Any thread may run any task. Give each task its own slot for its partial result and combine them in order.
 class ThreadPool {
  public:
   /// `threads` in [1, 1024], the caller's included. Throws std::invalid_argument otherwise, and

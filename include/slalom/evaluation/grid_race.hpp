@@ -90,8 +90,7 @@ struct GridRaceResult {
   bool has_winner() const noexcept;
 };
 
-/// A control step of a race, before the drivers decide. The references are valid until the callback
-/// returns.
+/// A control step of a race, before the drivers decide. The references are valid until the callback returns.
 struct GridRaceStep {
   double time = 0;                ///< s
   double progress = 0;            ///< share of the race that the first car has driven

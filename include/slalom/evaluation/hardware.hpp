@@ -6,8 +6,7 @@
 #include "slalom/vehicle/localisation/localiser_options.hpp"
 
 /// The conditions of a real car, in contrast to an ideal simulation: a LiDAR with noise and missing returns,
-/// a pose estimated from the LiDAR and the odometry of slipping wheels, and a servo that differs from the
-/// model.
+/// a pose estimated from the LiDAR and the odometry of slipping wheels, and a servo unlike the model.
 namespace slalom::evaluation {
 
 /// Conditions after the experiment on a car in Honda et al. (ICRA 2024), section V-C, as far as it is

@@ -18,8 +18,7 @@ namespace slalom::evaluation {
 constexpr std::uint64_t lap_seed(std::uint64_t seed0, int lap, int obstacles) {
   return seed0 + static_cast<std::uint64_t>(lap) * static_cast<std::uint64_t>(obstacles + 5);
 }
-/// Returns the seed of the solver's random numbers in a lap: a hash of the lap's seed and the name of the
-/// method.
+/// The seed of the solver's random numbers in a lap: a hash of the lap's seed and the name of the method.
 std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method);
 
 /// The first collision with a body or a wall.
@@ -38,8 +37,7 @@ struct ControlStep {
   int collisions = 0;               ///< collisions so far, as the protocol counts them
   const sim::Observation& seen;     ///< the true state of the car
   const maps::LaserScanView& scan;  ///< input of the planner
-  /// Input of the planner. While the car is not localised, the planner gets a pose of NaN; this is the true
-  /// one.
+  /// Input of the planner. While the car is not localised, that gets a pose of NaN; this is the true one.
   const vehicle::Odometry& odometry;
   const vehicle::PlannerOutput& output;  ///< output of the planner
   const vehicle::Planner& planner;       ///< the planner after the update
@@ -89,8 +87,7 @@ struct LapSetup {
   maps::Pose start() const;                ///< pose of the centre of gravity
   double control_period() const noexcept;  ///< s of simulated time per command
   double timeout() const;                  ///< s, time limit of a lap
-  /// Length of a lap along the path, m: from the start to the finish, after `settings.rounds` rounds of the
-  /// course.
+  /// Length of a lap along the path, m: from start to finish, after `settings.rounds` rounds of the course.
   double length() const;
 };
 
@@ -105,8 +102,7 @@ class LapDrive {
   /// obstacle or opponent overlaps the start, and std::runtime_error if there is no room for them.
   LapDrive(const LapSetup& setup, std::uint64_t seed);
   ~LapDrive();
-  /// Copies everything: the copy continues bit for bit like the original. Environment, maps and threads are
-  /// shared.
+  /// A copy continues bit for bit like the original. Environment, maps and threads are shared.
   LapDrive(const LapDrive& other);
   LapDrive& operator=(const LapDrive& other);
   LapDrive(LapDrive&&) noexcept;

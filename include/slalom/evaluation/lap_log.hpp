@@ -49,8 +49,7 @@ struct LogComparison {
   std::optional<double> collision_p{};  ///< Wilcoxon's signed-rank test; not paired: Fisher's exact test
 
   static constexpr int enough_laps = 10;  ///< laps from which on the bootstrap is used and MS can be inside
-  /// `inside` requires confidence intervals no wider than this to each side: a fraction of MS, and a
-  /// collision rate.
+  /// `inside` needs confidence intervals within this: a fraction of MS, and a collision rate.
   static constexpr double ms_half_width = 0.5, rate_half_width = 0.1;  ///< fraction of MS, collision rate
 
   Agreement ms_agreement() const;         ///< agreement in MS

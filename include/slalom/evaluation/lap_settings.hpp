@@ -31,8 +31,7 @@ struct Driver {
   double speed_share = 1;                ///< share of the path's speeds that the planner is given, (0, 1]
 };
 
-/// The settings of a lap, in addition to its environment and driver. `visit_options` below describes the
-/// fields.
+/// The settings of a lap, beside its environment and driver. `visit_options` below describes the fields.
 struct LapSettings {
   int obstacles = 0;                  ///< parked cars, 0 ... 1000
   std::vector<maps::Pose> parked{};   ///< places of the first of them; the others are placed at random

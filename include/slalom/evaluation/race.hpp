@@ -32,8 +32,7 @@ struct RacingLap {
   std::uint64_t seed = 0;                ///< seed of the standing start that this lap begins with or follows
   RacingEnd end = RacingEnd::completed;  ///< how it ended
   std::array<double, racing_sectors> sector{};  ///< s, of each sector; NaN where the lap ended before its end
-  /// From the start, at distance and time 0, to the end of the lap, where a completed one has its whole
-  /// length.
+  /// From the start, at distance and time 0, to the end of the lap, where a completed one has its length.
   std::vector<RacingSample> samples{};
 
   double time() const noexcept { return samples.back().time; }  ///< s; at the end, complete or not
@@ -49,8 +48,7 @@ double time_behind(std::span<const RacingSample> lap, std::span<const RacingSamp
 /// Times (s) of the equal sectors of a lap of this length (m). NaN for those that the lap did not complete.
 std::array<double, racing_sectors> sector_times(std::span<const RacingSample> samples, double length);
 
-/// The acceleration of a car, longitudinal and lateral together, by the time spent with it. 0 without
-/// samples.
+/// The acceleration of a car, along and across together, by the time spent with it. 0 without samples.
 struct GripUse {
   double p50 = 0;     ///< m/s^2, median
   double p99 = 0;     ///< m/s^2, 99th percentile

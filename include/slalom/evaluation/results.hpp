@@ -5,8 +5,7 @@
 
 namespace slalom::evaluation {
 
-/// Laps from which a bootstrap interval says something: that of fewer is too narrow, and that of one has no
-/// width.
+/// Laps from which a bootstrap interval says something: that of fewer is too narrow, of one without width.
 inline constexpr int fewest_laps = 5;
 
 /// Statistics of the laps of one experiment. Rates are fractions. Every lap counts, whether it finished or
@@ -25,8 +24,7 @@ struct ExperimentResult {
   Interval success_rate_ci{};                             ///< Wilson
   double time_mean = 0;                                   ///< s, of finished laps; NaN without any
   Interval time_ci{};                                     ///< bootstrap over finished laps; see fewest_laps
-  /// Wall-clock times, ms: means over the laps of each lap's mean, median and 99th percentile, and the
-  /// longest.
+  /// Wall-clock times, ms: means over laps of each one's mean, median and 99th percentile, and the longest.
   double solve_mean = 0, solve_p50 = 0, solve_p99 = 0, solve_max = 0;  ///< mean, median, 99 %, longest
   /// Sums over laps; errors are root mean squares over all detections, `update_p99` (ms) the mean over the
   /// laps. None without `world.tracking`.
@@ -35,8 +33,7 @@ struct ExperimentResult {
   std::optional<OvertakingFigures> overtaking{};
 };
 
-/// The laps of two experiments, a and b. With the same seeds lap k of both has the same obstacles: the laps
-/// are paired.
+/// The laps of two experiments, a and b. With equal seeds lap k has the same obstacles: the laps are paired.
 struct Comparison {
   bool paired = true;              ///< whether the same seeds are compared
   int laps = 0;                    ///< pairs, or laps of both

@@ -3,8 +3,7 @@
 #include "slalom/gpu/solver.hpp"
 #include "slalom/solvers/controller.hpp"
 
-/// Controllers that solve on a GPU, with the options and plans of `slalom::Mppi` and `slalom::SvgMppi`;
-/// docs/gpu.md.
+/// Controllers on a GPU, with the options and plans of `slalom::Mppi` and `slalom::SvgMppi`; docs/gpu.md.
 namespace slalom::gpu {
 
 /// A controller whose solver runs on a GPU. The code of `P` comes from `slalom_gpu_problem` in CMake. Of the
@@ -14,8 +13,7 @@ template <class P, class Options>
 class GpuController : public Controller<P> {
  public:
   /// Throws std::invalid_argument on options out of range, options that a GPU lacks, and a problem that reads
-  /// memory that it does not declare or whose costs differ on the GPU; DeviceError without a device that can
-  /// run it.
+  /// memory that it does not declare or whose costs differ on the GPU; DeviceError without a device for it.
   explicit GpuController(const P& problem, const Options& options = {})
       : Controller<P>(problem, std::make_unique<GpuSolver<P, Options>>(problem, options)) {}
 

@@ -7,8 +7,7 @@
 
 namespace slalom::maps {
 
-/// Options of ClearanceMap.
-/// `visit_options` below describes the fields.
+/// Options of ClearanceMap. `visit_options` below describes the fields.
 struct ClearanceMapOptions {
   double length_x = 10;
   double length_y = 10;

@@ -7,8 +7,7 @@
 namespace slalom::maps {
 
 /// The exact Euclidean distance from the centre of every cell to the centre of the nearest obstacle cell, in
-/// metres; 0 on obstacles. Outside the grid there are no obstacles. Without any obstacle every distance is
-/// infinite.
+/// metres; 0 on obstacles. Outside the grid there are no obstacles. Without any, distances are infinite.
 struct DistanceField {
   int width = 0;                 ///< cells
   int height = 0;                ///< cells

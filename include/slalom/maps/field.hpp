@@ -8,8 +8,7 @@
 
 namespace slalom::maps {
 
-/// The place of the samples of a field: the centres of square cells that are placed like those of an
-/// OccupancyGrid.
+/// The place of the samples of a field: the centres of square cells, placed like those of an OccupancyGrid.
 struct FieldGeometry {
   int width = 1;          ///< cells along the grid's x
   int height = 1;         ///< cells along the grid's y

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/closed_discs.hpp"
 #include "slalom/maps/pose.hpp"
@@ -23,7 +26,9 @@ class GridSearch {
   /// The cell at a position (m); -1 off the grid.
   int cell_at(const Point& point) const noexcept;
 
-  /// The prices of the cells for driving 1 m, to be set before `spread`; not above 0: closed.
+  static constexpr float unpriced = -1;  ///< price of a cell whose price a search asks for
+
+  /// The prices of the cells for driving 1 m, to be set before `spread`; 0: closed.
   std::span<float> prices() noexcept { return prices_; }
   /// Sets the prices for a body whose room (m) in the middle of a cell is `room(point)`.
   template <class Room>
@@ -59,12 +64,19 @@ class GridSearch {
   /// Computes the costs of all cells that can be reached from one, which may be closed itself.
   void spread(int from) noexcept {
     begin(from);
-    advance(std::numeric_limits<int>::max());
+    advance(std::numeric_limits<int>::max(), [](int) {});
   }
-  /// Begins what `spread` does.
-  void begin(int from) noexcept;
-  /// Goes on from at most so many cells. Returns whether the costs of all cells are known.
-  bool advance(int cells) noexcept;
+  /// Begins what `spread` does; cells on the way to a point at first (A*).
+  void begin(int from) noexcept { begin(from, centre_of(from), 0); }
+  void begin(int from, const Point& towards) noexcept { begin(from, towards, cell_size_); }
+  /// Goes on from at most so many cells. Returns whether the costs of all cells are known. `price(cell)` sets
+  /// the price of an unpriced one.
+  template <class Price>
+  bool advance(int cells, Price&& price) noexcept;
+  /// The least cost of a cell whose cost is not known yet.
+  float known(int cell) const noexcept {
+    return queue_.empty() ? std::numeric_limits<float>::infinity() : queue_.front().cost - away(cell);
+  }
   /// The cost of reaching a cell; infinite where it cannot be reached.
   float cost(int cell) const noexcept { return costs_[static_cast<std::size_t>(cell)]; }
   bool reached(int cell) const noexcept;  ///< whether the last search reached it
@@ -84,6 +96,12 @@ class GridSearch {
   static constexpr float dearest = 5;  ///< price beside an obstacle
 
   bool is_clear(int from, int to) const noexcept;
+  void begin(int from, const Point& towards, double weight) noexcept;
+  /// The distance (m) of a cell from the point towards which the search goes.
+  float away(int cell) const noexcept {
+    return weight_ * std::hypot(static_cast<float>(cell % columns_) - towards_x_,
+                                static_cast<float>(cell / columns_) - towards_y_);
+  }
   void smooth() noexcept;
 
   int columns_, rows_;
@@ -93,9 +111,37 @@ class GridSearch {
   std::vector<float> prices_;      ///< price of driving 1 m in each cell
   std::vector<float> costs_;       ///< cost of reaching each cell
   std::vector<int> previous_;      ///< cell before each on the cheapest path; -1 at its start
-  ReservedVector<Reached> queue_;  ///< a heap
+  ReservedVector<Reached> queue_;  ///< a heap; costs with the distance that is left at least
+  float towards_x_ = 0, towards_y_ = 0, weight_ = 0;  ///< cells, and m for each of them
   ReservedVector<int> corners_;
   ReservedVector<Point> path_, smoothed_;
 };
+
+template <class Price>
+bool GridSearch::advance(int cells, Price&& price) noexcept {
+  for (; cells > 0 && !queue_.empty(); --cells) {
+    std::pop_heap(queue_.begin(), queue_.end());
+    const Reached here = queue_.back();
+    queue_.pop_back();
+    if (here.cost > costs_[here.cell] + away(here.cell)) continue;
+    const int column = here.cell % columns_, row = here.cell / columns_;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int x = column + dx, y = row + dy;
+        if ((dx == 0 && dy == 0) || x < 0 || x >= columns_ || y < 0 || y >= rows_) continue;
+        const auto next = static_cast<std::size_t>(y * columns_ + x);
+        if (prices_[next] < 0) price(static_cast<int>(next));
+        if (!(prices_[next] > 0)) continue;
+        const float step = static_cast<float>(cell_size_) * (dx != 0 && dy != 0 ? 1.41421356f : 1.0f);
+        const float cost = costs_[here.cell] + step * prices_[next];
+        if (cost >= costs_[next]) continue;
+        costs_[next] = cost;
+        previous_[next] = here.cell;
+        queue_.push_back({cost + away(static_cast<int>(next)), static_cast<int>(next)});
+        std::push_heap(queue_.begin(), queue_.end());
+      }
+  }
+  return queue_.empty();
+}
 
 }  // namespace slalom::maps

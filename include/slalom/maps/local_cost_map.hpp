@@ -16,8 +16,7 @@ struct Footprint {
   double right = 0.15;  ///< m, to its right
 };
 
-/// Options of LocalCostMap.
-/// `visit_options` below describes the fields.
+/// Options of LocalCostMap. `visit_options` below describes the fields.
 struct LocalCostMapOptions {
   double length_x = 10;
   double length_y = 10;

@@ -51,8 +51,7 @@ struct PredictedObstacle {
   PredictedPose at(int hypothesis, double time) const noexcept;
 };
 
-/// Options of MovingObstacles.
-/// `visit_options` below describes the fields.
+/// Options of MovingObstacles. `visit_options` below describes the fields.
 struct MovingObstacleOptions {
   double front = 0.461;
   double rear = 0.119;

@@ -10,8 +10,7 @@
 
 namespace slalom::maps {
 
-/// A part of a path between two places where a vehicle stops: it drives in one direction, or turns on the
-/// spot.
+/// A part of a path between two places where a vehicle stops: it drives one way, or turns on the spot.
 struct PathLeg {
   std::size_t first = 0, last = 0;  ///< indices of its points; both are the same for a turn
   bool backward = false;            ///< whether it is driven in reverse

@@ -15,8 +15,7 @@ struct ReferenceOutside {
   double speed = 0;
 };
 
-/// Options of ReferenceField.
-/// `visit_options` below describes the fields.
+/// Options of ReferenceField. `visit_options` below describes the fields.
 struct ReferenceFieldOptions {
   double length_x = 20;
   double length_y = 20;
@@ -25,8 +24,7 @@ struct ReferenceFieldOptions {
   double spacing = 0.1;
   ReferenceOutside outside{};  ///< result of a look-up off the map
 
-  /// With 0 the distance of positions behind the nearest point is that to the window's first point, not to
-  /// the path.
+  /// With 0 the distance of those behind the nearest point is to the window's first point, not the path.
   int points_behind = 10;
 };
 
@@ -51,19 +49,17 @@ void visit_options(Options& options, Visit&& visit) {
 /// nearest place of the line. The window begins at the robot's place (see place_on_path) and wraps at the
 /// path's end. Each update computes the map again, because its cells move with the robot.
 ///
-/// The nearest points are exact in double arithmetic: along a row of cells the squared distances are
-/// parabolas of which the lower envelope is built (as for the distance transform). After construction nothing
-/// allocates.
+/// The nearest points are exact in double arithmetic: along a row of cells squared distances are parabolas,
+/// whose lower envelope is built (as for the distance transform). After construction nothing allocates.
 class ReferenceField {
  public:
   /// Throws std::invalid_argument where the path or the options break a rule.
   explicit ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options = {});
 
-  /// Computes the map around a robot. With a finite `reach` only the cells within it (m, along each
-  /// axis) are computed; the others keep their values and must not be looked up. A rollout reaches at most
-  /// its duration times its largest speed. With `seconds` the reach is at least 1 m more than the distance
-  /// driven in that time at the largest speed in the map. Returns false and changes nothing if the pose is
-  /// not finite.
+  /// Computes the map around a robot. With a finite `reach` only the cells within it (m, along each axis) are
+  /// computed; the others keep their values and must not be looked up. A rollout reaches at most its duration
+  /// times its largest speed. With `seconds` the reach is at least 1 m more than the distance driven in that
+  /// time at the largest speed in the map. Returns false and changes nothing if the pose is not finite.
   bool update(const Pose& robot, double reach = std::numeric_limits<double>::infinity(),
               double seconds = 0) noexcept;
 

@@ -14,9 +14,8 @@ struct YamlLimits {
   static constexpr int depth = 32;                 ///< depth of nested maps and lists
 };
 
-/// The text of a YAML file of one document, which can be parsed in bounded time and memory. Throws IoError if
-/// the file cannot be read, exceeds YamlLimits, is not YAML, or holds more than one document, an anchor or an
-/// alias.
+/// A YAML file of one document, which can be parsed in bounded time and memory. Throws IoError if the file
+/// cannot be read, exceeds YamlLimits, is not YAML, or holds more than one document, an anchor or an alias.
 std::string yaml_text(const std::filesystem::path& file);
 
 /// The finite number that a text is, in decimal; nothing for any other text. Allocates nothing, unlike the

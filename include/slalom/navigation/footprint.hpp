@@ -31,8 +31,7 @@ class Footprint {
   static Footprint rectangle(double front, double rear, double width);
 
   /// The outline moved inward by `rim` (m), or outward if it is below 0. Where that leaves nothing around the
-  /// origin: the same shape, smaller around the origin, whose half width is less by `rim`, but at least a
-  /// fifth.
+  /// origin: the same shape, smaller around the origin, its half width less by `rim`, but at least a fifth.
   Footprint without_rim(double rim) const;
   /// The body, those without a rim of 1, 2, ... 7 steps (m), and a small core.
   std::vector<Footprint> without_rims(double step) const;

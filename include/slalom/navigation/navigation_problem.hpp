@@ -1,98 +1,13 @@
 #pragma once
 
-#include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/navigation/base.hpp"
+#include "slalom/navigation/body_check.hpp"
 #include "slalom/navigation/cost_options.hpp"
 #include "slalom/navigation/costmap.hpp"
-#include "slalom/navigation/footprint.hpp"
 
 namespace slalom::navigation {
-
-/// Checks a body against the distances of a costmap, for rollouts. The parts of the footprint decide first:
-/// no obstacle is near a part, or one is inside. Where neither is certain, the points of the outline do, at
-/// most a cell apart; one in the middle of each few shows whether they are near. So every overlap deeper than
-/// half a cell is found but a single cell that does not touch the outline, which a body in steps shorter than
-/// a cell meets with its outline first.
-class BodyCheck {
- public:
-  static constexpr std::size_t max_points = 512;  ///< most points of an outline
-
-  /// For costmaps of this resolution (m). Throws std::invalid_argument on an outline above 512 cells.
-  BodyCheck(const Footprint& footprint, double resolution)
-      : unsure_(1.42 * resolution),
-        half_cell_(0.5 * resolution),
-        group_reach_((0.5 * group + 2) * resolution) {
-    const std::vector<maps::Point> points = footprint.outline_points(resolution);
-    if (points.size() > max_points) {
-      throw std::invalid_argument("footprint: the outline is " + std::to_string(points.size()) +
-                                  " cells long, must be at most 512 cells of the costmap");
-    }
-    for (const maps::Point& point : points) points_[count_++] = {point.x, point.y};
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const Footprint::Part& part = footprint.parts()[i];
-      // A position lies within half of a diagonal (0.71 edges) of the middle of its cell.
-      parts_[i] = {{part.middle.x, part.middle.y}, part.contained - 0.71 * resolution, part.covering};
-    }
-  }
-
-  /// The values that the maps hold at a pose.
-  template <class T>
-  struct Contact {
-    T clearance;         ///< m, from the body to the nearest obstacle, within about a cell
-    mask_t<T> collided;  ///< whether they overlap
-  };
-
-  /// Checks the body at (x, y), m, turned by the angle of this sine and cosine.
-  template <class T>
-  SLALOM_INLINE_CALLS Contact<T> check(const GridView<1>& distances, const T& x, const T& y, const T& sine,
-                                       const T& cosine) const {
-    T clearance = T(Costmap::reach);
-    mask_t<T> collided(false), unsure(false);
-    for (const Part& part : parts_) {
-      const T distance = look_up_at(distances, part.middle, x, y, sine, cosine);
-      const T around = distance - T(part.covering);
-      clearance = min(clearance, around);
-      collided = collided | (distance < T(part.contained));
-      unsure = unsure | (around < T(unsure_));
-    }
-    unsure = unsure & !collided;
-    for (std::size_t first = 0; any(unsure) && first < count_; first += group) {
-      const std::size_t end = std::min(first + group, count_);
-      const T near = look_up_at(distances, points_[(first + end) / 2], x, y, sine, cosine);
-      // Off the map no distance is known.
-      if (!any(unsure & ((near < T(group_reach_)) | !(near < T(Costmap::reach))))) continue;
-      for (std::size_t i = first; i < end; ++i)
-        collided = collided | (look_up_at(distances, points_[i], x, y, sine, cosine) < T(half_cell_));
-    }
-    return {max(clearance - T(half_cell_), T(0)), collided};
-  }
-
- private:
-  struct BodyPoint {
-    Coefficient x, y;  ///< m, robot's frame
-  };
-  struct Part {
-    BodyPoint middle;
-    Coefficient contained;  ///< m; an obstacle whose distance is less is inside
-    Coefficient covering;   ///< m
-  };
-
-  template <class T>
-  SLALOM_INLINE_CALLS static T look_up_at(const GridView<1>& distances, const BodyPoint& point, const T& x,
-                                          const T& y, const T& sine, const T& cosine) {
-    return look_up(distances, x + cosine * T(point.x) - sine * T(point.y),
-                   y + sine * T(point.x) + cosine * T(point.y));
-  }
-
-  std::array<Part, Footprint::part_count> parts_;
-  static constexpr std::size_t group = 8;     ///< points that the one in their middle decides for
-  std::array<BodyPoint, max_points> points_;  ///< points of the outline
-  std::size_t count_ = 0;
-  Coefficient unsure_;                   ///< m of clearance below which the outline decides
-  Coefficient half_cell_, group_reach_;  ///< m
-};
 
 /// The maps of a solve, in the map frame, and the goal.
 struct NavigationMaps {
@@ -125,6 +40,7 @@ class NavigationProblem {
   struct State {
     T x, y, yaw;                    ///< m, m, rad
     T progress;                     ///< m along the path in the maps
+    T contact;                      ///< 0 until the body is free, then 1, and 2 once it overlaps an obstacle
     Input<T, Base::inputs> before;  ///< m/s, rad/s: the input that is driven
   };
   static constexpr int inputs = Base::inputs;  ///< inputs of a step
@@ -232,7 +148,8 @@ class NavigationProblem {
     seen.along = dx * seen.path_cosine + dy * seen.path_sine;
     seen.aside = dy * seen.path_cosine - dx * seen.path_sine;
     seen.price = slalom::look_up(prices_, x.x, x.y);
-    seen.obstacle = bodies_[body_].check(distances_, x.x, x.y, seen.sine, seen.cosine);
+    // After a collision it does not matter how far the body is in an obstacle.
+    seen.obstacle = bodies_[body_].check(distances_, x.x, x.y, seen.sine, seen.cosine, x.contact < T(1.5));
     return seen;
   }
 
@@ -245,8 +162,9 @@ class NavigationProblem {
     const T dx = forward * seen.cosine - left * seen.sine, dy = forward * seen.sine + left * seen.cosine;
     const T projected = seen.foot.d + seen.along + dx * seen.path_cosine + dy * seen.path_sine;
     const T progress = clamp(projected, x.progress - T(reach_), x.progress + T(reach_));
-    return {x.x + dx, x.y + dy, x.yaw + velocity.turn * T(step_), clamp(progress, T(0), T(window_length_)),
-            now};
+    const T contact = min(select(seen.obstacle.collided, x.contact * T(2), max(x.contact, T(1))), T(2)),
+            yaw = x.yaw + velocity.turn * T(step_);
+    return {x.x + dx, x.y + dy, yaw, clamp(progress, T(0), T(window_length_)), contact, now};
   }
 
   /// Cost of step `k`.

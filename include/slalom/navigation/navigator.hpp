@@ -145,13 +145,13 @@ class Navigator {
 
   /// The path to follow, in the map frame, from near the robot to the goal. The yaw of the last pose is the
   /// heading at the goal. Those of the others count if each is within 60 degrees of the direction of the path
-  /// or of its opposite: there the robot reverses. Otherwise the robot drives forward; an Ackermann base
-  /// reverses after cusps. The robot stops at cusps, and at corners of more than 60 degrees, where it turns
-  /// on the spot if it can. The goal is the end of the path, even if the path passes there before. A path
-  /// that ends like the one that is followed, to half of goal_distance, changes nothing, and neither does one
-  /// to the same goal once the robot is there. One to the same goal in a manoeuvre waits until that ends.
-  /// Throws std::invalid_argument unless there is at least one pose, all are within maps::PoseLimits, and the
-  /// path is at most 10 km long.
+  /// or of its opposite: there the robot reverses. Otherwise it drives forward; an Ackermann base reverses
+  /// after cusps. The robot stops at cusps, at corners of more than 60 degrees, where it turns on the spot if
+  /// it can, and where two poses at one place differ in yaw: it goes on there with the second yaw. The goal
+  /// is the end of the path, even if that passes there before. A path that ends like the one that is
+  /// followed, to half of goal_distance, changes nothing, nor does one to the same goal once the robot is
+  /// there. One to the same goal in a manoeuvre waits until that ends. Throws std::invalid_argument unless
+  /// there is at least one pose, all are within maps::PoseLimits, and the path is at most 10 km long.
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/maps/grid_search.hpp"
+#include "slalom/maps/path_curve.hpp"
 #include "slalom/navigation/costmap.hpp"
 
 namespace slalom::navigation {
@@ -11,7 +12,8 @@ namespace slalom::navigation {
 class PathPlanner {
  public:
   static constexpr std::size_t max_points = 4000;  ///< most points of a path, unless more are asked for
-  static constexpr double spacing = 0.05;          ///< m, between the points of a path
+  static constexpr double spacing = maps::PathCurve::spacing;  ///< m, between the points of a path
+  static constexpr double joint = 4 * spacing;  ///< m of its end, before a goal or another path
 
   /// For costmaps of this size, and a body with this half width (m).
   PathPlanner(const maps::GridGeometry& geometry, double half_width, std::size_t most_points = max_points);
@@ -22,17 +24,18 @@ class PathPlanner {
   bool has_room(const Costmap& costmap, const maps::Point& point) const noexcept;
 
   /// Begins a search from a position over a costmap, which must have the size given. Returns false if it is
-  /// off the costmap. `kept` is a path that was followed before: cells further than 1.6 half widths from it
+  /// off the costmap. `kept` is a path that was followed before: cells further than 1.2 half widths from it
   /// cost 1.3 times as much, so that the search prefers the way that was chosen. No way leads through the
-  /// `closed` discs. Cells within 1.2 half widths of the start count as free, or those up to the nearest free
-  /// place.
+  /// `closed` discs. It goes `towards` a point at first. Cells within 1.2 half widths of the start count as
+  /// free, or those up to the nearest free place.
   bool begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept = {},
-             std::span<const maps::ClosedDisc> closed = {}) noexcept;
-  /// Goes on with the search, and looks at no more than so many cells, each of which counts twice. Returns
-  /// whether it has ended: then all costs are known.
+             std::span<const maps::ClosedDisc> closed = {}, const maps::Point* towards = nullptr) noexcept;
+  /// Goes on from at most so many cells. Returns whether it has ended: then all costs are known.
   bool advance(const Costmap& costmap, int cells = std::numeric_limits<int>::max()) noexcept;
   bool is_searching() const noexcept { return is_searching_; }  ///< whether a search has begun and not ended
   void cancel() noexcept { is_searching_ = false; }             ///< ends a search without a result
+  /// The least cost (m) of a way to a position if that is not known yet.
+  double known(const maps::Point& point) const noexcept { return grid_.known(grid_.cell_at(point)); }
   /// The cost of a way to a position, m of free space; infinite if there is none.
   double cost_to(const maps::Point& point) const noexcept;
   /// A way, and its end if it is followed by a straight line off the costmap.
@@ -49,8 +52,7 @@ class PathPlanner {
 
  private:
   enum Mark : std::uint8_t { none, kept_way, closed_place };
-  void price(const Costmap& costmap, int first, int end) noexcept;
-  void open_start() noexcept;
+  void price(const Costmap& costmap, int cell) noexcept;
 
   double half_width_;
   maps::GridGeometry geometry_;
@@ -58,8 +60,6 @@ class PathPlanner {
   std::size_t most_points_;
   std::vector<Mark> marks_;  ///< [cell]
   float elsewhere_ = 1;      ///< factor of prices off the way that was kept
-  maps::Point start_;        ///< m
-  int priced_ = 0;           ///< cells whose prices are known
   bool is_searching_ = false;
 };
 

@@ -7,8 +7,7 @@ namespace slalom::problems {
 
 /// An arm of seven joints that reaches past a ball: over it, under it, or drawn in behind it. Its joints turn
 /// about z, y, z, y, z, y, z, from the base on; with all angles 0 it stands upright. Inputs are the joints'
-/// rates.
-/// `visit_options` below describes the fields.
+/// rates. `visit_options` below describes the fields.
 struct Arm {
   static constexpr int joints = 7;  ///< number
   /// State of the dynamics.

@@ -6,9 +6,8 @@
 namespace slalom::problems {
 
 /// A point that moves ahead at a constant speed and steers sideways, with a disc on the way that it is to
-/// follow: left and right are equally good, and their average is a collision. The smallest problem
-/// with two modes; its lateral position is linear in the inputs, so a Gaussian over inputs is one over
-/// places.
+/// follow: left and right are equally good, and their average is a collision. The smallest problem with two
+/// modes; its lateral position is linear in the inputs, so a Gaussian over inputs is one over places.
 /// `visit_options` below describes the fields.
 struct PassingPoint {
   /// State of the dynamics.

@@ -6,8 +6,7 @@
 
 namespace slalom::sim {
 
-/// The low-level control between a command and the model's input. `visit_options` of PlantOptions describes
-/// the gains.
+/// The control between a command and the model's input. `visit_options` of PlantOptions describes the gains.
 struct ActuationOptions {
   double speed_gain = 4.755;
   double brake_gain = 19.02;

@@ -48,8 +48,7 @@ struct RacingObservation {
 };
 
 /// The world of the racing benchmark of Evans et al., "Unifying F1TENTH Autonomous Racing: Survey, Methods
-/// and Benchmarks" (arXiv 2402.18558), as its program (f1tenth_benchmarks) has it, where paper and program
-/// differ:
+/// and Benchmarks" (arXiv 2402.18558), as its program (f1tenth_benchmarks) has it where both differ:
 ///
 ///  - The car of f1tenth_gym with linear tyres, by one Euler step of 0.01 s; steering commands take effect
 ///    two steps later. The control period is four steps.

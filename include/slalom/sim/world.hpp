@@ -103,8 +103,7 @@ class World {
   World(const WorldOptions& options, std::shared_ptr<const Track> track);
 
   /// Starts again with driven cars at rest at `cars` and parked ones at `parked`, without other bodies.
-  /// Throws std::invalid_argument on poses that are not finite and a driven car that starts in a wall or a
-  /// body.
+  /// Throws std::invalid_argument on poses that are not finite and driven cars that start in walls or bodies.
   void reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked = {});
 
   /// Adds a parked car and returns its index. It may be placed onto a car. Throws std::invalid_argument if
@@ -117,9 +116,8 @@ class World {
   /// Removes a parked car, box or disc. The numbers of later bodies fall by one. Throws as move_body does.
   void remove_body(int body);
 
-  /// Puts a driven car into a state without a check for collisions. Delayed commands still take effect.
-  /// Throws std::invalid_argument on a state that is not finite and std::out_of_range on a car that does not
-  /// exist.
+  /// Puts a driven car into a state, unchecked for collisions. Delayed commands still take effect. Throws
+  /// std::invalid_argument on a state that is not finite and std::out_of_range on a car that does not exist.
   void set_state(std::size_t car, const CarState& state);
 
   /// Moves by one time step. Command i is for driven car i; cars without one roll on.

@@ -9,8 +9,7 @@
 namespace slalom {
 
 /// Options of `cem`, the cross-entropy method (Rubinstein 1999; for control: Kobilarov 2012): the
-/// distribution is refitted to its best samples several times per solve.
-/// `visit_options` below describes the fields.
+/// distribution is refitted to its best samples in a solve. `visit_options` below describes the fields.
 struct CemOptions {
   static constexpr const char* method = "cem";  ///< name in configurations
 

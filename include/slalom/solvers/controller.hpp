@@ -29,8 +29,7 @@ struct Plan {
   /// Number of values that the final check changed in this solve: inputs outside the bounds or rates, costs
   /// and states that are not finite, and invalid values given to `set_previous_input`. 0 in normal operation.
   int corrections = 0;
-  /// Whether the source file that solves is compiled with optimisation. Without, a solve takes about 40 times
-  /// longer.
+  /// Whether the file that solves is compiled with optimisation. Without, a solve takes 40 times as long.
 #ifdef __OPTIMIZE__
   static constexpr bool optimised = true;
 #else
@@ -45,8 +44,7 @@ struct Plan {
 ///     if (plan.status == slalom::Status::ok) apply(plan.inputs[0]);
 ///
 /// Construction allocates and may throw std::invalid_argument; `solve` does neither. The inputs of a plan are
-/// always finite, within the bounds and within the rates; its cost and states are always finite
-/// (final_check.hpp).
+/// always finite, within bounds and rates; its cost and states are always finite (final_check.hpp).
 ///
 /// A copy continues bit for bit like the original. It has its own problem and solver and shares only the
 /// threads. Both controllers may be used at the same time (see ThreadPool).

@@ -11,8 +11,7 @@ namespace slalom {
 /// Options of `dial_mpc` (Xue et al., "Full-Order Sampling-Based MPC for Torque-Level Locomotion Control via
 /// Diffusion-Style Annealing", arXiv 2409.15610, section III-C and algorithm 1): several updates of MPPI in a
 /// solve, without control term. Their noise shrinks from one update to the next, and it is smaller at the
-/// start of the horizon than at its end.
-/// `visit_options` below describes the fields.
+/// start of the horizon than at its end. `visit_options` below describes the fields.
 struct DialMpcOptions {
   static constexpr const char* method = "dial_mpc";  ///< name in configurations
 

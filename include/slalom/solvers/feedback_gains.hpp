@@ -64,10 +64,9 @@ class FeedbackGains {
   /// K of all steps [steps][inputs][states].
   std::span<const double> gains() const noexcept { return gains_; }
 
-  /// The inputs `u` [inputs] for the state `x` [states] at time `t` (s) after the plan was made:
-  /// u_k + K_k (x - x(t)), within the bounds, with x(t) on a line between the plan's states. Before the
-  /// plan's start its first state counts, after its end the last. A state or time that is not finite gives
-  /// the inputs of the plan.
+  /// The inputs `u` [inputs] for the state `x` [states] at time `t` (s) after the plan was made: u_k + K_k (x
+  /// - x(t)), within the bounds, with x(t) on a line between the plan's states. Before the plan's start its
+  /// first state counts, after its end the last. One that is not finite gives the inputs of the plan.
   void input_at(double t, std::span<const double> x, std::span<double> u) const noexcept;
 
  private:

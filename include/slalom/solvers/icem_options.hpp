@@ -11,8 +11,7 @@ namespace slalom {
 /// Options of `icem`, the improved cross-entropy method (Pinneri et al., "Sample-efficient Cross-Entropy
 /// Method for Real-time Planning", CoRL 2020): `cem` with coloured noise, with elites that stay in the next
 /// iteration and the next solve, with fewer samples from iteration to iteration, and with the mean as a
-/// sample of the last one. The best sequence seen is sent.
-/// `visit_options` below describes the fields.
+/// sample of the last one. The best sequence seen is sent. `visit_options` below describes the fields.
 struct IcemOptions {
   static constexpr const char* method = "icem";  ///< name in configurations
 

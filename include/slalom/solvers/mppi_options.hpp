@@ -10,8 +10,7 @@
 namespace slalom {
 
 /// Options of `mppi`, model predictive path integral control. Defaults are the method of Williams et al.
-/// (2018) without control term, and with a temperature from the costs.
-/// `visit_options` below describes the fields.
+/// (2018) without control term, and a temperature from the costs. `visit_options` below describes the fields.
 struct MppiOptions {
   static constexpr const char* method = "mppi";  ///< name in configurations
 

@@ -15,8 +15,7 @@ struct NoiseOptions {
   int knots = 0;
 };
 
-/// The conversion of costs to weights.
-/// `visit_weighting_options` below describes the fields.
+/// The conversion of costs to weights. `visit_weighting_options` below describes the fields.
 struct WeightingOptions {
   double target_ess_fraction = 0;
 };

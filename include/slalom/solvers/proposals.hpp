@@ -33,9 +33,8 @@ concept ControlLaw = C::has_problem &&
 ///     const auto plan = controller.solve(x, {.elapsed = 0.05, .proposals = proposals});
 ///
 /// With K samples and n proposals, proposal i is sample K - n + i of `mppi` and `dial_mpc`, so its weight in
-/// `plan.stats` tells how much it counted, unless `mppi` takes the best as nominal sequence. `cem` and `icem`
-/// have it in their first iteration, and `svg_mppi` takes it as a guide
-/// (docs/algorithms/risk-and-proposals.md).
+/// `plan.stats` tells how much it counted, unless `mppi` takes the best as nominal. `cem` and `icem` have it
+/// in their first iteration, and `svg_mppi` takes it as a guide (docs/algorithms/risk-and-proposals.md).
 template <class P>
 class Proposals {
   using Controlled = detail::Controlled<P>;

@@ -17,8 +17,7 @@ namespace slalom {
 /// The names of all methods, as configurations write them. The span is valid until the next registration.
 std::span<const char* const> solver_names() noexcept;
 
-/// The default options of a method. Throws std::invalid_argument that lists the names if the method is
-/// unknown.
+/// The default options of a method. Throws std::invalid_argument that lists the names if it is unknown.
 SolverOptions solver_options(std::string_view name);
 
 /// The name of the method that options belong to.

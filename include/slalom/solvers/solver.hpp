@@ -118,8 +118,7 @@ class Solver {
   virtual bool takes_proposals() const noexcept { return false; }
 
   /// Returns a copy that continues bit for bit like the original: the same requests from the same states give
-  /// the same results. The last result of the copy points into the copy. Both share their threads; see
-  /// ThreadPool.
+  /// the same results. The last result of the copy points into the copy. Both share threads; see ThreadPool.
   virtual std::unique_ptr<Solver> clone() const = 0;
 
   /// The result of the last solve, or the state after the last reset.
@@ -133,8 +132,7 @@ class Solver {
   virtual void reset(std::uint64_t seed) noexcept = 0;
 
   /// Draws the noise of the next solve ahead of time, outside its deadline. The results do not change. Only
-  /// `mppi`, `svg_mppi` and `dial_mpc` (for its first update) do so, and only if the evaluator has no
-  /// `Sampler`.
+  /// `mppi`, `svg_mppi` and `dial_mpc` (for its first update) do so, if the evaluator has no `Sampler`.
   virtual void prepare() noexcept {}
 
   /// Allocates memory that this evaluator needs in addition, for instance on a GPU. Call it before the first

@@ -14,8 +14,7 @@
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/solvers/solver.hpp"
 
-/// The parts that solvers have in common. Your own solver can use them, too, as
-/// examples/predictive_sampling.hpp does.
+/// The parts that solvers have in common. Your own can use them, as examples/predictive_sampling.hpp does.
 namespace slalom {
 
 /// The time at which a solve must end. A deadline without a limit never reads the clock.

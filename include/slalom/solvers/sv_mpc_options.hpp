@@ -9,8 +9,7 @@
 
 namespace slalom {
 
-/// Options of `sv_mpc`: Stein variational MPC (Lambert et al., CoRL 2020).
-/// `visit_options` below describes the fields.
+/// `sv_mpc`: Stein variational MPC (Lambert et al., CoRL 2020). `visit_options` below describes the fields.
 struct SvMpcOptions {
   static constexpr const char* method = "sv_mpc";  ///< name in configurations
 

@@ -3,8 +3,7 @@
 #include "slalom/view/drawn_solve.hpp"
 #include "slalom/view/serve.hpp"
 
-/// The page of a controller that runs in your program: it shows each plan and its samples, and changes
-/// nothing.
+/// The page of a controller that runs in your program: it shows plans and their samples, and changes nothing.
 ///
 ///     slalom::view::Monitor monitor(controller, {.x = &State::x, .y = &State::y});
 ///     while (driving) {
@@ -32,8 +31,7 @@ class WatchedSource : public virtual FrameSource {
   virtual std::vector<OptionSection> options() const { return {}; }  ///< options that the page shows
 };
 
-/// Hands values from one thread to another. Neither waits for the other, and of several values the newest
-/// arrives.
+/// Hands values from one thread to another. Neither waits, and of several values the newest arrives.
 template <class Value>
 class Handover {
  public:

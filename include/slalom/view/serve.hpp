@@ -33,8 +33,7 @@ struct Drawing {
   std::function<std::vector<Shape>(const P&)> shapes{};
   /// Puts a shape elsewhere, by its index in `shapes`. Without it, shapes cannot be dragged.
   std::function<void(P&, int shape, const maps::Point& to)> move{};
-  /// Lets the problem's clock run: sets what changes with time. Called before each solve with the s since the
-  /// start.
+  /// Sets what changes with time. Called before each solve with the s since the start.
   std::function<void(P&, double time)> clock{};
   std::optional<maps::OccupancyGrid> map{};  ///< drawn under all else
   /// The real system; by default the problem itself.

@@ -8,8 +8,7 @@ namespace slalom::evaluation {
 /// s without a collision, after which the next collision is another contact.
 inline constexpr double contact_pause = 0.5;
 
-/// Watches the cars of a world, to say who is at fault where two of them collide (OvertakingRecord has the
-/// rule).
+/// Watches the cars of a world, to say whose fault a collision is (OvertakingRecord has the rule).
 class FaultJudge {
  public:
   /// Begins with the cars where they are. The track of the world has a lap path.

@@ -5,8 +5,7 @@ namespace {
 
 constexpr double rounding = 1e-9;  // excess that a profile at the limit may have
 
-/// The smallest of the values (first, sorted) such that those up to it have at least `share` of the weight
-/// (second).
+/// The least value (first, sorted) such that those up to it have at least `share` of the weight (second).
 double weighted_percentile(const std::vector<std::pair<double, double>>& weighted, double total,
                            double share) {
   double sum = 0;

@@ -82,8 +82,7 @@ tracking::TrackerInput TrackingMeter::locate(const sim::Observation& seen,
   if (!localiser_) return input;
   const vehicle::LocaliserOutput& out = localiser_->update({scan, wheels_.pose(), seen.time});
   const maps::Pose localised = compose(out.pose, mount_), continued = carried_on();
-  // A localiser that was in doubt may be sure of a wrong place afterwards. What fits the scan is not left for
-  // it.
+  // A localiser in doubt may be sure of a wrong place afterwards. What fits the scan is not left for it.
   const bool jumps = fits_ && distance(localised, continued) > largest_jump;
   if (out.status == vehicle::LocaliserStatus::ok && !jumps) {
     input.sensor = localised;
@@ -173,8 +172,7 @@ void TrackingMeter::pair_up(const sim::World& world, const tracking::TrackerOutp
 
 void TrackingMeter::compare(const sim::World& world, const tracking::TrackerOutput& output,
                             const maps::Pose& sensor) {
-  // Without a map the objects are in the frame of the odometry, which drifts: they are compared as seen from
-  // the car.
+  // Without a map the objects are in the frame of the odometry, which drifts: compared as seen from the car.
   const auto in_map = [&](const maps::Pose& pose) {
     if (mode_ != TrackingMode::mapless) return pose;
     const maps::Point at = maps::inverse_transform(output.sensor, {pose.x, pose.y});

@@ -16,8 +16,7 @@ class TrackingMeter {
   TrackingMeter(TrackingMode mode, const maps::OccupancyGrid& map, const sim::World& world, std::size_t own,
                 std::uint64_t seed);
 
-  /// To be called in every control step. The objects, in the map frame, until the next step; without a map,
-  /// none.
+  /// To be called each control step. The objects, in the map frame, until the next step; without a map, none.
   std::span<const tracking::TrackedObject> observe(const sim::World& world, const maps::LaserScanView& scan);
   /// To be called after each step of the world, of `time_step` (s).
   void moved(const sim::CarState& state, double time_step) noexcept { wheels_.update(state, time_step); }

@@ -22,8 +22,7 @@ constexpr double slow_above = 0.174;   // rad, of steering
 constexpr double fast = 5, slow = 3;   // m/s
 
 /// The mean over a window of `width` values; beyond the ends they are 0. As numpy.convolve in the mode `same`
-/// with `width` ones: as many values as the longer of both, the window of an even width begins half of it
-/// before.
+/// with `width` ones: as many as the longer of both, the window of an even width begins half of it before.
 std::vector<double> moving_mean(std::span<const double> values, int width) {
   const auto n = static_cast<int>(values.size()), count = std::max(n, width), narrow = std::min(n, width);
   std::vector<double> means;

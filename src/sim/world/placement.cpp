@@ -53,8 +53,7 @@ std::vector<maps::Pose> place_apart(std::span<const maps::Point> path, std::span
     const maps::Pose pose{path[row].x + distance * std::cos(direction),
                           path[row].y + distance * std::sin(direction), random.uniform(-pi, pi)};
     if (std::hypot(pose.x - start.x, pose.y - start.y) < keep_clear) continue;
-    // The car may lie across the road; on the side that it is not moved towards at least this much stays
-    // open.
+    // The car may lie across the road; on the side it is not moved towards at least this much stays open.
     if (!room.empty() && room[row] - std::hypot(car.length, car.width) / 2 < passage) continue;
     const Box wide{pose, car.length + 2 * gap, car.width + 2 * gap};
     const bool apart = std::all_of(placed.begin(), placed.end(), [&](const maps::Pose& other) {

@@ -15,8 +15,7 @@ struct GaussianFit {
   bool determined = false;  ///< whether the points determine the curvature
 };
 
-/// Computes the squares and logarithms of the densities of `count` points. Densities below 1e-10 count as
-/// 1e-10.
+/// Computes the squares and logarithms of the densities of `count` points. Those below 1e-10 count as 1e-10.
 inline void fit_weights(const double* density, int count, double* square, double* logarithm) {
   for (int k = 0; k < count; ++k) {
     const double y = std::max(density[k], 1e-10);
@@ -38,8 +37,7 @@ inline GaussianFit fit_gaussian(const double* x, const double* square, const dou
     return total;
   };
 
-  // All values are relative to the densest point: its weight may exceed that of the others by 20 orders of
-  // magnitude.
+  // All values are relative to the densest point: its weight may exceed others by 20 orders of magnitude.
   const auto densest = std::max_element(square, square + count) - square;
   const auto from_densest = [&](int k) { return x[k] - x[densest]; };
   const auto log_ratio = [&](int k) { return logarithm[k] - logarithm[densest]; };

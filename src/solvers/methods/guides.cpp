@@ -141,8 +141,7 @@ void Guides::take_in(const BatchEvaluator& evaluator, const float* solution) noe
   best_ = static_cast<int>(std::min_element(first, last) - first);
 }
 
-/// The deviations are pinned noise, or piecewise linear between normal values at knots a third of the horizon
-/// apart.
+/// The deviations are pinned noise, or piecewise linear between normal values a third of the horizon apart.
 void Guides::restart_others(RandomKey key) noexcept {
   if (!options_.guides.restart || count_ == 1) return;
   if (best_ != 0) std::copy_n(theta_[best_], rows_, theta_[0]);

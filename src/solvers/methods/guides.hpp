@@ -73,8 +73,7 @@ class Guides {
   std::span<const float> best_sequence() const noexcept;
 
   /// Fits the variances [row] to the paths of the last move (equation (13)), within `variance_min` and
-  /// `variance_max`.
-  /// `temperature` is that of q*; 0 if it is unknown yet: the variances are then `variance_max`.
+  /// `variance_max`. `temperature` is that of q*; 0 if it is unknown yet: they are then `variance_max`.
   void fit_variance(double temperature, float* variance) noexcept;
   /// The cost of a control sequence [row] from the present state; infinite if it is not finite.
   float cost(const BatchEvaluator& evaluator, const float* sequence) noexcept;

@@ -30,8 +30,7 @@ class CountingEvaluator final : public BatchEvaluator {
   mutable std::atomic<int> count_{0};
 };
 
-/// The frame of the solvers of this library: how they are copied, and what begins and ends a solve. `Self`
-/// has
+/// The frame of the solvers of this library: copies, and what begins and ends a solve. `Self` has
 ///
 ///     void compute(const BatchEvaluator&, const SolveRequest&, const Deadline&) noexcept;
 ///     void bind_result() noexcept;    // points the spans of the result to its own values

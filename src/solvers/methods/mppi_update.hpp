@@ -43,8 +43,7 @@ class Weighting {
 
   /// Adapts the temperature, then sets the weights as `weigh` does. The samples' stored terms are their
   /// control terms in units of the temperature. If all costs are equal, uses the configured one. The last
-  /// `outsiders` samples do not count for the temperature, so that one that is far better than all others
-  /// decides.
+  /// `outsiders` samples do not count for the temperature, so that one far better than all others decides.
   WeightSums<double> seek(SampleSet& samples, ThreadPool& pool, int outsiders = 0) noexcept;
 
  private:

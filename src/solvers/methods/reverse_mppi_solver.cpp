@@ -205,8 +205,7 @@ class ReverseMppiSolver final : public detail::MethodSolver<ReverseMppiSolver> {
   }
 
   /// One step of mirror descent of a distribution towards the moments of weighted samples. `list` is the
-  /// index of their first moment in `sums_`; the second moment is about the mean of the samples'
-  /// distribution.
+  /// index of their first moment in `sums_`; the second is about the mean of the samples' distribution.
   void descend(std::size_t list, Gaussian& g) noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
       const double scale = options_.published.dimensionless_variance ? inverse_[r] : 1.0;

@@ -54,8 +54,7 @@ inline int squared_norms(const Rows& x, int count, float* values) noexcept {
   return count;
 }
 
-/// The program's gradient of the log of a Gaussian prior: with the inverse of the inverse variance, and the
-/// wrong sign.
+/// The program's gradient of the log of a Gaussian prior: with the variance inverted twice, wrongly signed.
 inline float published_prior_gradient(float x, float mean, float inverse_variance) noexcept {
   return (x - mean) / inverse_variance;
 }

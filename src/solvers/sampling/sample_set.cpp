@@ -112,8 +112,7 @@ bool SampleSet::prepared(Range r) const noexcept {
   return std::find(first, last + 1, 0) == last + 1;
 }
 
-/// Calls `each(range, statistics)` for every part that begins before the deadline, and combines the
-/// statistics.
+/// Calls `each(range, statistics)` for every part begun before the deadline, and combines the statistics.
 template <class Each>
 BatchStatistics SampleSet::run_parts(ThreadPool& pool, const Deadline& deadline, Each&& each) noexcept {
   const int size = part_size(pool.threads());

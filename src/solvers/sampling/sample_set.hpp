@@ -114,8 +114,7 @@ class SampleSet {
   /// Sets the totals to cost + factor * term and returns the lowest.
   float mix_totals(float factor, ThreadPool& pool) noexcept;
 
-  /// Sets the weights to exp((least - total) / temperature), which are not normalised, and returns their
-  /// sums.
+  /// Sets the weights to exp((least - total) / temperature), not normalised, and returns their sums.
   WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;
 
   /// Sums over the present weights of the first `count` samples.

@@ -28,10 +28,9 @@ DrivingLimits driving_limits(const VehicleTraits& traits, double friction);
 ///     v^2 |k| <= grip,   -braking <= dv/dt <= acceleration,   (v^2 k)^2 + (b dv/dt)^2 <= grip^2
 ///
 /// with b = 1 / braking_share for dv/dt < 0, else 1, by a pass forward and one backward (Heilmeier et al.
-/// 2020, Sec. 4; see feasible_speeds). Each speed is low enough for the rest of the path. With `lead`, a
-/// point has the speed of the place that the car reaches after this time; where speeds rise, that is more
-/// than the car can drive at the point itself. The speeds can be updated while driving, when the friction
-/// changes.
+/// 2020, Sec. 4; see feasible_speeds). Each is low enough for the rest of the path. With `lead`, a point has
+/// the speed of the place that the car reaches after this time; where speeds rise, that is more than the car
+/// can drive at the point itself. The speeds can be updated while driving, when the friction changes.
 class FeasibleSpeeds {
  public:
   /// `grip_shares` are shares of the grip in the limits, one for each part of the path; the parts have equal

@@ -114,8 +114,7 @@ TEST(PaperEquations, SurrogateGradientOfAQuadraticCost) {
 }
 
 /// The control term of (8) in (11), for S = 1/2 a (v - c)^2: guides go to c - lambda / a (u - n) / Sigma,
-/// with the last solution u and nominal sequence n. The smaller Sigma is, the more it holds them where they
-/// are.
+/// with the last solution u and nominal sequence n. A smaller Sigma holds them more where they are.
 TEST(PaperEquations, ControlTermHoldsGuidesBack) {
   SvgMppiOptions options = printed();
   options.guides.weight = GuideWeight::importance;
@@ -133,8 +132,7 @@ TEST(PaperEquations, ControlTermHoldsGuidesBack) {
 }
 
 /// Equation (11) for any cost: a step goes the fraction epsilon / Sigma_g of the way to the mean of exp(-S /
-/// lambda) N(theta, Sigma_g). This is the solution of the forward divergence for that prior, not of the
-/// reverse one.
+/// lambda) N(theta, Sigma_g). This solves the forward divergence for that prior, not the reverse one.
 TEST(PaperEquations, StepOfAGuideIsADampedForwardStep) {
   SvgMppiOptions options = printed();
   options.guides.variance = 1e-8;

@@ -1,5 +1,4 @@
-// Recorded drives, and bags of rosbag2: which messages and topics are used, what a sample is, and what is
-// refused.
+// Recorded drives, and bags of rosbag2: which messages and topics are used, samples, and what is refused.
 
 #include <sqlite3.h>
 

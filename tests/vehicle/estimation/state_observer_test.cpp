@@ -30,8 +30,7 @@ struct Errors {
   double across = 0;                         ///< m, of the position, across the car
 };
 
-/// The covariance of a position with these deviations (m) along and across a car with this yaw (rad), and of
-/// the yaw.
+/// The covariance of a position with these deviations (m) along and across a car, and of its yaw (rad).
 PoseCovariance covariance_of(double along, double across, double yaw, double yaw_deviation) {
   const double c = std::cos(yaw), s = std::sin(yaw), a = along * along, b = across * across;
   return {{{c * c * a + s * s * b, c * s * (a - b), 0},

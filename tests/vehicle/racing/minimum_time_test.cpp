@@ -45,8 +45,7 @@ double time_of(const Corridor& corridor, const std::vector<double>& offsets, con
   return sum;
 }
 
-/// The squares of the second differences along a line of offsets, the objective of
-/// minimum_curvature_offsets().
+/// The squares of the second differences of a line of offsets, the objective of minimum_curvature_offsets().
 double bending(const std::vector<maps::Point>& points, const std::vector<double>& offsets) {
   using namespace detail;
   const Curve normal = normals(points);

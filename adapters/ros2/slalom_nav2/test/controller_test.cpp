@@ -61,8 +61,7 @@ constexpr double radius = 0.22;  // m, of the robot
 /// A pallet on the way, and a wall that is longer than the costmap sees: x from, y from, x to, y to, m.
 constexpr double obstacles[][4] = {{4.5, 2.5, 5.5, 3.5}, {12, -4, 12.2, 10}};
 
-/// A simulated differential base in real time, and a client of the server. A wait throws if the robot hits
-/// something.
+/// A simulated differential base in real time, and a client of the server. A wait throws at a collision.
 class ControllerTest : public slalom_ros_test::TestNode {
  public:
   explicit ControllerTest(const std::string& file) : TestNode("drive") {

@@ -60,8 +60,7 @@ bool has_kink(const Dual<T, N>& x) {
 
 }  // namespace detail
 
-/// A number with its derivatives in `N` directions. `T` is double, or a dual number itself for second
-/// derivatives.
+/// A number with its derivatives in `N` directions. `T` is double, or itself dual for second derivatives.
 ///
 /// Where a function has no derivative or an infinite one (`abs` at 0, `min` of equal values, `sqrt` at 0,
 /// `floor` at an integer, a condition of `select` that changes), the value is that of the function, the

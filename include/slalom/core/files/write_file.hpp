@@ -7,12 +7,10 @@
 
 namespace slalom {
 
-/// Writes a whole file. If that fails, throws IoError with the reason of the system, and leaves no part of
-/// the file.
+/// Writes a whole file. If that fails, throws IoError with the system's reason, and leaves no part of it.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
-/// The error of a file that could not be written, with the reason of the system: the `errno` of the failed
-/// call.
+/// The error of a file that could not be written, with the system's reason: the `errno` of the failed call.
 IoError cannot_write(const std::filesystem::path& file);
 
 }  // namespace slalom

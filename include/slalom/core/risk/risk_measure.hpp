@@ -16,8 +16,7 @@ inline const char* const* enum_names(RiskMeasure) {
   return names;
 }
 
-/// Options of rollouts in several variants of the world.
-/// `visit_options` below describes the fields.
+/// Options of rollouts in several variants of the world. `visit_options` below describes the fields.
 struct RiskOptions {
   int variants = 1;
   RiskMeasure measure = RiskMeasure::mean;

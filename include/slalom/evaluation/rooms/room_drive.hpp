@@ -33,8 +33,7 @@ struct RoomDrive {
   /// s between the first scan in which a scenario without a way shows it, and the robot saying so; -1 if it
   /// did not. The way is shown to be closed once the search of the map of scans finds none.
   double answer_time = -1;
-  /// BARN's metric: its optimal time divided by the time, which counts as 2 to 8 optimal times; 0 without
-  /// success.
+  /// BARN's metric: optimal time divided by time, which counts as 2 to 8 optimal times; 0 without success.
   double metric = 0;
   double update_p50 = 0, update_max = 0;         ///< s of wall clock, of the navigator's updates
   maps::Pose goal;                               ///< with the heading that was drawn

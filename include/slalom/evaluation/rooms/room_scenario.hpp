@@ -66,8 +66,7 @@ std::span<const RoomScenario> manoeuvre_scenarios();
 /// IoError if the folder has no world, or a file does not have the format.
 std::vector<RoomScenario> barn_scenarios(const std::filesystem::path& folder, int every);
 
-/// The scenario of this name, of either kind. Throws std::invalid_argument that lists the names if there is
-/// none.
+/// The scenario of this name, of either kind. Throws std::invalid_argument with the names if there is none.
 const RoomScenario& room_scenario(std::string_view name);
 
 }  // namespace slalom::evaluation

@@ -24,8 +24,7 @@ constexpr int guide_floats(const Settings& s, int rows, int arrays) {
 constexpr bool draws_ahead(const Settings& s, int rows) {
   return guide_floats(s, rows, 2) * 4 <= most_shared_bytes;
 }
-/// Doubles of device memory: guides before and after a solve, their paths, costs along the paths and at the
-/// end.
+/// Doubles of device memory: guides before and after a solve, their paths, costs along them and at the end.
 constexpr long long guide_doubles(const Settings& s, int rows) {
   return static_cast<long long>(2 + s.iterations) * s.guides * rows + (s.iterations + 1ll) * s.guides;
 }

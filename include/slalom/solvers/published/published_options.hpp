@@ -5,12 +5,10 @@
 /// Reproduction of the published program of Honda et al. (ICRA 2024). This folder holds the options that
 /// exist only for it: each of the methods' aggregates has one of the aggregates below as its member
 /// `published`. Their defaults are the methods as the papers have them; configs/published.yaml has the values
-/// of the program. docs/paper.md lists every departure of the program from the
-/// paper.
+/// of the program. docs/paper.md lists every departure of the program from the paper.
 namespace slalom {
 
-/// Options of `mppi` that reproduce the program.
-/// `visit_options` below describes the fields.
+/// Options of `mppi` that reproduce the program. `visit_options` below describes the fields.
 struct PublishedMppi {
   double inverse_variance_offset = 0;
   double normaliser_offset = 0;
@@ -26,8 +24,7 @@ inline const char* const* enum_names(FitTarget) {
   return names;
 }
 
-/// Options of `svg_mppi` that reproduce the program.
-/// `visit_options` below describes the fields.
+/// Options of `svg_mppi` that reproduce the program. `visit_options` below describes the fields.
 struct PublishedSvgMppi {
   double inverse_variance_offset = 0;
   double normaliser_offset = 0;
@@ -56,8 +53,7 @@ inline const char* const* enum_names(RejectionModel) {
   return names;
 }
 
-/// Options of `reverse_mppi` that reproduce the program.
-/// `visit_options` below describes the fields.
+/// Options of `reverse_mppi` that reproduce the program. `visit_options` below describes the fields.
 struct PublishedReverseMppi {
   double inverse_variance_offset = 0;
   double normaliser_offset = 0;
@@ -75,8 +71,7 @@ inline const char* const* enum_names(BandwidthModel) {
   return names;
 }
 
-/// Options of `sv_mpc` that reproduce the program.
-/// `visit_options` below describes the fields.
+/// Options of `sv_mpc` that reproduce the program. `visit_options` below describes the fields.
 struct PublishedSvMpc {
   double inverse_variance_offset = 0;
   double normaliser_offset = 0;

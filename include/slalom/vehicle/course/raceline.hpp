@@ -6,8 +6,7 @@
 
 namespace slalom::vehicle {
 
-/// Lateral offsets (m, to the left) from a closed centre line, one per point, that give the line of least
-/// curvature:
+/// Lateral offsets (m, to the left) from a closed centre line, one per point, for the least curvature:
 ///
 ///   minimise  sum_i | (p_{i-1} + a_{i-1} n_{i-1}) - 2 (p_i + a_i n_i) + (p_{i+1} + a_{i+1} n_{i+1}) |^2
 ///   subject to  |a_i| <= bound,

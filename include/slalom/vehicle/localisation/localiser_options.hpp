@@ -14,8 +14,7 @@ inline const char* const* enum_names(SensorModel) {
   return names;
 }
 
-/// Options of Localiser: those that depend on the car and its sensors.
-/// `visit_options` below describes the fields.
+/// Options of Localiser: those of the car and its sensors. `visit_options` below describes the fields.
 struct LocaliserOptions {
   std::uint64_t seed = 0;
   SensorModel sensor_model = SensorModel::beam;

@@ -25,8 +25,7 @@ inline const char* const* enum_names(BodyModel) {
   return names;
 }
 
-/// The car's body and the clearance that it keeps from obstacles.
-/// `visit_body` below describes the fields.
+/// The car's body and the clearance that it keeps from obstacles. `visit_body` below describes the fields.
 struct BodyOptions {
   BodyModel model = BodyModel::discs;
   double front = 0.461;
@@ -38,8 +37,7 @@ struct BodyOptions {
   double soft_cost = 10;
 };
 
-/// Weights of the cost of a state (see PathTracking).
-/// `visit_tracking_cost` below describes the fields.
+/// Weights of the cost of a state (see PathTracking). `visit_tracking_cost` below describes the fields.
 struct TrackingCostOptions {
   double distance_weight = 1;
   double yaw_weight = 0.01;
@@ -51,8 +49,7 @@ struct TrackingCostOptions {
   double outside_terminal_cost = 100;
 };
 
-/// Options of the vehicle problem that every vehicle model shares.
-/// `visit_options` below describes the fields.
+/// Options of the vehicle problem that all models share. `visit_options` below describes the fields.
 struct PathTrackingOptions {
   double time_step = 0.05;
   double front_length = 0.15875;

@@ -121,8 +121,7 @@ class Planner {
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
-  /// Copies everything: the copy continues bit for bit like the original. The threads of the solver are
-  /// shared.
+  /// A copy continues bit for bit like the original. The threads of the solver are shared.
   Planner(const Planner& other);
   Planner& operator=(const Planner& other);
   Planner(Planner&&) noexcept;

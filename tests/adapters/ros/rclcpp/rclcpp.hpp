@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-// Stand-ins for what ProblemNode uses of ROS 2. Messages stay where they are sent; the clock and `spin` are
-// the test's.
+// Stand-ins for what ProblemNode uses of ROS 2. Messages stay where sent; clock and `spin` are the test's.
 namespace rclcpp {
 struct Time {
   double s = 0;

@@ -6,8 +6,7 @@
 
 namespace slalom_nav2 {
 
-/// A term of one's own in the cost of plans: a plugin with this base class, which the parameter
-/// `cost_plugins` names.
+/// A term of one's own in the cost of plans: a plugin of this class, named by the parameter `cost_plugins`.
 class CostTerm {
  public:
   virtual ~CostTerm() = default;
