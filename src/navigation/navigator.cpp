@@ -146,7 +146,8 @@ bool Navigator::Implementation::watch_commands(const Velocity& velocity, double 
 
 /// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that overlaps an
 /// obstacle already may leave it, but not go deeper into it: the body without the rim that overlaps must stay
-/// free. If even its core is in an obstacle, the plan must leave it.
+/// free, or where the robot stands, without half a cell more, which rollouts do not see. If even its core is
+/// in an obstacle, the plan must leave it.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
@@ -154,7 +155,8 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   const std::size_t last = std::min(
       plan.size() - 1, saturate_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
   if (others_.meet(plan, last)) return true;
-  const Footprint& body = bodies_[maps_.rim];
+  const int rim = maps_.rim > 0 && way_.stands() ? maps_.rim + 1 : maps_.rim;
+  const Footprint& body = bodies_[std::min(rim, static_cast<int>(bodies_.size()) - 1)];
   if (costmap.collides(body, plan.front())) return costmap.collides(body, plan.back());
   for (std::size_t i = 1; i <= last; ++i)
     if (costmap.collides(body, plan[i - 1], plan[i])) return true;
