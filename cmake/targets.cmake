@@ -46,12 +46,10 @@ endfunction()
 
 # Flags of the targets of this project; none is exported. Tests set SLALOM_UNHARDENED: they are not installed.
 # Functions take wide packs by reference, so the warning about their calling convention (-Wpsabi) does not
-# apply. In a group of sources, clang takes the constants of one for those that another shadows.
+# apply. Clang takes constants of other sources in its group for shadowed ones.
 function(slalom_compile_options target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wno-psabi)
-  if(NOT (SLALOM_GROUP_SOURCES AND CMAKE_CXX_COMPILER_ID MATCHES "Clang"))
-    target_compile_options(${target} PRIVATE -Wshadow)
-  endif()
+  set(clang_groups $<AND:$<BOOL:${SLALOM_GROUP_SOURCES}>,$<CXX_COMPILER_ID:Clang>>)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wno-psabi $<$<NOT:${clang_groups}>:-Wshadow>)
   if(SLALOM_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
