@@ -66,8 +66,9 @@ class GridSearch {
     begin(from);
     advance(std::numeric_limits<int>::max(), [](int) {});
   }
-  /// Begins what `spread` does; cells on the way to a point at first (A*).
+  /// Begins what `spread` does.
   void begin(int from) noexcept { begin(from, centre_of(from), 0); }
+  /// The same, with the cells on the way to a point (m) first (A*).
   void begin(int from, const Point& towards) noexcept { begin(from, towards, cell_size_); }
   /// Goes on from at most so many cells. Returns whether the costs of all cells are known. `price(cell)` sets
   /// the price of an unpriced one.
