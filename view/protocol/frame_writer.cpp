@@ -1,5 +1,6 @@
 #include "view/protocol/frame_writer.hpp"
 
+#include <iterator>
 #include <sstream>
 
 namespace slalom::view {
