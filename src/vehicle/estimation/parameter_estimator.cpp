@@ -179,9 +179,8 @@ double ParameterEstimator::turning_share() const noexcept {
   return std::min(1.0, mean_square / square(turning));
 }
 
-/// Learns how long the car took to move, when its speed has reached `slowest`. If the speed rose evenly, the
-/// car drove for twice its way over its speed. One that moves at once says nothing of its servo, which may
-/// lag.
+/// Learns how long the car took to move, at the speed `slowest`: if the speed rose evenly, it drove for twice
+/// its way over its speed. One that moves at once says nothing of its servo, which may lag.
 void ParameterEstimator::watch_start(double speed) noexcept {
   if (start_ <= 0) {
     start_ = std::abs(speed) < standing ? 0 : -1;
