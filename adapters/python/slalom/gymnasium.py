@@ -48,7 +48,7 @@ def state_of(env: gymnasium.Env[Any, Any]) -> Array:
 
 
 class Problem(_slalom.Problem):
-    """An environment as a problem: rollouts are steps of a copy, costs are rewards less than 0. `terminal_cost` helps where rewards come late."""
+    """An environment as a problem: rollouts are steps of a copy, costs are rewards less than 0."""
 
     def __init__(self, env: gymnasium.Env[Any, Any], terminal_cost: Callable[[Array], Array] | None = None, **parts: Any) -> None:
         env.reset()

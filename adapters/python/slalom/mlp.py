@@ -67,7 +67,7 @@ class Mlp:
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the network to a file for `slalom::load_mlp` and `Mlp.load`."""
-        arrays = {"activation": np.array(self.activation), "residual": np.array(self.residual)}
+        arrays: dict[str, Any] = {"activation": np.array(self.activation), "residual": np.array(self.residual)}
         for name in "input_mean", "input_scale", "output_mean", "output_scale":
             arrays[name] = getattr(self, name)
         for i, (weights, biases) in enumerate(self.layers):
