@@ -72,9 +72,8 @@ ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {
 }
 
 TEST(ParameterEstimator, AStartFromRestShowsALongDelayBeforeTheFirstTurn) {
-  for (const double delay : {0.06, 0.1, 0.14})
-    EXPECT_NEAR(after({.delay = delay, .swing = 0, .duration = 1, .from_rest = true}).delay / delay, 0.73,
-                0.05);
+  for (const double d : {0.06, 0.1, 0.14})
+    EXPECT_NEAR(after({.delay = d, .swing = 0, .duration = 1, .from_rest = true}).delay / d, 0.73, 0.05);
   EXPECT_DOUBLE_EQ(after({.swing = 0, .duration = 1, .from_rest = true}).delay, 0.025);
 }
 
