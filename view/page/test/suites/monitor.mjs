@@ -38,8 +38,8 @@ export default async function (h) {
       assert.equal(refused, "this page shows a controller that runs elsewhere; it cannot change it");
     }
     const body = await page.evaluate(() => slalom.frame.bodies[1]);
-    await page.mouse.move(...(await look.placeOf(body)));
-    assert.equal(await page.evaluate(() => document.getElementById("scene").style.cursor), "default");
+    await page.mouse.move(...(await look.placeOf(body)), { steps: 3 });
+    await look.until(() => document.getElementById("scene").style.cursor === "default");
   });
 
   await h.test(
