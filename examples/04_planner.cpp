@@ -12,12 +12,13 @@ using namespace slalom;
 
 /// Whether the car drives a lap within 20 s without a collision.
 bool drives_a_lap(const evaluation::Environment& environment, std::uint64_t seed) {
-  const SvgMppiOptions options{.horizon = 14,
-                               .samples = 2000,
-                               .temperature = 3,
-                               .input_min = -0.4189,
-                               .input_max = 0.4189,
-                               .seed = seed};
+  SvgMppiOptions options;
+  options.horizon = 14;
+  options.samples = 2000;
+  options.temperature = 3;
+  options.input_min = -0.4189;
+  options.input_max = 0.4189;
+  options.seed = seed;
   vehicle::Planner planner({}, vehicle::make_vehicle_model({}), environment.path, make_solver(options, 1));
   sim::WorldOptions world_options = environment.world_options();
   sim::World world(world_options, environment.track);

@@ -81,10 +81,8 @@ class LapTable : public testing::TemporaryFolder {
 TEST_F(LapTable, ReadsBackToTheSameBits) {
   const auto rows = read(head_ + first_ + second_);
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].experiment, 0);
-  EXPECT_EQ(rows[0].lap, 2);
-  EXPECT_EQ(rows[1].experiment, 1);
-  EXPECT_EQ(rows[0].seed, 10u);
+  EXPECT_EQ(std::tuple(rows[0].experiment, rows[0].lap, rows[0].seed, rows[1].experiment),
+            std::tuple(0, 2, 10u, 1));
   EXPECT_EQ(rows[1].state_cost, 0.1 + 0.2);
   EXPECT_EQ(rows[1].collision_cost, 1e-300);
   EXPECT_EQ(rows[1].time, 1.0 / 3);

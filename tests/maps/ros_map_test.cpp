@@ -127,12 +127,10 @@ TEST_F(RosMap, SavedMapsReadBackTheSame) {
   for (int i = 0; i < 37 * 11; ++i) grid.cells.push_back(static_cast<Occupancy>(i * 7919 % 31 % 3));
   save_ros_map(grid, folder_ / "saved.yaml");
   const OccupancyGrid read = load_ros_map(folder_ / "saved.yaml");
-  EXPECT_EQ(read.width, grid.width);
-  EXPECT_EQ(read.height, grid.height);
-  EXPECT_EQ(read.resolution, grid.resolution);
-  EXPECT_EQ(read.origin.x, grid.origin.x);
-  EXPECT_EQ(read.origin.y, grid.origin.y);
-  EXPECT_EQ(read.origin.yaw, grid.origin.yaw);
+  const auto form = [](const OccupancyGrid& g) {
+    return std::tuple(g.width, g.height, g.resolution, g.origin.x, g.origin.y, g.origin.yaw);
+  };
+  EXPECT_EQ(form(read), form(grid));
   EXPECT_EQ(read.cells, grid.cells);
   EXPECT_THROW(save_ros_map(grid, folder_ / "absent" / "saved.yaml"), IoError);
   grid.cells.pop_back();

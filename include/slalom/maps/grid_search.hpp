@@ -100,8 +100,9 @@ class GridSearch {
   void begin(int from, const Point& towards, double weight) noexcept;
   /// The distance (m) of a cell from the point towards which the search goes.
   float away(int cell) const noexcept {
-    return weight_ * std::hypot(static_cast<float>(cell % columns_) - towards_x_,
-                                static_cast<float>(cell / columns_) - towards_y_);
+    const int row = cell / columns_, column = cell % columns_;
+    return weight_ *
+           std::hypot(static_cast<float>(column) - towards_x_, static_cast<float>(row) - towards_y_);
   }
   void smooth() noexcept;
 

@@ -11,10 +11,11 @@ template <class Whole, class Real>
 requires std::is_floating_point_v<Real>
 constexpr Whole saturate_cast(Real value, Whole if_nan = 0) noexcept {
   using Limits = std::numeric_limits<Whole>;
-  constexpr Real beyond = 2 * static_cast<Real>(Limits::max() / 2 + 1);  // a power of two, exact in `Real`
-  if (value != value) return if_nan;
-  if (value <= static_cast<Real>(Limits::min())) return Limits::min();
-  return value < beyond ? static_cast<Whole>(value) : Limits::max();
+  constexpr Real least = static_cast<Real>(Limits::min());
+  constexpr Real beyond = 2 * static_cast<Real>((Limits::max() >> 1) + 1);  // a power of two, exact in `Real`
+  if (value >= beyond) return Limits::max();
+  if (value > least) return static_cast<Whole>(value);
+  return value <= least ? Limits::min() : if_nan;
 }
 
 }  // namespace slalom
