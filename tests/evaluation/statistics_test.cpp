@@ -104,12 +104,9 @@ TEST(Bootstrap, IntervalOfADifferenceContainsIt) {
 TEST(Percentile, IsTheNearestRank) {
   std::vector<double> values;
   for (int i = 1; i <= 100; ++i) values.push_back(i);
-  EXPECT_EQ(percentile(values, 0), 1);
   EXPECT_EQ(percentile(values, 0.07), 7) << "0.07 * 100 is above 7 in doubles";
-  EXPECT_EQ(percentile(values, 0.5), 50);
-  EXPECT_EQ(percentile(values, 0.501), 51);
-  EXPECT_EQ(percentile(values, 0.99), 99);
-  EXPECT_EQ(percentile(values, 1), 100);
+  for (const auto& [share, value] : {std::pair{0.0, 1}, {0.5, 50}, {0.501, 51}, {0.99, 99}, {1.0, 100}})
+    EXPECT_EQ(percentile(values, share), value) << share;
   EXPECT_EQ(percentile(std::vector<float>{1, 2, 4}, 0.5), 2);
   EXPECT_EQ(percentile(std::vector<float>{1, 2}, 0.5), 1);
   EXPECT_EQ(percentile(std::vector<float>{3}, 0.99), 3);

@@ -48,7 +48,10 @@ def show(controller: Any, start: Any, *, block: bool = True, browser: bool = Tru
       figure          function of a state, returns lines (n, 2) that show the body
       shapes          list, or function of the problem that returns it: discs (x, y, radius), boxes (x, y, yaw, length,
                       width) and polygons (n, 2)
-      move            function (problem, index of a shape, x, y): moves a shape that is dragged
+      goals           list, or function of the problem that returns it: discs (x, y, radius) to reach
+      move            function (problem, index of a shape, x, y): moves a shape that is dragged; goals follow the shapes
+      clock           function (problem, time): the problem at a time (s) since the start, before each plan
+      against         a second method, such as "mppi", which drives beside the first from the start
       map             OccupancyGrid, drawn under all else
       plant           function of state and input, returns the next state of the real system; by default the problem
       state_names, input_names   such as "speed, m/s"

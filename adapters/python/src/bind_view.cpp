@@ -12,7 +12,7 @@ struct Drawing {
   std::vector<double> start;
   int x = 0, y = 1;  ///< indices of states
   std::optional<int> heading;
-  py::object pose, figure, shapes, move, plant;
+  py::object pose, figure, shapes, goals, move, clock, plant;
 };
 
 /// An array of points (n, 2), or of places (n, 3).
@@ -30,10 +30,11 @@ view::Line line_of(const py::object& values, const std::string& what) {
   return line;
 }
 
-view::Shape shape_of(const py::object& values) {
+view::Shape shape_of(const py::object& values, view::ShapeKind kind) {
   const auto array = Numbers::ensure(values);
   if (array && array.ndim() == 1 && array.size() == 3)
-    return view::disc(array.at(0), array.at(1), array.at(2));
+    return view::disc(array.at(0), array.at(1), array.at(2), kind);
+  if (kind == view::ShapeKind::goal) throw py::value_error("goals: each must be (x, y, radius)");
   if (array && array.ndim() == 1 && array.size() == 5)
     return view::box({array.at(0), array.at(1), array.at(2)}, array.at(3), array.at(4));
   return view::polygon(
@@ -56,8 +57,10 @@ class PythonSubject final : public view::SolverSubject {
 
   std::unique_ptr<view::Subject> clone() const override {
     const py::gil_scoped_acquire lock;
-    return std::make_unique<PythonSubject>(py::module_::import("copy").attr("copy")(controller_), drawing_,
-                                           facts_);
+    auto copy = std::make_unique<PythonSubject>(py::module_::import("copy").attr("copy")(controller_),
+                                                drawing_, facts_);
+    copy->time_ = time_;
+    return copy;
   }
   const view::SubjectFacts& facts() const override { return *facts_; }
   std::vector<double> start() const override { return drawing_->start; }
@@ -69,8 +72,13 @@ class PythonSubject final : public view::SolverSubject {
                                               **values_of(list_options(options))));
   }
 
+  void restart() override {
+    time_ = 0;
+    SolverSubject::restart();
+  }
   const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
     const py::gil_scoped_acquire lock;
+    if (!drawing_->clock.is_none()) drawing_->clock(controller_.attr("problem"), time_);
     controller().solve(controller_, {state.begin(), state.end()}, request);
     return controller().result();
   }
@@ -81,6 +89,7 @@ class PythonSubject final : public view::SolverSubject {
   }
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
     const py::gil_scoped_acquire lock;
+    time_ += time_step();
     if (drawing_->plant.is_none()) return problem().step(state, input, 0);
     return drawing_->plant(array_of(state), array_of(input)).cast<std::vector<double>>();
   }
@@ -110,10 +119,13 @@ class PythonSubject final : public view::SolverSubject {
   std::vector<view::Shape> shapes() override {
     const py::gil_scoped_acquire lock;
     std::vector<view::Shape> all;
-    const py::object& given = drawing_->shapes;
-    if (given.is_none()) return all;
-    const py::object now = PyCallable_Check(given.ptr()) ? given(controller_.attr("problem")) : given;
-    for (const py::handle& each : now) all.push_back(shape_of(py::reinterpret_borrow<py::object>(each)));
+    for (const auto kind : {view::ShapeKind::obstacle, view::ShapeKind::goal}) {
+      const py::object& given = kind == view::ShapeKind::goal ? drawing_->goals : drawing_->shapes;
+      if (given.is_none()) continue;
+      const py::object now = PyCallable_Check(given.ptr()) ? given(controller_.attr("problem")) : given;
+      for (const py::handle& each : now)
+        all.push_back(shape_of(py::reinterpret_borrow<py::object>(each), kind));
+    }
     return all;
   }
   std::vector<view::Line> figure(std::span<const double> state) override {
@@ -148,6 +160,7 @@ class PythonSubject final : public view::SolverSubject {
   Controller* native_ = nullptr;  ///< owned by `controller_`
   std::shared_ptr<const Drawing> drawing_;
   std::shared_ptr<const view::SubjectFacts> facts_;
+  double time_ = 0;  ///< s since the drive began
 };
 
 std::unique_ptr<view::View> make_view(const py::object& controller, Drawing drawing, view::SubjectFacts facts,
@@ -180,27 +193,29 @@ void bind_view(py::module_& module) {
   py::class_<view::View>(module, "_View", "A page that shows a controller; slalom.show makes it.", guarded())
       .def(py::init([](const py::object& controller, std::vector<double> start, int x, int y,
                        std::optional<int> heading, py::object pose, double length, double width,
-                       py::object figure, py::object shapes, py::object move,
-                       std::optional<maps::OccupancyGrid> map, py::object plant,
+                       py::object figure, py::object shapes, py::object goals, py::object move,
+                       py::object clock, std::optional<maps::OccupancyGrid> map, py::object plant,
                        std::vector<std::string> state_names, std::vector<std::string> input_names,
                        const std::string& title, const std::string& host, std::uint16_t port,
-                       const std::string& token) {
-             return make_view(controller,
-                              {std::move(start), x, y, heading, std::move(pose), std::move(figure),
-                               std::move(shapes), std::move(move), std::move(plant)},
-                              {.title = title,
-                               .states = std::move(state_names),
-                               .inputs = std::move(input_names),
-                               .length = length,
-                               .width = width,
-                               .map = std::move(map)},
-                              {.host = host, .port = port, .token = token});
+                       const std::string& token, const std::string& against) {
+             return make_view(
+                 controller,
+                 {std::move(start), x, y, heading, std::move(pose), std::move(figure), std::move(shapes),
+                  std::move(goals), std::move(move), std::move(clock), std::move(plant)},
+                 {.title = title,
+                  .states = std::move(state_names),
+                  .inputs = std::move(input_names),
+                  .length = length,
+                  .width = width,
+                  .map = std::move(map)},
+                 {.host = host, .port = port, .token = token, .against = against});
            }),
            "controller"_a, "start"_a, py::kw_only(), "x"_a = 0, "y"_a = 1, "heading"_a = py::none(),
            "pose"_a = py::none(), "length"_a = 0.0, "width"_a = 0.0, "figure"_a = py::none(),
-           "shapes"_a = py::none(), "move"_a = py::none(), "map"_a = py::none(), "plant"_a = py::none(),
-           "state_names"_a = std::vector<std::string>{}, "input_names"_a = std::vector<std::string>{},
-           "title"_a = "", "host"_a = "127.0.0.1", "port"_a = 8400, "token"_a = "")
+           "shapes"_a = py::none(), "goals"_a = py::none(), "move"_a = py::none(), "clock"_a = py::none(),
+           "map"_a = py::none(), "plant"_a = py::none(), "state_names"_a = std::vector<std::string>{},
+           "input_names"_a = std::vector<std::string>{}, "title"_a = "", "host"_a = "127.0.0.1",
+           "port"_a = 8400, "token"_a = "", "against"_a = "")
       .def_property_readonly("address", &view::View::address, "The address of the page.")
       .def(
           "turn",

@@ -133,6 +133,16 @@ def test_a_plan_on_the_page_keeps_the_rates_of_the_problem():
         assert np.allclose(places, plan.states[:, :2], atol=1e-5)
 
 
+def test_goals_a_clock_and_a_second_method_are_shown():
+    times = []
+    with shown(garden(), goals=[(4, 1, 0.5)], clock=lambda problem, time: times.append(time), against="mppi") as client:
+        assert client.text("state")["ghost"] == "mppi"
+        client.find(lambda m: isinstance(m, np.ndarray) and m[0] >= 3)
+        number, kind, _, x, y = struct.unpack_from("<HBBff", client.block(8), 28)
+    assert (number, kind, x, y) == (1, 6, 4, 1)
+    assert np.allclose(sorted(set(np.round(times, 6)))[:4], [0, 0.1, 0.2, 0.3])
+
+
 def test_a_cost_whose_terms_change_is_an_error():
     view = slalom._slalom._View(garden(lambda x, u: {"far" if x[:, 0].max() > 0.01 else "near": x[:, 0]}), [0, 0, 0], port=0)
     _client = Client(view.address)
@@ -158,6 +168,7 @@ def test_wrong_drawings_are_errors():
     for drawing, message in [({"start": [0, 0]}, "start: has 2 values, must have 3"),
                              ({"start": [0, 0, 0], "heading": 3}, "3 must be an index of a state"),
                              ({"start": [0, 0, 0], "state_names": ["x"]}, "has 1 names, must have 3"),
-                             ({"start": [0, 0, 0], "host": "0.0.0.0"}, "token: must be given")]:
+                             ({"start": [0, 0, 0], "host": "0.0.0.0"}, "token: must be given"),
+                             ({"start": [0, 0, 0], "against": "mpc"}, "mpc")]:
         with pytest.raises(ValueError, match=message):
             slalom.show(garden(), drawing.pop("start"), port=0, block=False, browser=False, **drawing)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "slalom/core/numbers/saturate_cast.hpp"
 #include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/closed_discs.hpp"
 #include "slalom/maps/pose.hpp"
@@ -50,13 +51,12 @@ class GridSearch {
   template <class Visit>
   void visit_around(const Point& point, double reach, Visit&& visit) const noexcept {
     const auto index = [&](double offset, int most) {
-      return std::clamp(offset / cell_size_, 0.0, most - 1.0);
+      return saturate_cast<int>(std::clamp(offset / cell_size_, 0.0, most - 1.0));
     };
     const Point from{point.x - reach - corner_.x, point.y - reach - corner_.y};
-    const auto last_column = static_cast<int>(index(from.x + 2 * reach, columns_)),
-               last_row = static_cast<int>(index(from.y + 2 * reach, rows_));
-    for (auto row = static_cast<int>(index(from.y, rows_)); row <= last_row; ++row)
-      for (auto column = static_cast<int>(index(from.x, columns_)); column <= last_column; ++column) {
+    const int last_column = index(from.x + 2 * reach, columns_), last_row = index(from.y + 2 * reach, rows_);
+    for (int row = index(from.y, rows_); row <= last_row; ++row)
+      for (int column = index(from.x, columns_); column <= last_column; ++column) {
         const int cell = row * columns_ + column;
         if (distance(centre_of(cell), point) <= reach) visit(static_cast<std::size_t>(cell));
       }
