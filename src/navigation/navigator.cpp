@@ -16,7 +16,6 @@ namespace slalom::navigation {
 namespace {
 
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
-constexpr double least_command = 0.05;  // m/s and rad/s, of commands that move a robot
 constexpr double share_followed = 0.2;  // least share of a command that a robot follows
 constexpr double max_period = 0.2;      // s for which the robot brakes in one command
 
@@ -136,11 +135,14 @@ Velocity Navigator::Implementation::believe(const Velocity& told) noexcept {
 bool Navigator::Implementation::watch_commands(const Velocity& velocity, double elapsed) noexcept {
   const double asked = std::hypot(command_.forward, command_.left),
                driven = std::hypot(velocity.forward, velocity.left);
-  const bool drives = asked > least_command && driven < share_followed * asked;
-  const bool turns = std::abs(command_.turn) > least_command &&
-                     std::abs(velocity.turn) < share_followed * std::abs(command_.turn);
-  const bool moves = driven > least_command || std::abs(velocity.turn) > least_command;
-  ignored_for_ = (drives || turns) && !moves ? ignored_for_ + elapsed : 0;
+  // Changes within a step of a plan do not count.
+  const auto [forward, sideways, turning] = axis_limits(options_.base);
+  const double share = share_followed * options_.time_step, least = share * forward.acceleration,
+               least_turn = share * turning.acceleration, turned = std::abs(velocity.turn);
+  const bool drives = asked > least && driven < share_followed * asked;
+  const bool turns =
+      std::abs(command_.turn) > least_turn && turned < share_followed * std::abs(command_.turn);
+  ignored_for_ = (drives || turns) && driven <= least && turned <= least_turn ? ignored_for_ + elapsed : 0;
   return ignored_for_ > options_.stuck_after / 5 + delay_.longest();
 }
 

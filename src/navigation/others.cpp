@@ -1,14 +1,13 @@
 #include "navigation/others.hpp"
 
+#include "navigation/approach.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
 
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr double waits_for = 2;     // m from the robot to moving objects for which it may wait
-constexpr double foresight = 5;     // s, in which meetings are found
-constexpr double along_path = 0.7;  // cosine of the angle to the path, of those who go along it
-constexpr double noticed = 0.005;   // m by which a robot comes nearer to somebody
+constexpr double foresight =
+    5;  // s, in which meetings are found, and the robot may wait for those on its way
 
 /// The box around the footprint, and the costs of plans beside others; with this share of the margins.
 maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options,
@@ -55,7 +54,7 @@ bool Others::are_near(const maps::Point& robot) const noexcept {
   const auto taken = obstacles_.taken();
   return std::any_of(taken.begin(), taken.end(), [&](const maps::PredictedObstacle* each) {
     const maps::Pose& now = each->poses.front().pose;
-    return std::hypot(now.x - robot.x, now.y - robot.y) < waits_for;
+    return std::hypot(now.x - robot.x, now.y - robot.y) < foresight * speed_ + body_.front;
   });
 }
 
@@ -80,7 +79,7 @@ std::optional<maps::ClosedDisc> Others::meeting(std::span<const maps::Pose> path
     // At the first point they are beside each other, and at the last one they have not met yet.
     if (nearest == 0 || nearest + 1 >= last || least >= room) continue;
     const maps::Pose at = pose_at(nearest);
-    if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < along_path) continue;
+    if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < aligned) continue;
     first = maps::ClosedDisc{{at.x, at.y}, room + body_.margin};  // more, so that a way past is kept
     last = nearest;
   }
@@ -98,7 +97,7 @@ bool Others::comes_close(std::span<const maps::Pose> plan, std::size_t last) con
                         at.y - std::clamp(at.y, -0.5 * body_.width, 0.5 * body_.width));
     };
     const double least =
-        std::min(gap(plan.front()) - noticed, 0.5 * std::max(other->length, other->width) + body_.margin);
+        std::min(gap(plan.front()) - least_way, 0.5 * std::max(other->length, other->width) + body_.margin);
     for (std::size_t i = 1; i <= last; ++i)
       if (gap(plan[i]) < least) return true;
   }

@@ -60,7 +60,7 @@ Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps
     : options_(options),
       footprint_(footprint),
       inner_(footprint.without_rim(geometry.resolution)),
-      guide_(reach),
+      guide_(reach, footprint.circumscribed_radius()),
       planner_(geometry, footprint.half_width()),
       approach_(options, footprint),
       legs_({.near = std::min(0.75 * options.goal_distance, footprint.circumscribed_radius() / 4),
@@ -83,7 +83,7 @@ void Way::advance(const maps::Pose& robot, const Velocity& velocity, const Costm
   if (waiting_.empty() && !later_.empty() && stops_at(robot)) waiting_.swap(later_);
   if (!waiting_.empty() && !(waits_ && approach_.manoeuvres(guide_.remaining()))) take_up();
   if (std::exchange(is_new_, false)) {
-    approach_.place(guide_, robot, costmap, poses_);
+    approach_.place(guide_, robot, costmap);
     legs_.begin(robot, turn());
   }
   const double speed = std::hypot(velocity.forward, velocity.left);
@@ -117,7 +117,7 @@ void Way::make_room_for_turn(const Costmap& costmap) noexcept {
         !approach_.manoeuvres(left)) {
       checked_ = guide_.nearest();
       const double error = maps::wrap_angle(guide_.goal().yaw - guide_.legs().back().yaw);
-      if (std::abs(error) > 0.5 * options_.goal_angle) approach_.face_goal(guide_, costmap, poses_);
+      if (std::abs(error) > 0.5 * options_.goal_angle) approach_.face_goal(guide_, costmap);
     }
     return;
   }
@@ -128,7 +128,7 @@ void Way::make_room_for_turn(const Costmap& costmap) noexcept {
   checked_ = next[0].first;
   const maps::Pose& corner = guide_.points()[checked_];
   if (approach_.free_turn({corner.x, corner.y, guide_.leg().yaw}, next[0].yaw, costmap) != 0) return;
-  if (!guide_.join_legs()) approach_.face_goal(guide_, costmap, poses_);
+  if (!guide_.join_legs()) approach_.face_goal(guide_, costmap);
 }
 
 void Way::set_path(std::span<const maps::Pose> path) {
@@ -156,10 +156,11 @@ void Way::set_path(std::span<const maps::Pose> path) {
     planner_.cancel();
     chosen_.clear();
     closed_.forget_dead_ends();
-    without_way_ = since_search_ = 0;
+    without_way_ = searched_ = 0;
   }
   if (!goes_on || is_stuck() || is_done_) recovery_.reset();
   guide_.reserve(most);
+  approach_.reserve(most);
   for (auto* const poses : {&poses_, &chosen_, &waiting_, &later_}) poses->reserve(most);
   waiting_.assign(path.begin(), path.end());
   is_done_ = false;
@@ -196,7 +197,7 @@ void Way::clear() noexcept {
   closed_.forget_dead_ends();
   planner_.cancel();
   detour_left_ = infinity;
-  without_way_ = since_search_ = since_meeting_ = standing_ = 0;
+  without_way_ = standing_ = searched_ = 0;
   recovery_.reset();
   stop_ = no_stop;
 }
@@ -244,11 +245,11 @@ void Way::try_another_way(const maps::Pose& robot, const Costmap& costmap) noexc
     without_way_ = 0;
   } else if (guide_.remaining() < 2 * size) {
     is_new_ = true;
-    if (approach_.dock(guide_, robot, costmap, poses_)) return;
+    if (approach_.dock(guide_, robot, costmap)) return;
     poses_.assign({robot, guide_.goal()});
     set_yaws(poses_, options_.base);
     follow(poses_);
-  } else if ((manoeuvres_ = !manoeuvres_) && approach_.join(guide_, robot, costmap, poses_)) {
+  } else if ((manoeuvres_ = !manoeuvres_) && approach_.join(guide_, robot, costmap)) {
     is_new_ = true;
   } else {
     const std::size_t ahead = guide_.nearest() + guide_.points_for(1.5 * size);

@@ -53,7 +53,7 @@ class Costmap {
   /// Position and size of the cells.
   const maps::GridGeometry& geometry() const noexcept { return geometry_; }
 
-  static constexpr float reach = 100;  ///< m, the largest distance told
+  static constexpr float reach = Footprint::max_extent;  ///< m, the largest distance told
 
  private:
   bool touches(const Footprint& footprint, const maps::Pose& from, const maps::Pose& to) const noexcept;
