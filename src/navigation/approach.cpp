@@ -9,16 +9,15 @@ double direction(const maps::Pose& a, const maps::Pose& b) {
   return std::atan2(b.y - a.y, b.x - a.x);
 }
 
-/// How far the yaws at the ends of a way agree with its direction: near 1, or near -1 in reverse. The yaw of
-/// the path's last pose is that of the goal.
+/// How far the yaws at the ends of a way agree with its direction: near 1, or near -1 in reverse; but the
+/// goal's.
 double agreement(std::span<const maps::Pose> path, std::size_t i) {
   const double along = direction(path[i], path[i + 1]);
   const double begin = std::cos(path[i].yaw - along), end = std::cos(path[i + 1].yaw - along);
   return i + 2 == path.size() || std::abs(begin) >= std::abs(end) ? begin : end;
 }
 
-/// Whether the yaws but the last, which is that of the goal, are those of a vehicle on the path. Planners
-/// that do not fill them in leave all the same.
+/// Whether the yaws but the goal's are those of a vehicle on the path. Planners may leave all the same.
 bool yaws_count(std::span<const maps::Pose> path) {
   const auto differs = [&](const maps::Pose& pose) { return pose.yaw != path.front().yaw; };
   if (std::none_of(path.begin(), path.end() - 1, differs)) return false;
@@ -163,8 +162,8 @@ bool Approach::search(const maps::Pose& start, bool backward_in_time, const Cost
   return finds(enlarged_) || finds(footprint_);
 }
 
-/// Searches a manoeuvre from a pose to one of the points `first` to `last` of the path; or, backward in time,
-/// from one of them to the pose.
+/// Searches a manoeuvre from a pose to one of the points `first` to `last`, or backward in time from one to
+/// it.
 bool Approach::search(const PathGuide& guide, const maps::Pose& from, std::size_t first, std::size_t last,
                       bool backward_in_time, const Costmap& costmap) noexcept {
   const double turn = backward_in_time ? std::numbers::pi : 0;

@@ -9,10 +9,9 @@
 namespace slalom::navigation::detail {
 
 /// Replaces the yaws of a path but the last by those of the robot on the way to the next pose: the direction
-/// of that way, or its opposite where the robot reverses. It reverses where the given yaws say so; they count
-/// if they are not all the same, and each is within 60 degrees of the direction or its opposite, on every
-/// way. Otherwise it drives forward; an Ackermann base changes its direction of travel at cusps. A base that
-/// cannot reverse drives forward everywhere.
+/// of that way, or its opposite where it reverses. It does where the given yaws say so; they count if they
+/// differ, and each is within 60 degrees of the direction or its opposite. Otherwise it drives forward; an
+/// Ackermann base changes its direction at cusps. A base that cannot reverse drives forward everywhere.
 void set_yaws(std::span<maps::Pose> path, const BaseOptions& base) noexcept;
 
 inline maps::Point position(const maps::Pose& pose) {
@@ -32,8 +31,8 @@ class PathGuide : public maps::PathCurve {
   PathGuide(double reach, double behind);
   double reach() const noexcept { return reach_; }  ///< m, of plans
 
-  /// Sets the part of the leg around the robot in `maps`, with its end; it ends at the point `stop` at the
-  /// latest. Of a turn `left` (rad) is left.
+  /// Sets the part of the leg around the robot in `maps`, to the point `stop` at most. Of a turn `left` (rad)
+  /// is left.
   void write(const maps::Pose& robot, double left, std::size_t stop, NavigationMaps& maps) noexcept;
 
  private:
@@ -42,8 +41,7 @@ class PathGuide : public maps::PathCurve {
   maps::CellGrid<4> cells_;  ///< one row: the points of the window
 };
 
-/// Begins and ends paths: turns and manoeuvres from the pose of the robot onto the path, and from the path
-/// into the heading at the goal.
+/// Begins and ends paths: turns and manoeuvres onto the path, and from the path into the heading at the goal.
 class Approach {
  public:
   Approach(const NavigatorOptions& options, const Footprint& footprint);

@@ -27,9 +27,8 @@ bool Way::is_closed(const Costmap& costmap, std::size_t point) const noexcept {
          (approach_.manoeuvres(left) ? costmap.collides(inner_, pose) : !planner_.has_room(costmap, place));
 }
 
-/// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
-/// of the path. Returns false and keeps the path if there is none that costs less than `most` (m), or while a
-/// search over a large costmap goes on.
+/// Searches for the cheapest way to a point of the path behind the first closed one, and takes it. Returns
+/// false and keeps the path if there is none that costs less than `most` (m), or while the search goes on.
 bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept {
   if (!planner_.is_searching() && searched_ > 0) {  // rests for as long as the last search took
     --searched_;
@@ -49,9 +48,8 @@ bool Way::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t c
   return joint.point < path.size() && take_detour(joint);
 }
 
-/// The cheapest place to join the path again behind its first closed point. The path is followed in order:
-/// what is left out beyond the `usual` point counts twice. To points off the costmap the way goes straight on
-/// from the edge.
+/// The cheapest place to join the path again behind its first closed point. What is left out beyond the
+/// `usual` point counts twice, since paths are followed in order. Off the costmap the way goes straight on.
 Way::Joint Way::cheapest_joint(const Costmap& costmap, std::size_t closed, std::size_t usual,
                                double most) const noexcept {
   const std::size_t count = guide_.points().size();
@@ -101,8 +99,7 @@ bool Way::take_detour(const Joint& joint) noexcept {
   return true;
 }
 
-/// Takes a way past somebody on the path, as around an obstacle at the place where they meet. If there is
-/// none, the plans alone avoid them.
+/// Takes a way past somebody on the path, as around an obstacle where they meet, or leaves it to the plans.
 void Way::avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others) noexcept {
   const auto place = others.meeting(guide_.points().subspan(guide_.nearest()), guide_.step());
   if (!place) return planner_.cancel();

@@ -2,6 +2,7 @@
 
 #include "navigation/approach.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/tracking/people.hpp"
 
 namespace slalom::navigation::detail {
 namespace {
@@ -28,6 +29,15 @@ maps::MovingObstacleOptions options_of(const Footprint& footprint, const Navigat
   return made;
 }
 
+/// A tracker of anything of about a person's size in cells of this size (m), whose edges have no noise.
+tracking::TrackerOptions tracker_options(double resolution) {
+  tracking::TrackerOptions options = tracking::people_tracker_options();
+  options.free_margin = std::max(0.4 * options.free_margin, 0.8 * resolution);
+  options.acceleration_deviation *= 0.5;
+  options.size_deviation *= 5;
+  return options;
+}
+
 /// Whether the plan collides up to the pose with this index, unless its first pose does already.
 bool collides(const maps::MovingObstaclesView& seen, std::span<const maps::Pose> plan, std::size_t last) {
   const auto meets = [&](std::size_t i) {
@@ -42,13 +52,53 @@ bool collides(const maps::MovingObstaclesView& seen, std::span<const maps::Pose>
 
 }  // namespace
 
-Others::Others(const Footprint& footprint, const NavigatorOptions& options, std::size_t steps)
+Others::Others(const Footprint& footprint, const NavigatorOptions& options, std::size_t steps,
+               double resolution)
     : time_step_(options.time_step),
       speed_(options.base.max_forward),
       half_width_(footprint.half_width() + options.costs.others_margin),
       body_(options_of(footprint, options, 1)),
       obstacles_(body_, static_cast<int>(steps)),
-      bodies_(options_of(footprint, options, 0), static_cast<int>(steps)) {}
+      bodies_(options_of(footprint, options, 0), static_cast<int>(steps)),
+      tracker_(tracker_options(resolution)),
+      predictor_(tracking::people_predictor_options()),
+      range_(2 * options.look_ahead) {}
+
+void Others::clear() noexcept {
+  tracker_.reset();
+  predictor_.reset();
+  now_ = 0;
+}
+
+void Others::update(std::span<const maps::PredictedObstacle> predicted, const maps::Pose& robot,
+                    const Costmap& costmap, double elapsed) noexcept {
+  now_ += elapsed;
+  if (predicted.empty()) predicted = find(robot, costmap);
+  obstacles_.update(predicted, position(robot), 0, time_step_);
+  bodies_.update(predicted, position(robot), 0, time_step_);
+}
+
+/// Follows what moves in the costmaps, as in scans that begin behind the robot: their ends are blind.
+std::span<const maps::PredictedObstacle> Others::find(const maps::Pose& robot,
+                                                      const Costmap& costmap) noexcept {
+  const maps::GridGeometry& cells = costmap.geometry();
+  const maps::Pose behind{robot.x, robot.y, robot.yaw + std::numbers::pi};
+  const double least = 0.5 * cells.resolution;  // m, of a step along a beam
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    const double angle = behind.yaw + maps::beam_angle(i, ranges_.size()), c = std::cos(angle),
+                 s = std::sin(angle);
+    double range = 0, room = least;
+    for (; room > 0 && range<range_; range += room> 0 ? std::max(room - 2 * least, least) : 0) {
+      const maps::Point at{robot.x + range * c, robot.y + range * s};
+      if (cells.row(at.x) < 0 || cells.column(at.y) < 0) range = range_;
+      room = costmap.distance(at.x, at.y);
+    }
+    ranges_[i] = static_cast<float>(range);
+  }
+  const maps::LaserScanView scan{ranges_, 0, maps::beam_angle(1, ranges_.size()), 0, range_};
+  const auto& seen = tracker_.update({.scan = scan, .sensor = behind, .stamp = now_});
+  return predictor_.update(seen.objects, now_);
+}
 
 bool Others::are_near(const maps::Point& robot) const noexcept {
   const auto taken = obstacles_.taken();

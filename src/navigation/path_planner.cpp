@@ -44,8 +44,7 @@ bool PathPlanner::begin(const Costmap& costmap, const maps::Point& start, std::s
   is_searching_ = cell >= 0;
   if (!is_searching_) return false;
   std::ranges::fill(grid_.prices(), maps::GridSearch::unpriced);
-  // Cells at the start are open. From within an obstacle, as in a zone that was switched on, they reach as
-  // far as the nearest free place.
+  // Cells at the start are open; from within an obstacle, as in a new zone, as far as the nearest free place.
   double reach = nearby * half_width_;
   for (bool found = false; !found && reach < geometry_.length_x() + geometry_.length_y();
        reach *= found ? 1 : 1.5)

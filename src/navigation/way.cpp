@@ -32,8 +32,7 @@ bool ends_alike(const maps::PathCurve& path, const maps::PathCurve& longer, doub
   return true;
 }
 
-/// The pose to which the robot drives first: one on the way with another yaw than the first one at its place,
-/// which is asked for, or else the goal.
+/// The pose to which the robot drives first: one on the way whose yaw is asked for, or else the goal.
 std::size_t next_stop(std::span<const maps::Pose> path, const NavigatorOptions& options) {
   for (std::size_t i = 1, last; options.base.max_turn > 0 && i < path.size(); i = last + 1) {
     last = i;
@@ -152,12 +151,7 @@ void Way::set_path(std::span<const maps::Pose> path) {
                                               footprint_.circumscribed_radius();
   given_ = std::move(given);
   given_stops_ = std::move(stops);
-  if (!goes_on) {
-    planner_.cancel();
-    chosen_.clear();
-    closed_.forget_dead_ends();
-    without_way_ = searched_ = 0;
-  }
+  if (!goes_on) forget_tries();
   if (!goes_on || is_stuck() || is_done_) recovery_.reset();
   guide_.reserve(most);
   approach_.reserve(most);
@@ -172,8 +166,7 @@ bool Way::is_goal(const maps::Pose& pose) const noexcept {
          std::abs(maps::wrap_angle(pose.yaw - given_.goal().yaw)) <= 0.2 * options_.goal_angle;
 }
 
-/// Whether a path changes nothing: it ends like the one that was given, or the robot is at its end, where no
-/// way is left to decide about.
+/// Whether a path changes nothing: it ends like the one that was given, or the robot is at its end.
 bool Way::is_followed(const maps::PathCurve& path, std::span<const double> stops) const {
   const std::size_t to_come = later_.empty() ? 0 : 1 + stops_of(later_, options_).size();
   if (stops.size() < to_come || stops.size() > given_stops_.size() ||
@@ -193,13 +186,18 @@ void Way::clear() noexcept {
   waiting_.clear();
   later_.clear();
   later_length_ = 0;
-  chosen_.clear();
-  closed_.forget_dead_ends();
-  planner_.cancel();
   detour_left_ = infinity;
-  without_way_ = standing_ = searched_ = 0;
+  standing_ = 0;
   recovery_.reset();
   stop_ = no_stop;
+  forget_tries();
+}
+
+void Way::forget_tries() noexcept {
+  planner_.cancel();
+  chosen_.clear();
+  closed_.forget_dead_ends();
+  without_way_ = searched_ = 0;
 }
 
 /// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth` m.

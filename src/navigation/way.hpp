@@ -54,13 +54,14 @@ class Way {
   bool is_closed(const Costmap& costmap, std::size_t point) const noexcept;
   bool stops_at(const maps::Pose& robot) const noexcept;
   void take_up() noexcept;
+  void forget_tries() noexcept;
   void make_room_for_turn(const Costmap& costmap) noexcept;
   bool is_followed(const maps::PathCurve& path, std::span<const double> stops) const;
   bool is_goal(const maps::Pose& pose) const noexcept;
   void follow(std::span<const maps::Pose> path, double smooth = 0) noexcept;
   /// A place where a detour joins the path again.
   struct Joint {
-    std::size_t point;     ///< of the path; its number of points if there is none
+    std::size_t point;     ///< index in the path; its number of points if there is none
     maps::Point end{};     ///< m, of the way over the costmap
     double cost;           ///< m, with the rest of the path
     bool not_yet = false;  ///< whether a search that goes on may find a cheaper one

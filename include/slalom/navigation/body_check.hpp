@@ -36,8 +36,8 @@ class BodyCheck {
     mask_t<T> collided;  ///< whether they overlap
   };
 
-  /// Checks the body at (x, y), m, turned by the angle of this sine and cosine; with its outline where it is
-  /// to be `exact`.
+  /// Checks the body at (x, y), m, turned by the angle of this sine and cosine; its outline, too, where
+  /// `exact`.
   template <class T>
   SLALOM_INLINE_CALLS Contact<T> check(const GridView<1>& distances, const T& x, const T& y, const T& sine,
                                        const T& cosine, const mask_t<T>& exact) const {
@@ -78,8 +78,7 @@ class BodyCheck {
       if (2 * bodies <= T::lanes) return meets_outlines(distances, x, y, sine, cosine, asked);
     }
     mask_t<T> met(false);
-    // Points nearer than the nearest obstacle are free. One ahead is looked up that may decide for all up to
-    // it.
+    // Points nearer than the nearest obstacle are free. One ahead may decide for all up to it.
     for (std::size_t first = 0, ahead = 0; first < count_ && any(asked);) {
       const std::size_t at = std::min(first + ahead, count_ - 1);
       const T near = look_up_at(distances, T(x_[at]), T(y_[at]), x, y, sine, cosine);

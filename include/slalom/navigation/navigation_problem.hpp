@@ -59,7 +59,7 @@ class NavigationProblem {
         input_min(Base::per_input(-limits.max_reverse, -limits.max_sideways, -limits.max_turn)),
         input_max(Base::per_input(limits.max_forward, limits.max_sideways, limits.max_turn)),
         base_(limits),
-        costs_(costs, step, std::min(per_usual_speed * limits.max_forward, 1.0)),
+        costs_(weights(costs, step, std::min(per_usual_speed * limits.max_forward, 1.0))),
         step_(step),
         reach_(farthest_projection * step *
                std::max({limits.max_forward, limits.max_reverse, limits.max_sideways})) {
@@ -209,26 +209,27 @@ class NavigationProblem {
 
   /// Weights times the duration of a step, as rollouts use them.
   struct Weights {
-    /// The clearance costs a slow robot as much on its way as a faster one.
-    Weights(const CostOptions& o, double step, double share_of_usual_speed)
-        : progress(o.progress * step),
-          final_progress(o.final_progress),
-          path(o.path * step),
-          max_squared(o.path_reach * o.path_reach),
-          heading(o.heading * step),
-          clearance(o.clearance * step * share_of_usual_speed),
-          falloff(-o.clearance_falloff),
-          reverse(o.reverse * step),
-          sideways(o.sideways * step),
-          turning(o.turning * step),
-          unknown(o.unknown * step),
-          goal_heading(o.goal_heading * step),
-          facing(0.5 * o.heading * step),
-          per_goal_reach(1 / o.goal_reach),
-          collision(o.collision * step) {}
-    Coefficient progress, final_progress, path, max_squared, heading, clearance, falloff, reverse, sideways,
-        turning, unknown, goal_heading, facing, per_goal_reach, collision;
+    Coefficient progress, path, heading, clearance, reverse, sideways, turning, unknown, goal_heading, facing,
+        collision, final_progress, max_squared, falloff, per_goal_reach;
   };
+  /// The clearance costs a slow robot as much on its way as a faster one.
+  static Weights weights(const CostOptions& o, double step, double share_of_usual_speed) {
+    return {o.progress * step,
+            o.path * step,
+            o.heading * step,
+            o.clearance * step * share_of_usual_speed,
+            o.reverse * step,
+            o.sideways * step,
+            o.turning * step,
+            o.unknown * step,
+            o.goal_heading * step,
+            0.5 * o.heading * step,
+            o.collision * step,
+            o.final_progress,
+            o.path_reach * o.path_reach,
+            -o.clearance_falloff,
+            1 / o.goal_reach};
+  }
 
   /// m to the end of the window: along the path, and from the side of it.
   template <class T>
