@@ -50,13 +50,10 @@ TEST(LocalCostMap, PublishedInflationIsOneCellShortToOneSide) {
   const Point point{3.025, 0.025};  // the centre of a cell
   map.add_points({&point, 1});
   EXPECT_EQ(occupied_cells(map), 13 * 6);
-  EXPECT_EQ(map.at(3.025, 0.175), 100);
-  EXPECT_EQ(map.at(3.025, -0.075), 100);
-  EXPECT_EQ(map.at(3.025, -0.125), 0);
-  EXPECT_EQ(map.at(3.175, 0.025), 100);
-  EXPECT_EQ(map.at(3.225, 0.025), 0);
-  EXPECT_EQ(map.at(2.575, 0.025), 100);
-  EXPECT_EQ(map.at(2.525, 0.025), 0);
+  for (const auto& [x, y] : {Point{3.025, 0.175}, {3.025, -0.075}, {3.175, 0.025}, {2.575, 0.025}})
+    EXPECT_EQ(map.at(x, y), 100) << x << ", " << y;
+  for (const auto& [x, y] : {Point{3.025, -0.125}, {3.225, 0.025}, {2.525, 0.025}})
+    EXPECT_EQ(map.at(x, y), 0) << x << ", " << y;
 }
 
 TEST(LocalCostMap, PointsOutsideTheMapReachIntoItUnlessForgotten) {
@@ -84,10 +81,7 @@ TEST(LocalCostMap, BadReadingsAreDroppedAndCounted) {
   const std::vector<float> ranges{nan, infinity, -infinity, -1, 0.01F, 30, 31, 0.1F, 2, 29.9F};
   const ScanReport report = map.update({ranges, 0, 1e-3, 0.05, 30});
   EXPECT_TRUE(report.accepted);
-  EXPECT_EQ(report.beams, 10);
-  EXPECT_EQ(report.invalid, 7);
-  EXPECT_EQ(report.on_body, 1);
-  EXPECT_EQ(report.used, 2);
+  EXPECT_EQ(std::tuple(report.beams, report.invalid, report.on_body, report.used), std::tuple(10, 7, 1, 2));
   EXPECT_EQ(map.points().size(), 2u);
   EXPECT_EQ(map.at(2.2, 0), 100);
 }
@@ -138,10 +132,7 @@ TEST(LocalCostMap, TheLaserMayBeTurnedAndTheScanMayChange) {
 
 TEST(LocalCostMap, OutsideIsTheRing) {
   LocalCostMap map({.outside = 7});
-  EXPECT_EQ(map.at(8.001, 0), 7);
-  EXPECT_EQ(map.at(-2.001, 0), 7);
-  EXPECT_EQ(map.at(3, 5.001), 7);
-  EXPECT_EQ(map.at(NAN, 0), 7);
+  for (const auto& [x, y] : {Point{8.001, 0}, {-2.001, 0}, {3, 5.001}, {NAN, 0}}) EXPECT_EQ(map.at(x, y), 7);
   EXPECT_EQ(map.at(3, 0), 0);
   for (int i = -1; i <= 200; ++i) {
     EXPECT_EQ(*map.cells().at(-1, i), 7);

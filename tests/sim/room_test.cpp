@@ -21,12 +21,10 @@ TEST(Room, TheMapShowsTheWallsAlone) {
     return map.at(static_cast<int>(std::floor((x - map.origin.x) / 0.05)),
                   static_cast<int>(std::floor((y - map.origin.y) / 0.05)));
   };
-  EXPECT_EQ(at(3, 1), maps::Occupancy::occupied);
-  EXPECT_EQ(at(2.91, 1.97), maps::Occupancy::occupied);
-  EXPECT_EQ(at(2.88, 1), maps::Occupancy::free);
-  EXPECT_EQ(at(3, 2.03), maps::Occupancy::free);
-  EXPECT_EQ(at(-0.02, 1), maps::Occupancy::occupied);
-  EXPECT_EQ(at(4.5, 3), maps::Occupancy::free);
+  for (const auto& [x, y] : {maps::Point{3, 1}, {2.91, 1.97}, {-0.02, 1}})
+    EXPECT_EQ(at(x, y), maps::Occupancy::occupied);
+  for (const auto& [x, y] : {maps::Point{2.88, 1}, {3, 2.03}, {4.5, 3}})
+    EXPECT_EQ(at(x, y), maps::Occupancy::free);
   EXPECT_THROW(map_of({0.5, 4, {}, {}}, 0.05), std::invalid_argument);
   EXPECT_THROW(map_of(workshop, 0), std::invalid_argument);
 }

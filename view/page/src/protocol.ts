@@ -20,9 +20,10 @@ class Reader {
   u32 = () => this.view.getUint32(this.take(4), true);
   f32 = () => this.view.getFloat32(this.take(4), true);
   f64 = () => this.view.getFloat64(this.take(8), true);
-  f32s = (n: number) => Float32Array.from({ length: n }, this.f32);
-  u8s = (n: number) => Uint8Array.from({ length: n }, this.u8);
-  f64s = () => Float64Array.from({ length: (this.end - this.at) / 8 }, this.f64);
+  private bytes = (n: number) => this.view.buffer.slice(this.take(n), this.at) as ArrayBuffer;
+  f32s = (n: number) => new Float32Array(this.bytes(4 * n));
+  u8s = (n: number) => new Uint8Array(this.bytes(n));
+  f64s = () => new Float64Array(this.bytes(this.end - this.at));
   pose = () => ({ x: this.f64(), y: this.f64(), yaw: this.f64() });
   align = () => (this.at = (this.at + 3) & ~3);
   rest = () => new Uint8Array(this.view.buffer, this.at, this.end - this.at);
@@ -55,10 +56,8 @@ const blocks = {
     const pose = r.pose();
     const [rows, columns] = [r.u16(), r.u16()];
     const [resolution, centerX, centerY] = r.f32s(3);
-    const bits = r.u8s(Math.ceil((rows * columns) / 8));
-    const cell = (_: unknown, i: number) => (bits[i >> 3] & (1 << (i & 7)) ? 255 : 0);
-    const cells = Uint8Array.from({ length: rows * columns }, cell);
-    return { ...pose, rows, columns, resolution, centerX, centerY, cells };
+    const bits = r.u8s(Math.ceil((rows * columns) / 8)); // 1 where occupied
+    return { ...pose, rows, columns, resolution, centerX, centerY, bits };
   },
   /**
    * `terms`: of each trajectory its costs by term, the solver's cost and the weight, `width` values.

@@ -1,7 +1,7 @@
 import { page } from "../page";
 import type { CostMap, Grid, Guides, Path, PlanState, Scan } from "../protocol";
 import { theme } from "../theme";
-import { imageOf, type Painter } from "./painter";
+import { imageOf, packed, type Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
 import { faded, placed, type Point } from "./shapes";
 
@@ -22,6 +22,7 @@ function mapImage(grid: Grid): HTMLCanvasElement {
   const { width, height } = grid;
   const free = freeSpace(grid);
   const fine = Math.min(4, Math.max(1, Math.floor(Math.sqrt(mapPixels / (width * height)))));
+  const [within, beyond] = [packed(theme.free), packed(theme.wall)];
   const mix = (a: Rgba, b: Rgba, share: number) => a.map((v, k) => v + share * (b[k] - v)) as Rgba;
   return imageOf(width * fine, height * fine, (px, py) => {
     const x = Math.min(width - 1.001, Math.max(0, (px + 0.5) / fine - 0.5));
@@ -31,9 +32,9 @@ function mapImage(grid: Grid): HTMLCanvasElement {
     const below = free[i] + u * (free[i + 1] - free[i]);
     const above = free[i + width] + u * (free[i + width + 1] - free[i + width]);
     const inside = 3 * fine * (below + v * (above - below) - 0.5); // pixels from a straight border
-    if (Math.abs(inside) > rim + 1) return inside > 0 ? theme.free : theme.wall;
+    if (Math.abs(inside) > rim + 1) return inside > 0 ? within : beyond;
     const edge = Math.min(1, rim + 1 - Math.abs(inside));
-    return mix(inside > 0 ? theme.free : theme.wall, theme.wallEdge, edge);
+    return packed(mix(inside > 0 ? theme.free : theme.wall, theme.wallEdge, edge));
   });
 }
 
@@ -45,11 +46,13 @@ export function drawMap(painter: Painter, grid: Grid) {
 }
 
 export function drawCostMap(painter: Painter, map: CostMap) {
-  const { rows, columns, resolution, cells } = map;
-  const none: Rgba = [0, 0, 0, 0];
+  const { rows, columns, resolution, bits } = map;
+  const cost = packed(theme.cost);
   // The image begins with the smallest x and y, with x along a row.
-  const isFree = (x: number, y: number) => cells[(rows - 1 - x) * columns + (columns - 1 - y)] === 0;
-  const image = imageOf(rows, columns, (x, y) => (isFree(x, y) ? none : theme.cost));
+  const image = imageOf(rows, columns, (x, y) => {
+    const i = (rows - 1 - x) * columns + (columns - 1 - y);
+    return bits[i >> 3] & (1 << (i & 7)) ? cost : 0;
+  });
   const [width, height] = [rows * resolution, columns * resolution];
   const [[x, y]] = placed(map, [[map.centerX - width / 2, map.centerY - height / 2]]);
   painter.image(image, { x, y, yaw: map.yaw }, width, height);
@@ -108,10 +111,12 @@ export function drawScan(painter: Painter, scan: Scan) {
   const { lidar } = page.hello!;
   if (!lidar) return;
   const most = lidar.range_max * 1000 - 5;
+  const points: Point[] = [];
   for (const [i, range] of scan.ranges.entries()) {
     if (range >= most) continue;
     const r = range / 1000;
     const angle = scan.yaw + lidar.angle_min + i * lidar.angle_increment;
-    painter.dot(scan.x + r * Math.cos(angle), scan.y + r * Math.sin(angle), 2.6, theme.scan);
+    points.push([scan.x + r * Math.cos(angle), scan.y + r * Math.sin(angle)]);
   }
+  painter.dots(points, 2.4, theme.scan);
 }

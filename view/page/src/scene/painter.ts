@@ -93,13 +93,21 @@ export class Painter {
     this.pen.fill();
   }
 
+  /** Draws squares, for points so many and small that nobody sees their form. */
+  dots(points: Iterable<[number, number]>, size: number, colour: Rgba) {
+    const side = size * this.pixel;
+    this.pen.fillStyle = css(colour);
+    for (const [x, y] of points) this.pen.fillRect(x - side / 2, y - side / 2, side, side);
+  }
+
   /** Draws an image with the corner of its first pixel at a pose; its rows follow one another to the left. */
   image(image: HTMLCanvasElement, at: Pose, width: number, height: number) {
     const { pen } = this;
     pen.save();
     pen.translate(at.x, at.y);
     pen.rotate(at.yaw);
-    pen.imageSmoothingQuality = "medium";
+    // Only an image that is made much smaller needs more than its four nearest pixels, which is slow.
+    pen.imageSmoothingQuality = image.width * this.pixel > 2 * width * this.ratio ? "medium" : "low";
     pen.drawImage(image, 0, 0, width, height);
     pen.restore();
   }
@@ -115,16 +123,14 @@ export function painterOf(canvas: HTMLCanvasElement, size: { width: number; heig
   return new Painter(pen, ratio);
 }
 
-/** An image of these pixels, four bytes each. */
-export function imageOf(width: number, height: number, colourOf: (x: number, y: number) => Rgba) {
+/** An image of pixels, each a colour of `packed`. */
+export function imageOf(width: number, height: number, colourOf: (x: number, y: number) => number) {
   const image = make("canvas", { width, height });
   const data = new ImageData(width, height);
-  for (let y = 0; y < height; ++y)
-    for (let x = 0; x < width; ++x) {
-      const at = 4 * (y * width + x);
-      const colour = colourOf(x, y);
-      for (let k = 0; k < 4; ++k) data.data[at + k] = 255 * colour[k];
-    }
+  const pixels = new Uint32Array(data.data.buffer);
+  for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) pixels[y * width + x] = colourOf(x, y);
   image.getContext("2d")!.putImageData(data, 0, 0);
   return image;
 }
+/** A colour as a pixel of an image. */
+export const packed = (colour: Rgba) => new Uint32Array(Uint8Array.from(colour, (v) => 255 * v).buffer)[0];
