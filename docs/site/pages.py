@@ -59,7 +59,7 @@ def main(to, site):
         file.write_text(re.sub(r'href="\.\./\.\./([^"]+)\.md', r'href="../\1.html', file.read_text()))
     names = subprocess.run(["git", "ls-files"], capture_output=True, text=True, check=True).stdout.split()
     for path in map(Path, names):
-        if path.suffix not in (".md", ".png", ".gif", ".webm") and path.name not in ("site.css", "site.js"):
+        if path.suffix not in (".md", ".png", ".webp", ".webm") and path.name not in ("site.css", "site.js"):
             continue
         target = to / ("index.md" if path == Path("README.md") else path)
         target.parent.mkdir(parents=True, exist_ok=True)

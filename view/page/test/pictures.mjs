@@ -1,4 +1,4 @@
-// Draws a picture for the documentation (script/pictures): node test/pictures.mjs PROGRAM NAME FILE
+// Draws a picture for the pages and prints its figures (script/pictures): node test/pictures.mjs PROGRAM NAME FILE
 import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -8,18 +8,14 @@ const [program, name, file] = process.argv.slice(2);
 const world = { opponent_driver: "racing", opponent_speed: 0.6, opponent_gap: 5, tracking: "exact" };
 const settings = Object.entries(world).flatMap(([key, value]) => ["--set", `world.${key}=${value}`]);
 const overtake = ["--course", "fox", "--obstacles", "0", "--seed", "1", "--opponents", "1", ...settings];
-const twoWays = ["--course", "stag", "--config", "published", "--obstacles", "1", "--seed", "77"];
-const scenarios = {
-  introduction: [],
-  overtake,
-  "two-ways": [...twoWays, "--against", "mppi", "--record-all"],
-};
+const twoWays = "--course stag --config published --obstacles 1 --seed 77 --against mppi --record-all".split(" ");
+const scenarios = { "live-view": [], overtake, "two-ways": twoWays };
 const scenario = scenarios[name];
 if (!scenario || !file)
   throw new Error(`usage: pictures.mjs PROGRAM ${Object.keys(scenarios).join("|")} FILE`);
 
 const h = new Harness(program);
-const isIntroduction = name === "introduction";
+const isIntroduction = name === "live-view";
 const viewport = isIntroduction ? { width: 1440, height: 900 } : { width: 1000, height: 700 };
 await h.openAll(scenario, { viewport, colorScheme: isIntroduction ? "dark" : "light" });
 const { page } = h;
@@ -76,10 +72,10 @@ async function drawOvertake() {
       return { x: left, y: top, width, height };
     }, tile);
     const words = `${(await h.scalar("time")).toFixed(1)} s`;
+    console.log(words);
     shots.push({ words, data: (await page.screenshot({ clip })).toString("base64") });
   }
-  const url = await page.evaluate(tiled, { shots, tile });
-  return Buffer.from(url.split(",")[1], "base64");
+  return Buffer.from((await page.evaluate(tiled, { shots, tile })).split(",")[1], "base64");
 }
 
 /** Puts pictures with their words into two rows; runs in the page. */
@@ -118,4 +114,5 @@ async function filmTwoWays() {
 
 if (name === "two-ways") await filmTwoWays();
 else writeFileSync(file, await (isIntroduction ? drawIntroduction() : drawOvertake()));
+console.log(await page.innerText("body"));
 await h.close();
