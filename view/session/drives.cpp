@@ -52,6 +52,7 @@ void set_texts(Subject& subject, const OptionTexts& texts) {
 }  // namespace
 
 void SolverSubject::restart() {
+  time_ = 0;
   if (const SolverOptions* now = options()) set_options(SolverOptions(*now));
 }
 
@@ -65,6 +66,7 @@ std::vector<double> SolverSubject::drive(std::span<const double> state, const Dr
     solved = &solve(state, {.elapsed = i == 0 ? request.elapsed : 0});
   }
   if (on_plan) on_plan(*solved, std::chrono::duration<double>(Clock::now() - begin).count());
+  time_ += time_step();
   return step(state, inputs().first(facts().inputs.size()));
 }
 

@@ -57,9 +57,8 @@ class PythonSubject final : public view::SolverSubject {
 
   std::unique_ptr<view::Subject> clone() const override {
     const py::gil_scoped_acquire lock;
-    auto copy = std::make_unique<PythonSubject>(py::module_::import("copy").attr("copy")(controller_),
-                                                drawing_, facts_);
-    copy->time_ = time_;
+    auto copy = std::make_unique<PythonSubject>(*this);
+    copy->set_controller(py::module_::import("copy").attr("copy")(controller_));
     return copy;
   }
   const view::SubjectFacts& facts() const override { return *facts_; }
@@ -72,10 +71,6 @@ class PythonSubject final : public view::SolverSubject {
                                               **values_of(list_options(options))));
   }
 
-  void restart() override {
-    time_ = 0;
-    SolverSubject::restart();
-  }
   const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
     const py::gil_scoped_acquire lock;
     if (!drawing_->clock.is_none()) drawing_->clock(controller_.attr("problem"), time_);
@@ -89,7 +84,6 @@ class PythonSubject final : public view::SolverSubject {
   }
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
     const py::gil_scoped_acquire lock;
-    time_ += time_step();
     if (drawing_->plant.is_none()) return problem().step(state, input, 0);
     return drawing_->plant(array_of(state), array_of(input)).cast<std::vector<double>>();
   }
@@ -160,7 +154,6 @@ class PythonSubject final : public view::SolverSubject {
   Controller* native_ = nullptr;  ///< owned by `controller_`
   std::shared_ptr<const Drawing> drawing_;
   std::shared_ptr<const view::SubjectFacts> facts_;
-  double time_ = 0;  ///< s since the drive began
 };
 
 std::unique_ptr<view::View> make_view(const py::object& controller, Drawing drawing, view::SubjectFacts facts,

@@ -170,10 +170,6 @@ class ControllerSubject final : public SolverSubject, public DrawnProblem<P> {
     return false;
   }
 
-  void restart() override {
-    time_ = 0;
-    SolverSubject::restart();
-  }
   const SolveResult& solve(std::span<const double> state, const SolveRequest& request) override {
     if (drawn().clock) drawn().clock(controller_.problem(), time_);
     const Plan<P> plan = controller_.solve(state_of(state.data()), request);
@@ -184,7 +180,6 @@ class ControllerSubject final : public SolverSubject, public DrawnProblem<P> {
   std::span<const double> inputs() const override { return plan_; }
 
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
-    time_ += time_step();
     Inputs u;
     std::copy_n(input.begin(), P::inputs, u.value);
     const State x = state_of(state.data());
@@ -220,7 +215,6 @@ class ControllerSubject final : public SolverSubject, public DrawnProblem<P> {
 
   Controller<P> controller_;
   std::vector<double> plan_;
-  double time_ = 0;  ///< s since the start
 };
 
 }  // namespace detail

@@ -205,6 +205,9 @@ class SolverSubject : public Subject {
   void restart() override;
   std::vector<double> drive(std::span<const double> state, const DriveRequest& request,
                             const OnPlan& on_plan) override;
+
+ protected:
+  double time_ = 0;  ///< s since the start
 };
 
 }  // namespace slalom::view
