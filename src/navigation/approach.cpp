@@ -5,24 +5,19 @@
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr int max_points = 240;  // points of the window
-constexpr double behind = 0.3;   // m of the window behind the robot, and beyond the reach of plans
-constexpr double aligned = 0.5;  // cosine of the largest angle between a yaw and the path that it is on
-
 double direction(const maps::Pose& a, const maps::Pose& b) {
   return std::atan2(b.y - a.y, b.x - a.x);
 }
 
-/// How far the yaws at the ends of a way agree with its direction: near 1, or near -1 in reverse. The yaw of
-/// the path's last pose is that of the goal.
+/// How far the yaws at the ends of a way agree with its direction: near 1, or near -1 in reverse; but the
+/// goal's.
 double agreement(std::span<const maps::Pose> path, std::size_t i) {
   const double along = direction(path[i], path[i + 1]);
   const double begin = std::cos(path[i].yaw - along), end = std::cos(path[i + 1].yaw - along);
   return i + 2 == path.size() || std::abs(begin) >= std::abs(end) ? begin : end;
 }
 
-/// Whether the yaws but the last, which is that of the goal, are those of a vehicle on the path. Planners
-/// that do not fill them in leave all the same.
+/// Whether the yaws but the goal's are those of a vehicle on the path. Planners may leave all the same.
 bool yaws_count(std::span<const maps::Pose> path) {
   const auto differs = [&](const maps::Pose& pose) { return pose.yaw != path.front().yaw; };
   if (std::none_of(path.begin(), path.end() - 1, differs)) return false;
@@ -88,22 +83,25 @@ void set_yaws(std::span<maps::Pose> path, const BaseOptions& base) noexcept {
   }
 }
 
-PathGuide::PathGuide(double reach) : reach_(reach), cells_(1, max_points) {
+PathGuide::PathGuide(double reach, double behind)
+    : reach_(reach),
+      behind_(behind),
+      most_(saturate_cast<int>((reach + 2 * behind) / (0.5 * spacing)) + 4),
+      cells_(1, most_) {
   cells_.fill({0, 0, 0, 0});
 }
 
 void PathGuide::write(const maps::Pose& robot, double left, std::size_t stop, NavigationMaps& maps) noexcept {
   const maps::PathLeg& at = leg();
   const double spacing_here = std::max(step(), 1e-3);
-  const auto back = saturate_cast<std::size_t>(behind / spacing_here);
+  const auto back = saturate_cast<std::size_t>(behind_ / spacing_here);
   const std::size_t first = std::max(at.first, nearest() > back ? nearest() - back : 0);
-  const auto wanted = first + saturate_cast<std::size_t>((reach_ + 2 * behind) / spacing_here) + 3;
+  const auto wanted = first + saturate_cast<std::size_t>((reach_ + 2 * behind_) / spacing_here) + 3;
   const std::size_t last = std::max(first, std::min({wanted, at.last, stop}));
-  const std::size_t stride = (last - first) / max_points + 1;
   const double turned = at.backward ? std::numbers::pi : 0;
   // Storage holds a ring of cells, which have the values of the first and of the last point.
-  for (int column = -1; column <= max_points; ++column) {
-    const std::size_t i = std::min(first + std::max(column, 0) * stride, last);
+  for (int column = -1; column <= most_; ++column) {
+    const std::size_t i = std::min(first + std::max(column, 0), last);
     const maps::Pose& point = points()[i];
     const double yaw = (i == at.last && i > at.first ? points()[i - 1].yaw : point.yaw) + turned;
     for (int row = -1; row <= 1; ++row) {
@@ -114,8 +112,7 @@ void PathGuide::write(const maps::Pose& robot, double left, std::size_t stop, Na
       to[3] = static_cast<float>(step() * (i - first));
     }
   }
-  const double apart = spacing_here * stride;
-  const maps::GridGeometry geometry{1, max_points, apart, 0, -0.5 * apart * (max_points - 1)};
+  const maps::GridGeometry geometry{1, most_, spacing_here, 0, -0.5 * spacing_here * (most_ - 1)};
   const maps::Pose &near = points()[nearest()], &end = points()[last];
   maps.path = cells_.view(geometry);
   maps.origin = {robot.x, robot.y};
@@ -165,8 +162,8 @@ bool Approach::search(const maps::Pose& start, bool backward_in_time, const Cost
   return finds(enlarged_) || finds(footprint_);
 }
 
-/// Searches a manoeuvre from a pose to one of the points `first` to `last` of the path; or, backward in time,
-/// from one of them to the pose.
+/// Searches a manoeuvre from a pose to one of the points `first` to `last`, or backward in time from one to
+/// it.
 bool Approach::search(const PathGuide& guide, const maps::Pose& from, std::size_t first, std::size_t last,
                       bool backward_in_time, const Costmap& costmap) noexcept {
   const double turn = backward_in_time ? std::numbers::pi : 0;
@@ -184,16 +181,14 @@ bool Approach::search(const PathGuide& guide, const maps::Pose& from, std::size_
   return true;
 }
 
-bool Approach::join(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
-                    std::vector<maps::Pose>& buffer) noexcept {
+bool Approach::join(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap) noexcept {
   const auto points = guide.points();
   const std::size_t first = guide.nearest(),
                     last = std::min(points.size() - 1, first + guide.points_for(longest_change()));
-  return search(guide, robot, first, last, false, costmap) && lead(guide, robot, joint_, buffer);
+  return search(guide, robot, first, last, false, costmap) && lead(guide, robot, joint_);
 }
 
-bool Approach::dock(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
-                    std::vector<maps::Pose>& buffer) noexcept {
+bool Approach::dock(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap) noexcept {
   const maps::Pose& goal = guide.goal();
   const double yaw = std::atan2(goal.y - robot.y, goal.x - robot.x);
   if (turns_on_the_spot(options_.base) && free_turn(robot, yaw, costmap) != 0) return false;
@@ -204,31 +199,29 @@ bool Approach::dock(PathGuide& guide, const maps::Pose& robot, const Costmap& co
     if (!costmap.collides(footprint_, begin, goal))
       goals_.push_back({{place.x, place.y, goal.yaw - robot.yaw}, 0});
   }
-  return !goals_.empty() && search(robot, false, costmap) &&
-         lead(guide, robot, guide.points().size() - 1, buffer);
+  return !goals_.empty() && search(robot, false, costmap) && lead(guide, robot, guide.points().size() - 1);
 }
 
 /// Leads the path along the way that was found, from the robot, and on from a point of the path.
-bool Approach::lead(PathGuide& guide, const maps::Pose& robot, std::size_t joint,
-                    std::vector<maps::Pose>& buffer) noexcept {
+bool Approach::lead(PathGuide& guide, const maps::Pose& robot, std::size_t joint) noexcept {
   const auto points = guide.points();
   const auto way = search_.poses();
-  if (way.size() + points.size() > buffer.capacity()) return false;
-  buffer.clear();
+  if (way.size() + points.size() > buffer_.capacity()) return false;
+  buffer_.clear();
   for (const maps::Pose& pose : way) {
     const maps::Point place = maps::transform(robot, {pose.x, pose.y});
-    buffer.push_back({place.x, place.y, robot.yaw + pose.yaw});
+    buffer_.push_back({place.x, place.y, robot.yaw + pose.yaw});
   }
-  buffer.insert(buffer.end(), points.begin() + joint, points.end());
-  buffer.back() = guide.goal();
+  buffer_.insert(buffer_.end(), points.begin() + joint, points.end());
+  buffer_.back() = guide.goal();
   const double left = guide.step() * static_cast<double>(points.size() - 1 - joint);
   end_ = begin_ < 0 ? left : std::min(end_, left);  // it may lead into the last one
-  guide.set(buffer, turns_on_the_spot(options_.base));
+  guide.set(buffer_, turns_on_the_spot(options_.base));
   begin_ = guide.remaining();
   return true;
 }
 
-void Approach::face_goal(PathGuide& guide, const Costmap& costmap, std::vector<maps::Pose>& buffer) noexcept {
+void Approach::face_goal(PathGuide& guide, const Costmap& costmap) noexcept {
   const auto points = guide.points();
   const maps::Pose& goal = guide.goal();
   const std::size_t most = guide.points_for(longest_change()), last = points.size() - 1;
@@ -237,34 +230,33 @@ void Approach::face_goal(PathGuide& guide, const Costmap& costmap, std::vector<m
   const std::size_t first = std::max({arrival.first, guide.nearest(), last > most ? last - most : 0});
   if (first == last || !search(guide, goal, first, last - 1, true, costmap)) return;
   const auto way = search_.poses();
-  if (joint_ + way.size() > buffer.capacity()) return;
-  buffer.assign(points.begin(), points.begin() + joint_);
+  if (joint_ + way.size() > buffer_.capacity()) return;
+  buffer_.assign(points.begin(), points.begin() + joint_);
   for (std::size_t i = way.size(); i-- > 0;) {
     const maps::Point place =
         maps::transform({goal.x, goal.y, goal.yaw + std::numbers::pi}, {way[i].x, way[i].y});
-    buffer.push_back({place.x, place.y, goal.yaw + way[i].yaw});
+    buffer_.push_back({place.x, place.y, goal.yaw + way[i].yaw});
   }
   const maps::Point here = position(points[guide.nearest()]);
   begin_ = -guide.step() * static_cast<double>(joint_);
-  guide.set(buffer, turns_on_the_spot(options_.base));
+  guide.set(buffer_, turns_on_the_spot(options_.base));
   begin_ += guide.remaining();
   end_ = 0;
   guide.place(here);
 }
 
-void Approach::place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap,
-                     std::vector<maps::Pose>& buffer) noexcept {
+void Approach::place(PathGuide& guide, const maps::Pose& robot, const Costmap& costmap) noexcept {
   if (guide.step() == 0 && distance(position(robot), position(guide.goal())) > 0.5 * options_.goal_distance) {
-    buffer.assign({robot, guide.goal()});  // a path of one pose
-    if (options_.base.max_reverse == 0) set_yaws(buffer, options_.base);
-    guide.set(buffer, turns_on_the_spot(options_.base));
+    buffer_.assign({robot, guide.goal()});  // a path of one pose
+    if (options_.base.max_reverse == 0) set_yaws(buffer_, options_.base);
+    guide.set(buffer_, turns_on_the_spot(options_.base));
   }
   guide.place(position(robot));
   if (guide.remaining() <= options_.goal_distance &&
       distance(position(robot), position(guide.goal())) <= options_.goal_distance) {
     // Near its end a path has no direction: the turn is left.
-    buffer.assign({guide.goal()});
-    if (turns_on_the_spot(options_.base)) return guide.set(buffer, true);
+    buffer_.assign({guide.goal()});
+    if (turns_on_the_spot(options_.base)) return guide.set(buffer_, true);
     while (!guide.on_last_leg()) guide.next_leg();
     return;
   }
@@ -277,7 +269,7 @@ void Approach::place(PathGuide& guide, const maps::Pose& robot, const Costmap& c
   if (guide.leg().turns || std::cos(direction - robot.yaw) >= aligned) return;
   if (turns_on_the_spot(options_.base) && free_turn(robot, direction, costmap) != 0)
     return guide.turn_first(direction);
-  if (join(guide, robot, costmap, buffer)) guide.place(position(robot));
+  if (join(guide, robot, costmap)) guide.place(position(robot));
 }
 
 }  // namespace slalom::navigation::detail

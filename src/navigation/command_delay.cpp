@@ -25,8 +25,8 @@ void CommandDelay::pass(const Velocity& measured, double elapsed) noexcept {
   if (estimates_) estimate(measured, elapsed);
 }
 
-/// The share of the difference that counts is that of its squared mean in its mean square. A velocity that is
-/// measured again to the bit has no noise.
+/// Weighs the difference by the share of its squared mean in its mean square. What repeats to the bit has no
+/// noise.
 double CommandDelay::Differences::likely(double decided, double measured, double kept) noexcept {
   const double difference = measured - decided;
   mean = std::lerp(difference, mean, kept);
@@ -42,10 +42,7 @@ maps::Pose CommandDelay::predict(maps::Pose pose) const noexcept {
   double first = std::max(covered - longest_, 0.0);  // s of the oldest entry that are over
   for (std::size_t age = used; age-- > 0; first = 0) {
     const auto& [command, duration] = entry(age);
-    const double time = std::max(duration - first, 0.0), yaw = pose.yaw + 0.5 * time * command.turn;
-    const double c = std::cos(yaw), s = std::sin(yaw);
-    pose = {pose.x + time * (c * command.forward - s * command.left),
-            pose.y + time * (s * command.forward + c * command.left), pose.yaw + time * command.turn};
+    pose = moved(pose, command, std::max(duration - first, 0.0));
   }
   return pose;
 }
@@ -84,8 +81,8 @@ void CommandDelay::estimate(const Velocity& measured, double elapsed) noexcept {
     if (errors_[k] < errors_[best]) best = k;
   }
   motion_ = kept * motion_ + elapsed * difference(measured, {});
-  const bool is_clear = errors_[best] < clear_share * errors_[0];
-  if (is_clear && errors_[0] > least_error && motion_ > least_error) longest_ = delay_step * best;
+  // It is clear once the robot has moved as much as in a delay at full speed.
+  if (errors_[best] < clear_share * errors_[0] && motion_ > delay_step) longest_ = delay_step * best;
 }
 
 double CommandDelay::difference(const Velocity& a, const Velocity& b) const noexcept {

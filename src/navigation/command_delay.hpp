@@ -46,7 +46,6 @@ class CommandDelay {
   static constexpr double memory = 10;          ///< s
   static constexpr double steady_after = 0.25;  ///< s
   static constexpr double clear_share = 0.5;    ///< largest share of the error without a delay
-  static constexpr double least_error = 0.01;   ///< s, of a squared share of the limits
 
   BaseOptions base_;
   double forward_, left_, turn_, longest_;

@@ -76,8 +76,8 @@ double Costmap::distance(double x, double y) const noexcept {
   return *distances_.at(geometry_.row(x), geometry_.column(y));
 }
 
-/// Whether the body overlaps an obstacle cell at `to`, or a vertex enters one on its straight way from there
-/// where the body is at `from`.
+/// Whether the body overlaps an obstacle cell at `to`, or a vertex enters one on its straight way from
+/// `from`.
 bool Costmap::touches(const Footprint& footprint, const maps::Pose& from,
                       const maps::Pose& to) const noexcept {
   struct Segment {

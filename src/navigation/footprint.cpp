@@ -78,21 +78,14 @@ Footprint Footprint::rectangle(double front, double rear, double width) {
 
 /// The part of the body in a strip across the longer side.
 Footprint::Part Footprint::part_of(double from, double to, bool along_x) const {
-  std::vector<Point> points;  // corners of the part: vertices in the strip, and where sides cross its edges
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    const Point &a = vertices_[i], &b = vertices_[(i + 1) % vertices_.size()];
-    const double start = along_x ? a.x : a.y, end = along_x ? b.x : b.y;
-    if (start >= from && start <= to) points.push_back(a);
-    for (const double edge : {from, to}) {
-      if ((start - edge) * (end - edge) >= 0) continue;
-      const double share = (edge - start) / (end - start);
-      points.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
-    }
-  }
+  const double spacing = (to - from) / 100;  // near enough to each other
+  std::vector<Point> points;
+  for (const Point& p : outline_points(spacing))
+    if (const double along = along_x ? p.x : p.y; along >= from - spacing && along <= to + spacing)
+      points.push_back(p);
   const auto [low, high] = bounds_of(points);
   Part part{{(low.x + high.x) / 2, (low.y + high.y) / 2}, 0, 0};
-  for (const Point& p : points)
-    part.covering = std::max(part.covering, std::hypot(p.x - part.middle.x, p.y - part.middle.y));
+  for (const Point& p : points) part.covering = std::max(part.covering, maps::distance(p, part.middle));
   if (contains(part.middle)) part.contained = distance_to_outline(part.middle);
   return part;
 }

@@ -16,7 +16,6 @@ namespace slalom::navigation {
 namespace {
 
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
-constexpr double least_command = 0.05;  // m/s and rad/s, of commands that move a robot
 constexpr double share_followed = 0.2;  // least share of a command that a robot follows
 constexpr double max_period = 0.2;      // s for which the robot brakes in one command
 
@@ -39,9 +38,8 @@ Velocity braked(const Velocity& v, const BaseOptions& base, double period) {
   return {kept * v.forward, kept * v.left, std::copysign(turn, v.turn)};
 }
 
-/// The last step of an update: makes the command finite and moves it into the limits of the base; a robot
-/// that drives faster brakes to them. Counts the changed values in `corrections`. Commands in a dead band are
-/// 0.
+/// The last step of an update: makes the command finite and moves it into the limits of the base, or brakes
+/// to them. Counts the changed values in `corrections`. Commands in a dead band are 0.
 void check_result(NavigationResult& result, const BaseOptions& base, const Velocity& slowest) noexcept {
   const auto check = [&](double& value, double least, double most, double dead_band, double braking) {
     const double valid =
@@ -72,7 +70,7 @@ class Navigator::Implementation {
                  options.base.max_forward * 0.5 *
                      braking_time({options.base.max_forward, 0, 0}, options.base)),
         delay_(options.base),
-        others_(footprint, options, model_->plan().size() - 1) {}
+        others_(footprint, options, model_->plan().size() - 1, geometry_.resolution) {}
 
   std::unique_ptr<Implementation> clone() const { return std::make_unique<Implementation>(*this); }
 
@@ -82,7 +80,6 @@ class Navigator::Implementation {
 
  private:
   friend Navigator;
-  bool fits(const Costmap& costmap) const noexcept;
   Velocity believe(const Velocity& told) noexcept;
   bool watch_commands(const Velocity& velocity, double elapsed) noexcept;
   bool plan_collides(const Costmap& costmap, const Velocity& velocity) const noexcept;
@@ -114,11 +111,6 @@ void Navigator::Implementation::reset(std::uint64_t seed) noexcept {
   model_->reset(seed);
 }
 
-bool Navigator::Implementation::fits(const Costmap& costmap) const noexcept {
-  const maps::GridGeometry& g = costmap.geometry();
-  return g.rows == geometry_.rows && g.columns == geometry_.columns && g.resolution == geometry_.resolution;
-}
-
 /// The velocity that was told; a robot drives faster than its limits only if it did so before.
 Velocity Navigator::Implementation::believe(const Velocity& told) noexcept {
   if (!plausible(told)) return told;
@@ -136,18 +128,20 @@ Velocity Navigator::Implementation::believe(const Velocity& told) noexcept {
 bool Navigator::Implementation::watch_commands(const Velocity& velocity, double elapsed) noexcept {
   const double asked = std::hypot(command_.forward, command_.left),
                driven = std::hypot(velocity.forward, velocity.left);
-  const bool drives = asked > least_command && driven < share_followed * asked;
-  const bool turns = std::abs(command_.turn) > least_command &&
-                     std::abs(velocity.turn) < share_followed * std::abs(command_.turn);
-  const bool moves = driven > least_command || std::abs(velocity.turn) > least_command;
-  ignored_for_ = (drives || turns) && !moves ? ignored_for_ + elapsed : 0;
+  // Changes within a step of a plan do not count.
+  const auto [forward, sideways, turning] = axis_limits(options_.base);
+  const double share = share_followed * options_.time_step, least = share * forward.acceleration,
+               least_turn = share * turning.acceleration, turned = std::abs(velocity.turn);
+  const bool drives = asked > least && driven < share_followed * asked;
+  const bool turns =
+      std::abs(command_.turn) > least_turn && turned < share_followed * std::abs(command_.turn);
+  ignored_for_ = (drives || turns) && driven <= least && turned <= least_turn ? ignored_for_ + elapsed : 0;
   return ignored_for_ > options_.stuck_after / 5 + delay_.longest();
 }
 
-/// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that overlaps an
-/// obstacle already may leave it, but not go deeper into it: the body without the rim that overlaps must stay
-/// free, or where the robot stands, without half a cell more, which rollouts do not see. If even its core is
-/// in an obstacle, the plan must leave it.
+/// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body in an obstacle may
+/// leave it, not go deeper: it must stay free without the rim that overlaps, or where the robot stands, half
+/// a cell more, which rollouts do not see. If even its core is in an obstacle, the plan must leave it.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
@@ -166,9 +160,7 @@ bool Navigator::Implementation::plan_collides(const Costmap& costmap,
   const double step =
       std::max(options_.time_step, braking_time(v, options_.base) / static_cast<double>(plan.size()));
   for (std::size_t i = 0; i < 2 * plan.size() && (v.forward != 0 || v.left != 0 || v.turn != 0); ++i) {
-    const double yaw = at.yaw + 0.5 * step * v.turn, c = std::cos(yaw), s = std::sin(yaw);
-    const maps::Pose next{at.x + step * (c * v.forward - s * v.left),
-                          at.y + step * (s * v.forward + c * v.left), at.yaw + step * v.turn};
+    const maps::Pose next = moved(at, v, step);
     if (costmap.collides(body, at, next)) return true;
     at = next;
     v = braked(v, options_.base, step);
@@ -189,7 +181,8 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
                                                    const Costmap& costmap, double elapsed,
                                                    std::span<const maps::PredictedObstacle> others) noexcept {
   if (!maps::is_plausible(now) || !plausible(told) || !(elapsed >= 0) || !std::isfinite(elapsed) ||
-      !fits(costmap))
+      costmap.geometry().resolution != geometry_.resolution || costmap.geometry().rows != geometry_.rows ||
+      costmap.geometry().columns != geometry_.columns)
     return stand(NavigationStatus::bad_input, told, elapsed);
   since_solve_ += elapsed;
   if (way_.empty() || costmap.geometry().row(now.x) < 0 || costmap.geometry().column(now.y) < 0)
@@ -201,7 +194,7 @@ NavigationResult Navigator::Implementation::update(const maps::Pose& now, const 
   const maps::Pose pose = delayed ? delay_.predict(now) : now;
   const Velocity velocity = delayed ? delay_.decided() : delay_.likely();
   way_.advance(pose, velocity, costmap, elapsed);
-  others_.update(others, {pose.x, pose.y});
+  others_.update(others, now, costmap, elapsed);
   if (way_.ends_at(pose)) {
     const bool is_there = way_.has_ended(now);
     return stand(is_there ? NavigationStatus::goal_reached : NavigationStatus::following, velocity, elapsed);

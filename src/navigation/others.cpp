@@ -1,14 +1,14 @@
 #include "navigation/others.hpp"
 
+#include "navigation/approach.hpp"
 #include "slalom/core/numbers/saturate_cast.hpp"
+#include "slalom/tracking/people.hpp"
 
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr double waits_for = 2;     // m from the robot to moving objects for which it may wait
-constexpr double foresight = 5;     // s, in which meetings are found
-constexpr double along_path = 0.7;  // cosine of the angle to the path, of those who go along it
-constexpr double noticed = 0.005;   // m by which a robot comes nearer to somebody
+constexpr double foresight =
+    5;  // s, in which meetings are found, and the robot may wait for those on its way
 
 /// The box around the footprint, and the costs of plans beside others; with this share of the margins.
 maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options,
@@ -29,6 +29,15 @@ maps::MovingObstacleOptions options_of(const Footprint& footprint, const Navigat
   return made;
 }
 
+/// A tracker of anything of about a person's size in cells of this size (m), whose edges have no noise.
+tracking::TrackerOptions tracker_options(double resolution) {
+  tracking::TrackerOptions options = tracking::people_tracker_options();
+  options.free_margin = std::max(0.4 * options.free_margin, 0.8 * resolution);
+  options.acceleration_deviation *= 0.5;
+  options.size_deviation *= 5;
+  return options;
+}
+
 /// Whether the plan collides up to the pose with this index, unless its first pose does already.
 bool collides(const maps::MovingObstaclesView& seen, std::span<const maps::Pose> plan, std::size_t last) {
   const auto meets = [&](std::size_t i) {
@@ -43,19 +52,59 @@ bool collides(const maps::MovingObstaclesView& seen, std::span<const maps::Pose>
 
 }  // namespace
 
-Others::Others(const Footprint& footprint, const NavigatorOptions& options, std::size_t steps)
+Others::Others(const Footprint& footprint, const NavigatorOptions& options, std::size_t steps,
+               double resolution)
     : time_step_(options.time_step),
       speed_(options.base.max_forward),
       half_width_(footprint.half_width() + options.costs.others_margin),
       body_(options_of(footprint, options, 1)),
       obstacles_(body_, static_cast<int>(steps)),
-      bodies_(options_of(footprint, options, 0), static_cast<int>(steps)) {}
+      bodies_(options_of(footprint, options, 0), static_cast<int>(steps)),
+      tracker_(tracker_options(resolution)),
+      predictor_(tracking::people_predictor_options()),
+      range_(2 * options.look_ahead) {}
+
+void Others::clear() noexcept {
+  tracker_.reset();
+  predictor_.reset();
+  now_ = 0;
+}
+
+void Others::update(std::span<const maps::PredictedObstacle> predicted, const maps::Pose& robot,
+                    const Costmap& costmap, double elapsed) noexcept {
+  now_ += elapsed;
+  if (predicted.empty()) predicted = find(robot, costmap);
+  obstacles_.update(predicted, position(robot), 0, time_step_);
+  bodies_.update(predicted, position(robot), 0, time_step_);
+}
+
+/// Follows what moves in the costmaps, as in scans that begin behind the robot: their ends are blind.
+std::span<const maps::PredictedObstacle> Others::find(const maps::Pose& robot,
+                                                      const Costmap& costmap) noexcept {
+  const maps::GridGeometry& cells = costmap.geometry();
+  const maps::Pose behind{robot.x, robot.y, robot.yaw + std::numbers::pi};
+  const double least = 0.5 * cells.resolution;  // m, of a step along a beam
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    const double angle = behind.yaw + maps::beam_angle(i, ranges_.size()), c = std::cos(angle),
+                 s = std::sin(angle);
+    double range = 0, room = least;
+    for (; room > 0 && range<range_; range += room> 0 ? std::max(room - 2 * least, least) : 0) {
+      const maps::Point at{robot.x + range * c, robot.y + range * s};
+      if (cells.row(at.x) < 0 || cells.column(at.y) < 0) range = range_;
+      room = costmap.distance(at.x, at.y);
+    }
+    ranges_[i] = static_cast<float>(range);
+  }
+  const maps::LaserScanView scan{ranges_, 0, maps::beam_angle(1, ranges_.size()), 0, range_};
+  const auto& seen = tracker_.update({.scan = scan, .sensor = behind, .stamp = now_});
+  return predictor_.update(seen.objects, now_);
+}
 
 bool Others::are_near(const maps::Point& robot) const noexcept {
   const auto taken = obstacles_.taken();
   return std::any_of(taken.begin(), taken.end(), [&](const maps::PredictedObstacle* each) {
     const maps::Pose& now = each->poses.front().pose;
-    return std::hypot(now.x - robot.x, now.y - robot.y) < waits_for;
+    return std::hypot(now.x - robot.x, now.y - robot.y) < foresight * speed_ + body_.front;
   });
 }
 
@@ -80,7 +129,7 @@ std::optional<maps::ClosedDisc> Others::meeting(std::span<const maps::Pose> path
     // At the first point they are beside each other, and at the last one they have not met yet.
     if (nearest == 0 || nearest + 1 >= last || least >= room) continue;
     const maps::Pose at = pose_at(nearest);
-    if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < along_path) continue;
+    if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < aligned) continue;
     first = maps::ClosedDisc{{at.x, at.y}, room + body_.margin};  // more, so that a way past is kept
     last = nearest;
   }
@@ -98,7 +147,7 @@ bool Others::comes_close(std::span<const maps::Pose> plan, std::size_t last) con
                         at.y - std::clamp(at.y, -0.5 * body_.width, 0.5 * body_.width));
     };
     const double least =
-        std::min(gap(plan.front()) - noticed, 0.5 * std::max(other->length, other->width) + body_.margin);
+        std::min(gap(plan.front()) - least_way, 0.5 * std::max(other->length, other->width) + body_.margin);
     for (std::size_t i = 1; i <= last; ++i)
       if (gap(plan[i]) < least) return true;
   }

@@ -44,8 +44,7 @@ bool PathPlanner::begin(const Costmap& costmap, const maps::Point& start, std::s
   is_searching_ = cell >= 0;
   if (!is_searching_) return false;
   std::ranges::fill(grid_.prices(), maps::GridSearch::unpriced);
-  // Cells at the start are open. From within an obstacle, as in a zone that was switched on, they reach as
-  // far as the nearest free place.
+  // Cells at the start are open; from within an obstacle, as in a new zone, as far as the nearest free place.
   double reach = nearby * half_width_;
   for (bool found = false; !found && reach < geometry_.length_x() + geometry_.length_y();
        reach *= found ? 1 : 1.5)
@@ -63,25 +62,15 @@ bool PathPlanner::advance(const Costmap& costmap, int cells) noexcept {
   return !is_searching_;
 }
 
-/// Sets the prices of a cell and of those around it that have none, which is faster than one by one.
+/// Sets the price of a cell that has none.
 void PathPlanner::price(const Costmap& costmap, int cell) noexcept {
-  constexpr int edge = 8;  // cells
   // One cell more than `has_room` asks for, since corners are rounded.
   const double needed = half_width_ + geometry_.resolution;
-  const GridView<1> own = costmap.prices();
-  const std::span<float> prices = grid_.prices();
-  const int columns = geometry_.rows, column = cell % columns / edge * edge,
-            row = cell / columns / edge * edge;
-  for (int y = row; y < std::min(row + edge, geometry_.columns); ++y)
-    for (int x = column; x < std::min(column + edge, columns); ++x) {
-      const auto index = static_cast<std::size_t>(y * columns + x);
-      if (prices[index] >= 0) continue;
-      const maps::Point at = grid_.centre_of(y * columns + x);
-      float price = maps::GridSearch::price_of(costmap.distance(at.x, at.y) - needed, nearby * half_width_);
-      if (marks_[index] == closed_place) price = 0;
-      if (price > 0) price += look_up(own, static_cast<float>(at.x), static_cast<float>(at.y));
-      prices[index] = marks_[index] == none ? price * elsewhere_ : price;
-    }
+  const maps::Point at = grid_.centre_of(cell);
+  float price = maps::GridSearch::price_of(costmap.distance(at.x, at.y) - needed, nearby * half_width_);
+  if (marks_[cell] == closed_place) price = 0;
+  if (price > 0) price += look_up(costmap.prices(), static_cast<float>(at.x), static_cast<float>(at.y));
+  grid_.prices()[cell] = marks_[cell] == none ? price * elsewhere_ : price;
 }
 
 double PathPlanner::cost_to(const maps::Point& point) const noexcept {

@@ -7,12 +7,10 @@
 namespace slalom::navigation {
 namespace {
 
-constexpr double least_turn = 0.01;  // rad/s, limit that variances of a robot that does not turn have
-
-/// Variances whose standard deviations are a share of the limits of the base.
+/// Variances whose standard deviations are a share of the limits of the base; any where it does not turn.
 PerInput variances(const BaseOptions& base, double share, double share_of_turn) {
   const double forward = share * base.max_forward, left = share * base.max_sideways,
-               turn = share_of_turn * std::max(base.max_turn, least_turn);
+               turn = share_of_turn * (base.max_turn > 0 ? base.max_turn : 1);
   if (base.kind == BaseKind::omnidirectional) return {forward * forward, left * left, turn * turn};
   return {forward * forward, turn * turn};
 }

@@ -32,8 +32,7 @@ bool ends_alike(const maps::PathCurve& path, const maps::PathCurve& longer, doub
   return true;
 }
 
-/// The pose to which the robot drives first: one on the way with another yaw than the first one at its place,
-/// which is asked for, or else the goal.
+/// The pose to which the robot drives first: one on the way whose yaw is asked for, or else the goal.
 std::size_t next_stop(std::span<const maps::Pose> path, const NavigatorOptions& options) {
   for (std::size_t i = 1, last; options.base.max_turn > 0 && i < path.size(); i = last + 1) {
     last = i;
@@ -60,7 +59,7 @@ Way::Way(const NavigatorOptions& options, const Footprint& footprint, const maps
     : options_(options),
       footprint_(footprint),
       inner_(footprint.without_rim(geometry.resolution)),
-      guide_(reach),
+      guide_(reach, footprint.circumscribed_radius()),
       planner_(geometry, footprint.half_width()),
       approach_(options, footprint),
       legs_({.near = std::min(0.75 * options.goal_distance, footprint.circumscribed_radius() / 4),
@@ -83,7 +82,7 @@ void Way::advance(const maps::Pose& robot, const Velocity& velocity, const Costm
   if (waiting_.empty() && !later_.empty() && stops_at(robot)) waiting_.swap(later_);
   if (!waiting_.empty() && !(waits_ && approach_.manoeuvres(guide_.remaining()))) take_up();
   if (std::exchange(is_new_, false)) {
-    approach_.place(guide_, robot, costmap, poses_);
+    approach_.place(guide_, robot, costmap);
     legs_.begin(robot, turn());
   }
   const double speed = std::hypot(velocity.forward, velocity.left);
@@ -117,7 +116,7 @@ void Way::make_room_for_turn(const Costmap& costmap) noexcept {
         !approach_.manoeuvres(left)) {
       checked_ = guide_.nearest();
       const double error = maps::wrap_angle(guide_.goal().yaw - guide_.legs().back().yaw);
-      if (std::abs(error) > 0.5 * options_.goal_angle) approach_.face_goal(guide_, costmap, poses_);
+      if (std::abs(error) > 0.5 * options_.goal_angle) approach_.face_goal(guide_, costmap);
     }
     return;
   }
@@ -128,7 +127,7 @@ void Way::make_room_for_turn(const Costmap& costmap) noexcept {
   checked_ = next[0].first;
   const maps::Pose& corner = guide_.points()[checked_];
   if (approach_.free_turn({corner.x, corner.y, guide_.leg().yaw}, next[0].yaw, costmap) != 0) return;
-  if (!guide_.join_legs()) approach_.face_goal(guide_, costmap, poses_);
+  if (!guide_.join_legs()) approach_.face_goal(guide_, costmap);
 }
 
 void Way::set_path(std::span<const maps::Pose> path) {
@@ -152,14 +151,10 @@ void Way::set_path(std::span<const maps::Pose> path) {
                                               footprint_.circumscribed_radius();
   given_ = std::move(given);
   given_stops_ = std::move(stops);
-  if (!goes_on) {
-    planner_.cancel();
-    chosen_.clear();
-    closed_.forget_dead_ends();
-    without_way_ = since_search_ = 0;
-  }
+  if (!goes_on) forget_tries();
   if (!goes_on || is_stuck() || is_done_) recovery_.reset();
   guide_.reserve(most);
+  approach_.reserve(most);
   for (auto* const poses : {&poses_, &chosen_, &waiting_, &later_}) poses->reserve(most);
   waiting_.assign(path.begin(), path.end());
   is_done_ = false;
@@ -171,8 +166,7 @@ bool Way::is_goal(const maps::Pose& pose) const noexcept {
          std::abs(maps::wrap_angle(pose.yaw - given_.goal().yaw)) <= 0.2 * options_.goal_angle;
 }
 
-/// Whether a path changes nothing: it ends like the one that was given, or the robot is at its end, where no
-/// way is left to decide about.
+/// Whether a path changes nothing: it ends like the one that was given, or the robot is at its end.
 bool Way::is_followed(const maps::PathCurve& path, std::span<const double> stops) const {
   const std::size_t to_come = later_.empty() ? 0 : 1 + stops_of(later_, options_).size();
   if (stops.size() < to_come || stops.size() > given_stops_.size() ||
@@ -192,13 +186,18 @@ void Way::clear() noexcept {
   waiting_.clear();
   later_.clear();
   later_length_ = 0;
-  chosen_.clear();
-  closed_.forget_dead_ends();
-  planner_.cancel();
   detour_left_ = infinity;
-  without_way_ = since_search_ = since_meeting_ = standing_ = 0;
+  standing_ = 0;
   recovery_.reset();
   stop_ = no_stop;
+  forget_tries();
+}
+
+void Way::forget_tries() noexcept {
+  planner_.cancel();
+  chosen_.clear();
+  closed_.forget_dead_ends();
+  without_way_ = searched_ = 0;
 }
 
 /// Follows a path whose yaws are those of the robot. It need not stop at corners in the first `smooth` m.
@@ -244,11 +243,11 @@ void Way::try_another_way(const maps::Pose& robot, const Costmap& costmap) noexc
     without_way_ = 0;
   } else if (guide_.remaining() < 2 * size) {
     is_new_ = true;
-    if (approach_.dock(guide_, robot, costmap, poses_)) return;
+    if (approach_.dock(guide_, robot, costmap)) return;
     poses_.assign({robot, guide_.goal()});
     set_yaws(poses_, options_.base);
     follow(poses_);
-  } else if ((manoeuvres_ = !manoeuvres_) && approach_.join(guide_, robot, costmap, poses_)) {
+  } else if ((manoeuvres_ = !manoeuvres_) && approach_.join(guide_, robot, costmap)) {
     is_new_ = true;
   } else {
     const std::size_t ahead = guide_.nearest() + guide_.points_for(1.5 * size);

@@ -54,13 +54,23 @@ class Way {
   bool is_closed(const Costmap& costmap, std::size_t point) const noexcept;
   bool stops_at(const maps::Pose& robot) const noexcept;
   void take_up() noexcept;
+  void forget_tries() noexcept;
   void make_room_for_turn(const Costmap& costmap) noexcept;
   bool is_followed(const maps::PathCurve& path, std::span<const double> stops) const;
   bool is_goal(const maps::Pose& pose) const noexcept;
   void follow(std::span<const maps::Pose> path, double smooth = 0) noexcept;
+  /// A place where a detour joins the path again.
+  struct Joint {
+    std::size_t point;     ///< index in the path; its number of points if there is none
+    maps::Point end{};     ///< m, of the way over the costmap
+    double cost;           ///< m, with the rest of the path
+    bool not_yet = false;  ///< whether a search that goes on may find a cheaper one
+  };
   bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
-  void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others,
-                     double elapsed) noexcept;
+  Joint cheapest_joint(const Costmap& costmap, std::size_t closed, std::size_t usual,
+                       double most) const noexcept;
+  bool take_detour(const Joint& joint) noexcept;
+  void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, const Others& others) noexcept;
   bool waits_at_goal(const Costmap& costmap, std::size_t closed) noexcept;
   void watch_progress(const maps::Pose& robot, const Costmap& costmap, const Others& others,
                       double elapsed) noexcept;
@@ -86,8 +96,7 @@ class Way {
   maps::ClosedDiscs closed_;
   double detour_left_ = infinity;  ///< m of path left where the detour ends
   double without_way_ = 0;         ///< s since the path is blocked and no way round was found
-  double since_search_ = 0;        ///< s
-  double since_meeting_ = 0;       ///< s
+  int searched_ = 0;               ///< updates of the last search, less those in which it has rested since
   bool is_new_ = true;             ///< the next update places the robot on the path
   std::size_t count_ = 0;          ///< points of the path at the last look for progress
   double left_ = 0, other_ = 0;    ///< m left of the path then; m by which it was longer than the first

@@ -50,10 +50,7 @@ struct Drive {
   NavigationResult move(const NavigationResult& result) {
     command = result.command;
     velocity = plant(command);
-    const double yaw = pose.yaw + 0.5 * drive_period * velocity.turn, c = std::cos(yaw), s = std::sin(yaw);
-    pose = {pose.x + drive_period * (c * velocity.forward - s * velocity.left),
-            pose.y + drive_period * (s * velocity.forward + c * velocity.left),
-            pose.yaw + drive_period * velocity.turn};
+    pose = moved(pose, velocity, drive_period);
     collided = collided || costmap.collides(body, pose);
     const int now = velocity.forward > 0.03 ? 1 : velocity.forward < -0.03 ? -1 : 0;
     reversals += now != 0 && last_direction != 0 && now != last_direction;

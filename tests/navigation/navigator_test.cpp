@@ -177,7 +177,7 @@ TEST(Navigator, RejectsInvalidOptionsAndPaths) {
   options.base.max_forward = -1;
   const Costmap costmap(50, 50, 0.05);
   EXPECT_THROW(Navigator(body, options, costmap), std::invalid_argument);
-  EXPECT_THROW(Navigator(Footprint::rectangle(20, 20, 1), {}, costmap), std::invalid_argument);
+  EXPECT_NO_THROW(Navigator(Footprint::rectangle(20, 20, 1), {}, costmap)) << "any length";
   Navigator navigator(body, {}, costmap);
   EXPECT_THROW(navigator.set_path({}), std::invalid_argument);
   const maps::Pose path[] = {{0, 0, 0}, {std::numeric_limits<double>::infinity(), 0, 0}};

@@ -36,8 +36,13 @@ struct Meeting : Drive {
   }
   /// Returns the least distance of the two middles until the goal or for `duration` (s), and drives on.
   double drive(double duration, bool predicts) {
+    const maps::OccupancyGrid floor = grid;
     double nearest = 100;
     for (time = 0; time < duration && status != NavigationStatus::goal_reached; time += drive_period) {
+      if (is_in_costmap) {
+        grid = floor;
+        block(other.at.x - 0.2, other.at.y - 0.2, other.at.x + 0.2, other.at.y + 0.2);
+      }
       status = (predicts ? step() : update()).status;
       detours += status == NavigationStatus::detour;
       other.move();
@@ -49,6 +54,7 @@ struct Meeting : Drive {
   Other other;
   NavigationStatus status = NavigationStatus::following;
   int detours = 0;
+  bool is_in_costmap = false;
 };
 
 TEST(NavigatorOthers, AreMetWhereTheyWillBe) {
@@ -58,6 +64,15 @@ TEST(NavigatorOthers, AreMetWhereTheyWillBe) {
   Meeting meeting(crossing);
   EXPECT_GT(meeting.drive(30, true), 0.6);
   EXPECT_EQ(meeting.status, NavigationStatus::goal_reached);
+}
+
+TEST(NavigatorOthers, AreSeenToMoveIfOnlyTheCostmapShowsThem) {
+  for (const Other& other : {Other{{4.6, -2.6}, {0, 0.6}}, {{5.2, 2.8}, {0, -0.6}}, {{9, 0.1}, {-0.8, 0}}}) {
+    Meeting meeting(other);
+    meeting.is_in_costmap = true;
+    EXPECT_GT(meeting.drive(30, false), 0.5) << other.at.x << ", " << other.at.y;
+    EXPECT_EQ(meeting.status, NavigationStatus::goal_reached);
+  }
 }
 
 TEST(NavigatorOthers, SomebodyWhoWalksTowardsTheRobotIsPassed) {
@@ -116,6 +131,7 @@ TEST(NavigatorOthers, WaitingForThemIsNoDeadEnd) {
   meeting.block(0, -3, 10, -0.5);
   meeting.drive(4, true);
   EXPECT_EQ(meeting.detours, 0);
+  for (int i = 0; i < 20 && meeting.status != NavigationStatus::waiting; ++i) meeting.drive(0.05, true);
   EXPECT_EQ(meeting.status, NavigationStatus::waiting);
   EXPECT_LT(meeting.pose.x, 1.8);
 }

@@ -11,22 +11,16 @@ namespace slalom::navigation {
 /// the outline, which a body in steps shorter than a cell meets with its outline first.
 class BodyCheck {
  public:
-  static constexpr std::size_t max_points = 512;  ///< most points of an outline
-
-  /// For costmaps of this resolution (m). Throws std::invalid_argument on an outline above 512 cells.
+  /// For costmaps of this resolution (m).
   BodyCheck(const Footprint& footprint, double resolution)
       : unsure_(1.42 * resolution), half_cell_(0.5 * resolution) {
     for (std::size_t i = 0; i < free_.size(); ++i)
       free_[i] = (static_cast<double>(1 << i) + 1.42) * resolution;
     const std::vector<maps::Point> points = footprint.outline_points(resolution);
-    if (points.size() > max_points) {
-      throw std::invalid_argument("footprint: the outline is " + std::to_string(points.size()) +
-                                  " cells long, must be at most 512 cells of the costmap");
-    }
     count_ = points.size();
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      x_[i] = static_cast<float>(points[i % count_].x);
-      y_[i] = static_cast<float>(points[i % count_].y);
+    for (std::size_t i = 0; i < count_ + 32; ++i) {
+      x_.push_back(static_cast<float>(points[i % count_].x));
+      y_.push_back(static_cast<float>(points[i % count_].y));
     }
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Footprint::Part& part = footprint.parts()[i];
@@ -42,8 +36,8 @@ class BodyCheck {
     mask_t<T> collided;  ///< whether they overlap
   };
 
-  /// Checks the body at (x, y), m, turned by the angle of this sine and cosine; with its outline where it is
-  /// to be `exact`.
+  /// Checks the body at (x, y), m, turned by the angle of this sine and cosine; its outline, too, where
+  /// `exact`.
   template <class T>
   SLALOM_INLINE_CALLS Contact<T> check(const GridView<1>& distances, const T& x, const T& y, const T& sine,
                                        const T& cosine, const mask_t<T>& exact) const {
@@ -84,8 +78,7 @@ class BodyCheck {
       if (2 * bodies <= T::lanes) return meets_outlines(distances, x, y, sine, cosine, asked);
     }
     mask_t<T> met(false);
-    // Points nearer than the nearest obstacle are free. One ahead is looked up that may decide for all up to
-    // it.
+    // Points nearer than the nearest obstacle are free. One ahead may decide for all up to it.
     for (std::size_t first = 0, ahead = 0; first < count_ && any(asked);) {
       const std::size_t at = std::min(first + ahead, count_ - 1);
       const T near = look_up_at(distances, T(x_[at]), T(y_[at]), x, y, sine, cosine);
@@ -116,10 +109,10 @@ class BodyCheck {
   }
 
   std::array<Part, Footprint::part_count> parts_;
-  std::array<float, max_points + 32> x_, y_;  ///< m, points of the outline, and the first ones again
-  std::size_t count_ = 0;                     ///< number of points
-  Coefficient unsure_;                        ///< m of clearance below which the outline decides
-  Coefficient half_cell_;                     ///< m
+  std::vector<float> x_, y_;  ///< m, points of the outline, and the first ones again
+  std::size_t count_ = 0;     ///< number of points
+  Coefficient unsure_;        ///< m of clearance below which the outline decides
+  Coefficient half_cell_;     ///< m
   /// m to an obstacle, beyond which 1, 2, 4, ... points to each side are free
   std::array<Coefficient, 6> free_;
 };

@@ -34,16 +34,15 @@ class Costmap {
   /// the cells, the origin of the grid is beyond maps::PoseLimits, or it is turned (its yaw is not 0).
   bool update(const maps::OccupancyGrid& grid, std::span<const float> prices = {}) noexcept;
 
-  /// The distance (m) from the middle of the cell at a position (m) to that of the nearest obstacle cell: 0
-  /// on an obstacle, at most `reach`.
+  /// The distance (m) between the middles of the cell at a position (m) and of the nearest obstacle cell, to
+  /// `reach`.
   double distance(double x, double y) const noexcept;
   /// Whether the body at this pose (map frame) overlaps an obstacle cell: exact but for rounding. One look-up
   /// of the distance decides for most poses. A pose beyond maps::PoseLimits collides.
   bool collides(const Footprint& footprint, const maps::Pose& pose) const noexcept {
     return collides(footprint, pose, pose);
   }
-  /// Whether the body overlaps an obstacle cell at `to`, or on a straight way there from `from` on which it
-  /// turns evenly, the shorter way round.
+  /// Whether the body overlaps an obstacle cell at `to`, or on the straight way from `from`, turning evenly.
   bool collides(const Footprint& footprint, const maps::Pose& from, const maps::Pose& to) const noexcept;
 
   /// The distances of all cells, for rollouts in the map frame.
@@ -53,7 +52,7 @@ class Costmap {
   /// Position and size of the cells.
   const maps::GridGeometry& geometry() const noexcept { return geometry_; }
 
-  static constexpr float reach = 100;  ///< m, the largest distance told
+  static constexpr float reach = Footprint::max_extent;  ///< m, the largest distance told
 
  private:
   bool touches(const Footprint& footprint, const maps::Pose& from, const maps::Pose& to) const noexcept;

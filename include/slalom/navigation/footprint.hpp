@@ -22,9 +22,8 @@ class Footprint {
   static constexpr int max_vertices = 32;    ///< most vertices of an outline
   static constexpr double max_extent = 100;  ///< m, from the origin to a vertex
 
-  /// A simple polygon, its vertices in order, in either direction. Throws std::invalid_argument, naming the
-  /// vertex, unless there are 3 to 32 of them, all finite and within 100 m of the origin, which enclose an
-  /// area with the origin inside and do not cross each other.
+  /// A simple polygon, its vertices in order. Throws std::invalid_argument, naming the vertex, unless there
+  /// are 3 to 32 of them within 100 m of the origin, with the origin inside, and no sides cross.
   explicit Footprint(std::span<const maps::Point> vertices);
 
   /// A rectangle: `front` and `rear` (m) are the distances from the origin to its front and rear side.

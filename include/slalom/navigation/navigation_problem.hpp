@@ -59,7 +59,7 @@ class NavigationProblem {
         input_min(Base::per_input(-limits.max_reverse, -limits.max_sideways, -limits.max_turn)),
         input_max(Base::per_input(limits.max_forward, limits.max_sideways, limits.max_turn)),
         base_(limits),
-        costs_(costs, step, std::min(per_usual_speed * limits.max_forward, 1.0)),
+        costs_(weights(costs, step, std::min(per_usual_speed * limits.max_forward, 1.0))),
         step_(step),
         reach_(farthest_projection * step *
                std::max({limits.max_forward, limits.max_reverse, limits.max_sideways})) {
@@ -117,11 +117,10 @@ class NavigationProblem {
     heading_weight_ = maps.turns ? 0.0 : (exact ? exact_heading : 1.0) * static_cast<double>(costs_.heading);
     clearance_weight_ = maps.manoeuvres ? Coefficient(0) : costs_.clearance;  // it was found to be free
     turning_weight_ = (exact ? 0.0 : 1.0) * static_cast<double>(costs_.turning);
-    const double pull = maps.turns ? on_the_spot : 1.0;
+    const double pull = maps.turns ? 1 / exact_path : 1.0;
     progress_weight_ = pull * static_cast<double>(costs_.progress);
     final_weight_ = pull * static_cast<double>(costs_.final_progress);
-    moves_ = maps.turns && maps.ends_at_goal ? 0.0 : 1.0;
-    drift_weight_ = maps.turns ? drift * static_cast<double>(step_) : 0.0;
+    moves_ = maps.turns ? 0.0 : 1.0;
     turn_weight_ = maps.turns ? costs_.goal_heading : Coefficient(0);
     stop_weight_ = maps.ends_leg && !maps.turns ? costs_.collision : Coefficient(0);
     near_goal_ = maps.ends_at_goal ? Coefficient(1) : Coefficient(0);
@@ -179,8 +178,7 @@ class NavigationProblem {
     const T turn_left = abs(x.yaw - T(end_yaw_));
     const VelocityOf<T> velocity = base_.velocity(driven(x.before, u));
     const T hurry = max((abs(velocity.forward) + abs(velocity.left)) * T(per_usual_speed), T(1));
-    const T drifting = T(drift_weight_) * (square(velocity.forward) + square(velocity.left));
-    const T moving = drifting + T(costs_.reverse) * max(T(0) - T(direction_) * velocity.forward, T(0)) +
+    const T moving = T(costs_.reverse) * max(T(0) - T(direction_) * velocity.forward, T(0)) +
                      T(costs_.sideways) * abs(velocity.left) + T(turning_weight_) * square(velocity.turn) +
                      T(costs_.unknown) * seen.price;
     const Cost<T> met = others_.cost(x.x, x.y, seen.sine, seen.cosine, k);
@@ -203,34 +201,35 @@ class NavigationProblem {
   }
 
  private:
-  static constexpr double exact_path = 10, exact_heading = 5, on_the_spot = 0.1;  ///< factors of weights
+  static constexpr double exact_path = 10,
+                          exact_heading = 5;  ///< factors of weights; in a turn on the spot, the
+  ///< progress counts by the inverse
   static constexpr double per_usual_speed = 2;      ///< s/m; faster robots keep more clearance
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
 
-  static constexpr double drift = 20;  ///< s/m^2, cost of the squared speed in a turn on the spot
-
   /// Weights times the duration of a step, as rollouts use them.
   struct Weights {
-    /// The clearance costs a slow robot as much on its way as a faster one.
-    Weights(const CostOptions& o, double step, double share_of_usual_speed)
-        : progress(o.progress * step),
-          final_progress(o.final_progress),
-          path(o.path * step),
-          max_squared(o.path_reach * o.path_reach),
-          heading(o.heading * step),
-          clearance(o.clearance * step * share_of_usual_speed),
-          falloff(-o.clearance_falloff),
-          reverse(o.reverse * step),
-          sideways(o.sideways * step),
-          turning(o.turning * step),
-          unknown(o.unknown * step),
-          goal_heading(o.goal_heading * step),
-          facing(0.5 * o.heading * step),
-          per_goal_reach(1 / o.goal_reach),
-          collision(o.collision * step) {}
-    Coefficient progress, final_progress, path, max_squared, heading, clearance, falloff, reverse, sideways,
-        turning, unknown, goal_heading, facing, per_goal_reach, collision;
+    Coefficient progress, path, heading, clearance, reverse, sideways, turning, unknown, goal_heading, facing,
+        collision, final_progress, max_squared, falloff, per_goal_reach;
   };
+  /// The clearance costs a slow robot as much on its way as a faster one.
+  static Weights weights(const CostOptions& o, double step, double share_of_usual_speed) {
+    return {o.progress * step,
+            o.path * step,
+            o.heading * step,
+            o.clearance * step * share_of_usual_speed,
+            o.reverse * step,
+            o.sideways * step,
+            o.turning * step,
+            o.unknown * step,
+            o.goal_heading * step,
+            0.5 * o.heading * step,
+            o.collision * step,
+            o.final_progress,
+            o.path_reach * o.path_reach,
+            -o.clearance_falloff,
+            1 / o.goal_reach};
+  }
 
   /// m to the end of the window: along the path, and from the side of it.
   template <class T>
@@ -255,9 +254,9 @@ class NavigationProblem {
   GridView<4> path_;
   maps::MovingObstaclesView others_;
   Coefficient window_length_, direction_, end_x_, end_y_, end_yaw_, progress_weight_, final_weight_,
-      path_weight_, heading_weight_, clearance_weight_, turning_weight_, drift_weight_, turn_weight_,
-      stop_weight_, near_goal_;
-  Coefficient moves_ = 1;  ///< 0 in the turn at the goal, in which speeds are braked to 0
+      path_weight_, heading_weight_, clearance_weight_, turning_weight_, turn_weight_, stop_weight_,
+      near_goal_;
+  Coefficient moves_ = 1;  ///< 0 in a turn on the spot, in which speeds are braked to 0
 };
 
 }  // namespace slalom::navigation

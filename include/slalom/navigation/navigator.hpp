@@ -15,13 +15,12 @@ struct Trajectories;
 
 namespace slalom::navigation {
 
-/// The options of `svg_mppi` for a base with these limits: 3000 samples of 56 steps, with standard deviations
-/// in proportion to the largest speeds of the base.
+/// The options of `svg_mppi` for this base: 3000 samples of 56 steps, with deviations in proportion to its
+/// speeds.
 SvgMppiOptions svg_mppi_options(const BaseOptions& base);
-/// The options of any method of the registry: those of the options above that the method has, and the
-/// method's defaults for the others. The number of samples is such that a solve takes about as many rollouts
-/// as one of `svg_mppi`, so that every method keeps the control period. Throws std::invalid_argument that
-/// lists the names if the method is unknown.
+/// The options of any method of the registry: those above that it has, and its defaults for the others. A
+/// solve takes about as many rollouts as one of `svg_mppi`, so that every method keeps the control period.
+/// Throws std::invalid_argument that lists the names if the method is unknown.
 SolverOptions method_options(std::string_view method, const BaseOptions& base);
 
 /// Options of a Navigator, besides those of its solver. `visit_options` below describes the fields.
@@ -48,20 +47,13 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.time_step, {"time_step", "s", "duration of a step of a plan", 0.001, 1});
   visit(o.goal_distance, {"goal_distance", "m", "distance at which the goal is reached", 0.001, 100});
   visit(o.goal_angle, {"goal_angle", "rad", "yaw error at which the goal is reached", 0.001, 4});
-  visit(o.find_detours,
-        {"find_detours", "", "search a way around where the path is blocked; report if none"});
+  visit(o.find_detours, {"find_detours", "", "search a way around where the path is blocked"});
   visit(o.look_ahead, {"look_ahead", "m", "length of path that is checked for obstacles", 0, 100});
-  visit(o.patience,
-        {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
-  visit(o.stuck_after, {"stuck_after", "s",
-                        "time without progress, or half of it standing, after which the robot tries another "
-                        "way; after five of them it is stuck for 10 s",
-                        0.1, 3600});
+  visit(o.patience, {"patience", "s", "time without a way until the robot stops and is `blocked`", 0, 60});
+  visit(o.stuck_after,
+        {"stuck_after", "s", "time without progress, or half of it standing, before another way", 0.1, 3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
-  visit(o.retries, {"retries", "",
-                    "further solves in an update while the plan meets an obstacle, before it "
-                    "brakes",
-                    0, 100});
+  visit(o.retries, {"retries", "", "further solves in an update while the plan meets an obstacle", 0, 100});
   visit(o.deadline, {"deadline", "s", "time limit of a solve; 0: none", 0, 1});
 }
 
@@ -93,8 +85,8 @@ constexpr const char* name(NavigationStatus status) noexcept {
 struct NavigationResult {
   NavigationStatus status = NavigationStatus::no_path;  ///< whether it drives, and if not, why
   /// Finite and within the largest speeds of the base, or on the way to them if the robot drives faster.
-  /// Braking reduces speed and yaw rate separately, so that the command may then ask an Ackermann base for a
-  /// tighter turn than it can drive.
+  /// Braking reduces speed and yaw rate separately, and may ask an Ackermann base for a tighter turn than it
+  /// can.
   Velocity command;
   int corrections = 0;   ///< values of it that the final check changed
   double remaining = 0;  ///< m of path to the goal
@@ -127,12 +119,10 @@ using StateCost = std::function<void(const RolloutStates& states, std::span<doub
 ///     drive(result.command);
 ///
 /// Where the path is blocked within `look_ahead`, it searches for a way round and keeps to it until that is
-/// blocked itself: a search prefers the way that was chosen before. Construction and `set_path` allocate and
-/// may throw; `update` does neither.
+/// blocked itself. Construction and `set_path` allocate and may throw; `update` does neither.
 class Navigator {
  public:
-  /// For costmaps of the size and resolution of `costmap`. Throws std::invalid_argument that names the
-  /// option, its value and the rule.
+  /// For costmaps like `costmap`. Throws std::invalid_argument that names the option, its value and the rule.
   Navigator(const Footprint& footprint, const NavigatorOptions& options, const SolverOptions& solver,
             const Costmap& costmap);
   /// Makes a navigator with `svg_mppi`.
@@ -146,30 +136,29 @@ class Navigator {
   /// The path to follow, in the map frame, from near the robot to the goal. The yaw of the last pose is the
   /// heading at the goal. Those of the others count if each is within 60 degrees of the direction of the path
   /// or of its opposite: there the robot reverses. Otherwise it drives forward; an Ackermann base reverses
-  /// after cusps. The robot stops at cusps, at corners of more than 60 degrees, where it turns on the spot if
-  /// it can, and where two poses at one place differ in yaw: it goes on there with the second yaw. The goal
-  /// is the end of the path, even if that passes there before. A path that ends like the one that is
-  /// followed, to half of goal_distance, changes nothing, nor does one to the same goal once the robot is
-  /// there. One to the same goal in a manoeuvre waits until that ends. Throws std::invalid_argument unless
-  /// there is at least one pose, all are within maps::PoseLimits, and the path is at most 10 km long.
+  /// after cusps. It stops at cusps, at corners of more than 60 degrees, and where two poses at one place
+  /// differ in yaw: it goes on there with the second yaw. A path that ends like the one that is followed, to
+  /// half of goal_distance, changes nothing; one to the same goal in a manoeuvre waits until that ends.
+  /// Throws std::invalid_argument unless there is at least one pose, all are within maps::PoseLimits, and the
+  /// path is at most 10 km long.
   void set_path(std::span<const maps::Pose> path);
 
-  /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time
-  /// since the last update. `others` are the moving objects, predicted from now on in the map frame:
-  /// plans avoid their place at each step, and the costmap should not show them.
+  /// The command for the next control period. `velocity` is that of the robot now, `elapsed` (s) the time
+  /// since the last update. `others` are the moving objects, predicted from now on in the map frame, which
+  /// the costmap should not show: plans avoid their place at each step. Without any, it predicts what moves
+  /// in the costmap.
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                           double elapsed, std::span<const maps::PredictedObstacle> others = {}) noexcept;
 
-  /// Adds a term of your own to the cost of plans; an empty function removes it. The search for detours and
-  /// the final check do not use it.
+  /// Adds a term of your own to the cost of plans, not to the search for detours; an empty function removes
+  /// it.
   void set_cost(StateCost cost) noexcept;
 
   /// The solver's result of the last plan, to show it. Valid until the next update.
   const SolveResult& solution() const noexcept;
-  /// The trajectories of control sequences [sequence][step][input] from the start of the last plan and over
-  /// its costmap, which must not have changed. Each state is x, y, yaw (m, rad, map frame) and the velocity
-  /// forward, left and turn (m/s, rad/s) with which it was reached. Allocates. The cost terms are those of
-  /// NavigationProblem.
+  /// The trajectories of control sequences [sequence][step][input] from the start of the last plan, over its
+  /// costmap. States are x, y, yaw (m, rad, map frame) and the velocity forward, left and turn (m/s, rad/s)
+  /// with which they were reached, cost terms those of NavigationProblem. Allocates.
   Trajectories roll_out(std::span<const float> sequences) const;
 
   /// Forgets the path and all that was learned on it, and restarts the random numbers from `seed`.

@@ -6,9 +6,8 @@
 
 namespace slalom::navigation {
 
-/// Finds cheapest paths over a costmap for a body that needs a corridor of a given width. Cells beside that
-/// corridor, within 1.2 times its half width, cost up to five times as much. After construction nothing
-/// allocates.
+/// Finds cheapest paths over a costmap for a body that needs a corridor. Cells beside it, within 1.2 times
+/// its half width, cost up to five times as much. After construction nothing allocates.
 class PathPlanner {
  public:
   static constexpr std::size_t max_points = 4000;  ///< most points of a path, unless more are asked for
@@ -23,11 +22,10 @@ class PathPlanner {
   /// Whether there is room for the body there, where the path goes straight on.
   bool has_room(const Costmap& costmap, const maps::Point& point) const noexcept;
 
-  /// Begins a search from a position over a costmap, which must have the size given. Returns false if it is
-  /// off the costmap. `kept` is a path that was followed before: cells further than 1.2 half widths from it
-  /// cost 1.3 times as much, so that the search prefers the way that was chosen. No way leads through the
-  /// `closed` discs. It goes `towards` a point at first. Cells within 1.2 half widths of the start count as
-  /// free, or those up to the nearest free place.
+  /// Begins a search from a position over a costmap of the size given. Returns false if it is off the
+  /// costmap. `kept` is a path that was followed before: cells further than 1.2 half widths from it cost 1.3
+  /// times as much. No way leads through the `closed` discs. It goes `towards` a point at first. Cells within
+  /// 1.2 half widths of the start count as free, or those up to the nearest free place.
   bool begin(const Costmap& costmap, const maps::Point& start, std::span<const maps::Pose> kept = {},
              std::span<const maps::ClosedDisc> closed = {}, const maps::Point* towards = nullptr) noexcept;
   /// Goes on from at most so many cells. Returns whether it has ended: then all costs are known.
@@ -43,11 +41,11 @@ class PathPlanner {
     maps::Point end;  ///< m
     double cost = 0;  ///< m of free space, with that line; infinite if there is none
   };
-  /// The cheapest way to a position off the costmap: to the edge of the costmap, and straight on, with room
-  /// as far as the costmap shows. None that costs `most` or more.
+  /// The cheapest way to a position off the costmap that costs less than `most`: to its edge, and straight
+  /// on.
   Way way_off(const Costmap& costmap, const maps::Point& point, double most) const noexcept;
-  /// The way to a position that can be reached, without that position itself; empty if it has too many
-  /// points. Valid until the next call.
+  /// The way to a position that can be reached, without that itself; empty if too long. Valid until the next
+  /// call.
   std::span<const maps::Point> path_to(const maps::Point& point) noexcept;
 
  private:
@@ -63,8 +61,8 @@ class PathPlanner {
   bool is_searching_ = false;
 };
 
-/// A path to a goal: points at most 0.05 m apart, each with the direction of the path, and the goal. Empty if
-/// there is none. Allocates.
+/// A path to a goal: points about 0.05 m apart, each with its direction, and the goal. Empty if there is
+/// none.
 std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footprint, const maps::Pose& start,
                                   const maps::Pose& goal);
 

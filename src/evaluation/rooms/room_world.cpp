@@ -67,13 +67,9 @@ void RoomWorld::step(std::span<const navigation::Velocity> commands) {
               velocity.left + share * (asked.left - velocity.left),
               velocity.turn + share * (asked.turn - velocity.turn)};
   late_.pop_front();
-  const double yaw = pose.yaw + 0.5 * dt * velocity.turn;
-  const double c = std::cos(yaw), s = std::sin(yaw);
-  const maps::Point in_room{c * velocity.forward - s * velocity.left,
-                            s * velocity.forward + c * velocity.left};
-  pose = {pose.x + dt * in_room.x, pose.y + dt * in_room.y, pose.yaw + dt * velocity.turn};
+  const maps::Pose before = std::exchange(pose, navigation::moved(pose, velocity, dt));
   if (!room_.people.empty()) {
-    crowd_.step(dt, {pose, body_.length, body_.width}, in_room);
+    crowd_.step(dt, {pose, body_.length, body_.width}, {(pose.x - before.x) / dt, (pose.y - before.y) / dt});
     room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
   }
   collided = collided || collides();
