@@ -5,7 +5,9 @@ import { join } from "node:path";
 import { Harness } from "./harness.mjs";
 
 const [program, name, file] = process.argv.slice(2);
-const ways = "--course stag --config published --obstacles 1 --seed 77 --against mppi --record-all".split(" ");
+const ways = "--course stag --config published --obstacles 1 --seed 77 --against mppi --record-all".split(
+  " ",
+);
 const scenarios = { "live-view": [], "two-ways": ways };
 const scenario = scenarios[name];
 if (!scenario || !file)
