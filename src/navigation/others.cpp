@@ -29,10 +29,11 @@ maps::MovingObstacleOptions options_of(const Footprint& footprint, const Navigat
   return made;
 }
 
-/// A tracker of anything of about a person's size in cells of this size (m), whose edges have no noise.
+/// A tracker of anything of about a person's size in cells of this size (m). An edge that flickers by up to
+/// four cells is no motion.
 tracking::TrackerOptions tracker_options(double resolution) {
   tracking::TrackerOptions options = tracking::people_tracker_options();
-  options.free_margin = std::max(0.4 * options.free_margin, 0.8 * resolution);
+  options.free_margin = std::max(2 * options.free_margin, 4 * resolution);
   options.acceleration_deviation *= 0.5;
   options.size_deviation *= 5;
   return options;

@@ -236,7 +236,7 @@ int touched(const char* others, double shift, const char* seed) {
   return count;
 }
 
-TEST(PathFollowerPeople, AreNotTouchedIn27CrossingsThatItsOwnTrackerSees) {
+TEST(PathFollowerPeople, AreNotTouchedIn27CrossingsThatItsTrackerOrItsNavigatorSees) {
   int with_tracker = 0, with_costmap_alone = 0;
   for (const char* seed : {"1", "2", "3"})
     for (double shift = -2; shift <= 2; shift += 0.5) {
@@ -244,7 +244,7 @@ TEST(PathFollowerPeople, AreNotTouchedIn27CrossingsThatItsOwnTrackerSees) {
       if (seed[0] == '1') with_costmap_alone += touched("none", shift, seed);
     }
   EXPECT_EQ(with_tracker, 0);
-  EXPECT_GT(with_costmap_alone, 0) << "the test would not show anything";
+  EXPECT_EQ(with_costmap_alone, 0);
 }
 
 }  // namespace

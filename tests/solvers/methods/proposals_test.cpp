@@ -161,22 +161,26 @@ TEST(Symptoms, AreNamedWhenTheyStay) {
   }
 }
 
-/// A point that is held at 0 with a long horizon, and the symptom after that.
-Symptom while_holding(const char* method, double horizon_steps) {
+/// Of the last 100 solves for a point that is held at 0 with a long horizon, those with a noisy plan.
+int noisy_plans(const char* method) {
   SolverOptions options = solver_options(method);
-  *options.find<int>("horizon") = static_cast<int>(horizon_steps);
+  *options.find<int>("horizon") = 80;
   *options.find<PerInput>("input_min") = -10;
   *options.find<PerInput>("input_max") = 10;
   Controller controller(testing::DoubleIntegrator{}, options);
   testing::DoubleIntegrator::State<double> x{0, 0};
-  for (int k = 0; k < 200; ++k)
-    x = controller.problem().step(x, controller.solve(x, {.elapsed = 0.1}).inputs[0]);
-  return controller.solve(x, {.elapsed = 0.1}).stats.symptom();
+  int noisy = 0;
+  for (int k = 0; k < 200; ++k) {
+    const auto plan = controller.solve(x, {.elapsed = 0.1});
+    noisy += k >= 100 && plan.stats.symptom() == Symptom::noisy_plan;
+    x = controller.problem().step(x, plan.inputs[0]);
+  }
+  return noisy;
 }
 
 TEST(Symptoms, TellNoisyPlans) {
-  EXPECT_EQ(while_holding("mppi", 80), Symptom::noisy_plan);
-  EXPECT_EQ(while_holding("svg_mppi", 80), Symptom::none);
+  EXPECT_GT(noisy_plans("mppi"), 20);
+  EXPECT_EQ(noisy_plans("svg_mppi"), 0);
 }
 
 TEST(Symptoms, TellSamplesThatDiverge) {
