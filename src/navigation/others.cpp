@@ -7,8 +7,8 @@
 namespace slalom::navigation::detail {
 namespace {
 
-constexpr double foresight =
-    5;  // s, in which meetings are found, and the robot may wait for those on its way
+// s, in which meetings are found, and the robot may wait for those on its way
+constexpr double foresight = 5;
 
 /// The box around the footprint, and the costs of plans beside others; with this share of the margins.
 maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options,
@@ -88,11 +88,13 @@ std::span<const maps::PredictedObstacle> Others::find(const maps::Pose& robot,
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     const double angle = behind.yaw + maps::beam_angle(i, ranges_.size()), c = std::cos(angle),
                  s = std::sin(angle);
-    double range = 0, room = least;
-    for (; room > 0 && range<range_; range += room> 0 ? std::max(room - 2 * least, least) : 0) {
+    double range = 0;
+    while (range < range_) {
       const maps::Point at{robot.x + range * c, robot.y + range * s};
-      if (cells.row(at.x) < 0 || cells.column(at.y) < 0) range = range_;
-      room = costmap.distance(at.x, at.y);
+      const bool is_off = cells.row(at.x) < 0 || cells.column(at.y) < 0;
+      const double room = is_off ? range_ : costmap.distance(at.x, at.y);
+      if (room <= 0) break;
+      range += std::max(room - 2 * least, least);
     }
     ranges_[i] = static_cast<float>(range);
   }

@@ -66,20 +66,24 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.max_reverse, {"max_reverse", "m/s", "largest speed backward", 0, 20});
   visit(o.max_sideways, {"max_sideways", "m/s", "largest speed sideways of an omnidirectional base", 0, 20});
   visit(o.max_turn, {"max_turn", "rad/s", "largest yaw rate; 0: the robot keeps its heading", 0, 20});
-  visit(o.max_acceleration, {"max_acceleration", "m/s^2", "acceleration, also in reverse", 0.01, 100});
+  visit(o.max_acceleration,
+        {"max_acceleration", "m/s^2", "largest acceleration, also in reverse", 0.01, 100});
   visit(o.max_deceleration, {"max_deceleration", "m/s^2", "largest braking; 0: max_acceleration", 0, 100});
   visit(o.max_sideways_acceleration, {"max_sideways_acceleration", "m/s^2",
                                       "largest acceleration to either side; 0: max_acceleration", 0, 100});
-  visit(o.max_sideways_deceleration, {"max_sideways_deceleration", "m/s^2",
-                                      "its braking; 0: that, or max_deceleration if that is 0", 0, 100});
-  visit(o.max_turn_acceleration, {"max_turn_acceleration", "rad/s^2", "increase of the yaw rate", 0.01, 100});
+  visit(o.max_sideways_deceleration,
+        {"max_sideways_deceleration", "m/s^2",
+         "largest braking of it; 0: max_sideways_acceleration, or max_deceleration", 0, 100});
+  visit(o.max_turn_acceleration,
+        {"max_turn_acceleration", "rad/s^2", "largest increase of the yaw rate", 0.01, 100});
   visit(o.max_turn_deceleration,
         {"max_turn_deceleration", "rad/s^2", "largest decrease of it; 0: max_turn_acceleration", 0, 100});
   visit(o.dead_band_forward, {"dead_band_forward", "m/s", "speed of commands below which it stands", 0, 1});
   visit(o.dead_band_sideways, {"dead_band_sideways", "m/s", "the same for a speed to either side", 0, 1});
   visit(o.dead_band_turn, {"dead_band_turn", "rad/s", "the same for a yaw rate", 0, 1});
   visit(o.min_turning_radius, {"min_turning_radius", "m", "least radius of an Ackermann base", 0.01, 100});
-  visit(o.delay_forward, {"delay_forward", "s", "dead time and time constant of a speed forward", 0, 2});
+  visit(o.delay_forward,
+        {"delay_forward", "s", "dead time plus time constant until a speed forward is driven", 0, 2});
   visit(o.delay_sideways, {"delay_sideways", "s", "the same for a speed to either side", 0, 2});
   visit(o.delay_turn, {"delay_turn", "s", "the same for a yaw rate", 0, 2});
 }
@@ -108,8 +112,8 @@ inline std::array<AxisLimits, 3> axis_limits(const BaseOptions& base) noexcept {
             base.dead_band_turn}}};
 }
 
-/// The inputs of a base that turns on the spot: speed forward, of three also to the left (m/s), yaw rate
-/// (rad/s).
+/// The inputs of a base that turns on the spot: the speed forward, with three inputs also to the left (m/s),
+/// and the yaw rate (rad/s).
 template <int count>
 struct TurningBase {
   static constexpr int inputs = count;  ///< inputs of a step

@@ -32,8 +32,10 @@ requires is_options_of<Options, CostOptions>
 void visit_options(Options& o, Visit&& visit) {
   visit(o.progress, {"progress", "1/(m s)", "weight of the path that is left in the plan's window", 0, 1e6});
   visit(o.final_progress, {"final_progress", "1/m", "weight of the path left at the plan's end", 0, 1e6});
-  visit(o.path, {"path", "1/(m^2 s)", "weight of the squared distance to it, up to path_reach", 0, 1e6});
-  visit(o.path_reach, {"path_reach", "m", "distance to the path beyond which it costs equally", 0.01, 100});
+  visit(o.path,
+        {"path", "1/(m^2 s)", "weight of the squared distance to the path, up to path_reach", 0, 1e6});
+  visit(o.path_reach,
+        {"path_reach", "m", "distance to the path beyond which its cost stays equal", 0.01, 100});
   visit(o.heading, {"heading", "1/s", "weight of 1 - cos(yaw error) to the path", 0, 1e6});
   visit(o.clearance,
         {"clearance", "1/s", "cost of touching an obstacle; near the goal it falls to 0", 0, 1e6});
@@ -44,7 +46,8 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.unknown, {"unknown", "1/s", "cost of having the origin in an unknown cell that is priced", 0, 1e6});
   visit(o.goal_heading, {"goal_heading", "1/s", "weight of 1 - cos(yaw error) to the goal, near it", 0, 1e6});
   visit(o.goal_reach,
-        {"goal_reach", "m", "distance where goal_heading begins to count, and clearance less", 0.01, 100});
+        {"goal_reach", "m",
+         "distance to the goal where goal_heading begins to count, and clearance to count less", 0.01, 100});
   visit(o.collision, {"collision", "1/s", "cost of overlapping an obstacle or a moving object", 0, 1e6});
   visit(o.others_margin, {"others_margin", "m", "distance to a moving object that is a collision", 0, 10});
   visit(o.others_reach, {"others_reach", "m", "distance beyond others_margin where nearness costs", 0, 10});

@@ -34,8 +34,8 @@ class Costmap {
   /// the cells, the origin of the grid is beyond maps::PoseLimits, or it is turned (its yaw is not 0).
   bool update(const maps::OccupancyGrid& grid, std::span<const float> prices = {}) noexcept;
 
-  /// The distance (m) between the middles of the cell at a position (m) and of the nearest obstacle cell, to
-  /// `reach`.
+  /// The distance (m) from the middle of the cell at a position (m) to that of the nearest obstacle cell, at
+  /// most `reach`.
   double distance(double x, double y) const noexcept;
   /// Whether the body at this pose (map frame) overlaps an obstacle cell: exact but for rounding. One look-up
   /// of the distance decides for most poses. A pose beyond maps::PoseLimits collides.

@@ -201,9 +201,9 @@ class NavigationProblem {
   }
 
  private:
-  static constexpr double exact_path = 10,
-                          exact_heading = 5;  ///< factors of weights; in a turn on the spot, the
-  ///< progress counts by the inverse
+  /// Factors of the weights where a path is followed exactly. In a turn on the spot, progress counts by the
+  /// inverse.
+  static constexpr double exact_path = 10, exact_heading = 5;
   static constexpr double per_usual_speed = 2;      ///< s/m; faster robots keep more clearance
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
 
@@ -214,21 +214,21 @@ class NavigationProblem {
   };
   /// The clearance costs a slow robot as much on its way as a faster one.
   static Weights weights(const CostOptions& o, double step, double share_of_usual_speed) {
-    return {o.progress * step,
-            o.path * step,
-            o.heading * step,
-            o.clearance * step * share_of_usual_speed,
-            o.reverse * step,
-            o.sideways * step,
-            o.turning * step,
-            o.unknown * step,
-            o.goal_heading * step,
-            0.5 * o.heading * step,
-            o.collision * step,
-            o.final_progress,
-            o.path_reach * o.path_reach,
-            -o.clearance_falloff,
-            1 / o.goal_reach};
+    return {.progress = o.progress * step,
+            .path = o.path * step,
+            .heading = o.heading * step,
+            .clearance = o.clearance * step * share_of_usual_speed,
+            .reverse = o.reverse * step,
+            .sideways = o.sideways * step,
+            .turning = o.turning * step,
+            .unknown = o.unknown * step,
+            .goal_heading = o.goal_heading * step,
+            .facing = 0.5 * o.heading * step,
+            .collision = o.collision * step,
+            .final_progress = o.final_progress,
+            .max_squared = o.path_reach * o.path_reach,
+            .falloff = -o.clearance_falloff,
+            .per_goal_reach = 1 / o.goal_reach};
   }
 
   /// m to the end of the window: along the path, and from the side of it.

@@ -47,13 +47,19 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.time_step, {"time_step", "s", "duration of a step of a plan", 0.001, 1});
   visit(o.goal_distance, {"goal_distance", "m", "distance at which the goal is reached", 0.001, 100});
   visit(o.goal_angle, {"goal_angle", "rad", "yaw error at which the goal is reached", 0.001, 4});
-  visit(o.find_detours, {"find_detours", "", "search a way around where the path is blocked"});
+  visit(o.find_detours,
+        {"find_detours", "", "search a way around where the path is blocked; report if none"});
   visit(o.look_ahead, {"look_ahead", "m", "length of path that is checked for obstacles", 0, 100});
-  visit(o.patience, {"patience", "s", "time without a way until the robot stops and is `blocked`", 0, 60});
+  visit(o.patience,
+        {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
   visit(o.stuck_after,
-        {"stuck_after", "s", "time without progress, or half of it standing, before another way", 0.1, 3600});
+        {"stuck_after", "s",
+         "time without progress, or half of it standing, before it tries another way; after five it is stuck",
+         0.1, 3600});
   visit(o.goal_room, {"goal_room", "m", "room that it leaves before an occupied goal", 0, 100});
-  visit(o.retries, {"retries", "", "further solves in an update while the plan meets an obstacle", 0, 100});
+  visit(o.retries,
+        {"retries", "", "further solves in an update while the plan meets an obstacle, before it brakes", 0,
+         100});
   visit(o.deadline, {"deadline", "s", "time limit of a solve; 0: none", 0, 1});
 }
 
