@@ -206,8 +206,9 @@ int touched(const char* others, double shift, const char* seed) {
     for (const Walker& each : walkers) {
       room.people.push_back({each.at(input.time), radius});
       for (std::size_t i = 0; i < costs.size(); ++i) {
+        const std::size_t row = i / 240, column = i % 240;
         const maps::Point before = each.at(input.time - late),
-                          cell{0.05 * (i % 240 + 0.5), 0.05 * (i / 240 + 0.5)};
+                          cell{0.05 * (column + 0.5), 0.05 * (row + 0.5)};
         if (maps::distance(cell, before) < radius) costs[i] = 254;
       }
     }

@@ -65,7 +65,7 @@ std::vector<double> SolverSubject::drive(std::span<const double> state, const Dr
     begin = Clock::now();
     solved = &solve(state, {.elapsed = i == 0 ? request.elapsed : 0});
   }
-  if (on_plan) on_plan(*solved, std::chrono::duration<double>(Clock::now() - begin).count());
+  if (solved && on_plan) on_plan(*solved, std::chrono::duration<double>(Clock::now() - begin).count());
   time_ += time_step();
   return step(state, inputs().first(facts().inputs.size()));
 }
