@@ -47,7 +47,7 @@ void DrawnSolve::add_candidates(const SolveResult& from) {
     weights[i] = k < from.weights.size() ? from.weights[k] : 0;
     collided[i] = from.collided[k] != 0;
     sequences.resize(sequences.size() + length);
-    batch->get_sample(static_cast<int>(k), {sequences.end() - static_cast<std::ptrdiff_t>(length), length});
+    batch->get_sample(static_cast<int>(k), std::span(sequences).last(length));
   }
 }
 

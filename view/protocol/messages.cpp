@@ -74,7 +74,7 @@ Json symptoms_json() {
 }  // namespace
 
 int Choices::method_index(const std::string& method) const {
-  return static_cast<int>(std::ranges::find(methods, method) - methods.begin());
+  return static_cast<int>(std::find(methods.begin(), methods.end(), method) - methods.begin());
 }
 
 std::string hello_message(const SubjectFacts& facts, const Choices& choices, double history,

@@ -108,7 +108,7 @@ std::vector<DrivenLap> Drives::laps() const {
       lap.ghost = true;
       if (lap.end > ghost_start) all.push_back(std::move(lap));
     }
-  std::ranges::stable_sort(all, {}, &DrivenLap::end);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.end < b.end; });
   return all;
 }
 

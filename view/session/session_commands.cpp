@@ -62,7 +62,7 @@ ScenarioNames chosen_scenario(ScenarioNames names, const Json& command, const Ch
     if (!command.contains(key)) return;
     const std::string wanted = field::text(command, key);
     // A page must not make the server read other folders than those that are listed or already open.
-    if (wanted != name && std::ranges::find(all, wanted) == all.end())
+    if (wanted != name && std::find(all.begin(), all.end(), wanted) == all.end())
       throw std::invalid_argument(std::string(key) + ": '" + wanted + "' is unknown");
     name = wanted;
   };
