@@ -38,7 +38,7 @@ const places = { drive: recorded, without: recorded + withoutGuides, close: "" }
 for (const [id, place] of Object.entries(places))
   get<HTMLAnchorElement>(`introduction-${id}`).href = "./" + location.search + place;
 get("introduction-close").hidden = isFile;
-get<HTMLAnchorElement>("introduction-open").href = "introduction" + location.search;
+get<HTMLAnchorElement>("introduction-open").href = `introduction${location.search}`;
 
 get("introduction").hidden = !isIntroduction;
 document.body.classList.toggle("introduction", isIntroduction);
