@@ -149,6 +149,18 @@ TEST(PlannerAmongOthers, KeepsMoreDistanceToThemThanToWalls) {
   EXPECT_EQ(beside(0.31).value, 0);
 }
 
+TEST(PlannerAmongOthers, OneThatStandsIsAnObstacleAndNotWaitedFor) {
+  detail::Obstacles obstacles(PlannerOptions{}, make_vehicle_model(VehicleOptions{})->traits(), 20, 10);
+  const auto wide = scan_of_lane(1.5, 1);
+  const auto points = [&](double driven) {
+    const Other other(6, driven);
+    obstacles.update({.scan = wide.view(), .odometry = {{5, 0, 0}, 0}, .others = {&other.obstacle, 1}}, true);
+    EXPECT_EQ(obstacles.one_drives_ahead({5, 0, 0}, {0, 0}), driven > 0.3) << driven;
+    return obstacles.cost_map().points().size();
+  };
+  EXPECT_GT(points(0.2), points(0.5) + 5);
+}
+
 TEST(PlannerAmongOthers, WithoutPredictionTheyAreWhatTheScanSees) {
   const auto wide = scan_of_lane(1.5, 1.5);
   PlannerOptions options{.predict_others = false};

@@ -19,6 +19,14 @@ maps::MovingObstacleOptions moving_options(const PlannerOptions& options, const 
           .max_probability = options.collision_probability};
 }
 
+/// Whether a car is expected to drive faster than this (m/s).
+bool drives(const maps::PredictedObstacle& other, double speed) {
+  const int likeliest = other.likeliest();
+  const double time = other.interval * static_cast<double>(other.times() - 1);
+  const maps::Pose from = other.at(likeliest, 0).pose, to = other.at(likeliest, time).pose;
+  return std::hypot(to.x - from.x, to.y - from.y) > speed * time;
+}
+
 }  // namespace
 
 Obstacles::Obstacles(const PlannerOptions& options, const VehicleTraits& traits, int horizon, double reach)
@@ -84,11 +92,12 @@ bool Obstacles::one_drives_ahead(const maps::Pose& own, const maps::Point& origi
   return std::any_of(taken.begin(), taken.end(), [&](const maps::PredictedObstacle* each) {
     const maps::Pose& now = each->poses.front().pose;
     const maps::Point place = maps::inverse_transform(own, {now.x - origin.x, now.y - origin.y});
-    return place.x > 0 && place.x < margins_.close_ahead && std::abs(place.y) < margins_.close_beside;
+    return drives(*each, margins_.standing) && place.x > 0 && place.x < margins_.close_ahead &&
+           std::abs(place.y) < margins_.close_beside;
   });
 }
 
-/// Returns the scan without the readings that end on other cars as they are now.
+/// Returns the scan without the readings that end on cars that drive: one that stands is an obstacle, too.
 maps::LaserScanView Obstacles::without_others(const PlannerInput& input) noexcept {
   maps::LaserScanView scan = input.scan;
   // A scan with clockwise or too many beams keeps its readings: the cars are obstacles where they are, too.
@@ -98,7 +107,8 @@ maps::LaserScanView Obstacles::without_others(const PlannerInput& input) noexcep
   const maps::Pose sensor{at.x, at.y, input.odometry.pose.yaw + laser_.yaw};
   const std::span<float> ranges(ranges_.data(), scan.ranges.size());
   for (const maps::PredictedObstacle* const other : others_.taken())
-    maps::drop_readings_of(*other, SensorErrors::tracked, sensor, scan, ranges);
+    if (drives(*other, margins_.standing))
+      maps::drop_readings_of(*other, SensorErrors::tracked, sensor, scan, ranges);
   scan.ranges = ranges;
   return scan;
 }

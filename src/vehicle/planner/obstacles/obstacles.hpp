@@ -20,6 +20,7 @@ struct ObstacleMargins {
   double least_soft = 0.25 * car.length;  ///< m, soft margin to other cars at least
   double close_ahead = 3 * car.length;    ///< m ahead of the rear axle; for a nearer car the own one waits
   double close_beside = 1 * car.length;   ///< m beside it
+  double standing = 0.3 * car.speed;      ///< m/s; a slower car stands
 };
 
 /// The obstacles of the planner: maps of the scans, and predictions of other cars.
@@ -28,8 +29,8 @@ class Obstacles {
   /// Plans have `horizon` steps, and maps reach `reach` (m).
   Obstacles(const PlannerOptions& options, const VehicleTraits& traits, int horizon, double reach);
 
-  /// Takes the scan and the other inputs of an update. Readings of predicted cars are left out of the maps.
-  /// `placed` tells whether the odometry can be used.
+  /// Takes the scan and the other inputs of an update. Readings of predicted cars that drive are left out of
+  /// the maps. `placed` tells whether the odometry can be used.
   maps::ScanReport update(const PlannerInput& input, bool placed) noexcept;
 
   /// Adds obstacles that no scan shows (m, frame of the robot). Call it after `update`.
