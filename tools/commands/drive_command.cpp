@@ -49,27 +49,33 @@ class LongestStand {
         std::hypot(step.seen.pose.x - at_.x, step.seen.pose.y - at_.y) > near) {
       at_ = step.seen.pose;
       since_ = step.time;
-      blocked_ = steps_ = 0;
+      steps_.fill(0);
     }
-    ++steps_;
-    blocked_ += step.output.status == vehicle::PlannerStatus::blocked;
+    ++steps_[static_cast<std::size_t>(step.output.status)];
     if (step.time - since_ <= duration) return;
     duration = step.time - since_;
     place = at_;
     progress = step.progress;
-    every_plan_collides = 2 * blocked_ > steps_;
+    status = static_cast<Status>(std::max_element(steps_.begin(), steps_.end()) - steps_.begin());
+  }
+  /// Why it stood.
+  const char* reason() const {
+    return status == Status::blocked        ? "every plan collides or reverses"
+           : status == Status::bad_odometry ? "its place is not known, so it brakes"
+                                            : "plans without a collision do not get on";
   }
 
-  double duration = 0;               ///< s
-  maps::Pose place;                  ///< pose of the centre of gravity
-  double progress = 0;               ///< share of the lap
-  bool every_plan_collides = false;  ///< or it reversed, most of the time
+  using Status = vehicle::PlannerStatus;
+  double duration = 0;         ///< s
+  maps::Pose place;            ///< pose of the centre of gravity
+  double progress = 0;         ///< share of the lap
+  Status status = Status::ok;  ///< most frequent one
 
  private:
   static constexpr double moving = 1.0, near = 1.0;  // m/s, m
   maps::Pose at_;
   double since_ = 0;
-  int blocked_ = 0, steps_ = 0;
+  std::array<int, 7> steps_{};  ///< with each status
 };
 
 /// A drive of several laps and its outputs.
@@ -169,9 +175,7 @@ class DriveJob {
     const maps::Point& origin = setup_.environment->course.origin;
     std::fprintf(words_, "  blocked for %.1f s at (%.2f, %.2f), yaw %.2f, %.1f m along the lap: %s\n",
                  stand.duration, stand.place.x + origin.x, stand.place.y + origin.y, stand.place.yaw,
-                 stand.progress * setup_.length(),
-                 stand.every_plan_collides ? "every plan collides or reverses"
-                                           : "plans without a collision do not get on");
+                 stand.progress * setup_.length(), stand.reason());
   }
 
   void say_estimates(const evaluation::EstimationRecord& record) const {
