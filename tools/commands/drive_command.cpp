@@ -58,7 +58,6 @@ class LongestStand {
     progress = step.progress;
     status = static_cast<Status>(std::max_element(steps_.begin(), steps_.end()) - steps_.begin());
   }
-  /// Why it stood.
   const char* reason() const {
     return status == Status::blocked        ? "every plan collides or reverses"
            : status == Status::bad_odometry ? "its place is not known, so it brakes"
