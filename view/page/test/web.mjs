@@ -84,7 +84,10 @@ await h.test("pages of the site fit a phone, are found, and have no violation in
     }
   assert.deepEqual(found, []);
   const { page } = await h.open(site + "index.html");
-  await page.frameLocator(".demo").locator("#cost").filter({ hasText: /\d/ }).waitFor();
+  for (const demo of await page.locator(".demo").all()) {
+    await demo.scrollIntoViewIfNeeded();
+    await demo.contentFrame().locator("#cost").filter({ hasText: /\d/ }).waitFor({ state: "attached" });
+  }
   await page.locator("[name=query]").fill("costmap");
   await page.locator(".md-search-result__item").first().waitFor();
 });
