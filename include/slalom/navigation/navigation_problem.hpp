@@ -201,8 +201,7 @@ class NavigationProblem {
   }
 
  private:
-  /// Factors of the weights where a path is followed exactly. In a turn on the spot, progress counts by the
-  /// inverse.
+  /// Factors of weights on an exact path; in a turn on the spot, progress counts by the first one's inverse.
   static constexpr double exact_path = 10, exact_heading = 5;
   static constexpr double per_usual_speed = 2;      ///< s/m; faster robots keep more clearance
   static constexpr double farthest_projection = 3;  ///< largest change of the progress, in ways of a step
