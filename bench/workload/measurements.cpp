@@ -2,8 +2,6 @@
 
 #include <chrono>
 
-#include "slalom/core/dispatch.hpp"
-#include "slalom/core/math.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::workload {
@@ -73,30 +71,6 @@ class Rollouts {
   std::vector<double> times_;
 };
 
-constexpr int chains = 10, rounds = 4000;
-
-/// Runs `rounds` rounds of a product and a sum on every chain and returns a value that depends on all.
-struct Chains {
-  template <class Target>
-  SLALOM_KERNEL static float run() {
-    using F = Pack<Target>;
-    const F factor(0.999f), addend(0.001f);
-    F chain[chains], sum(0.0f);
-    for (int k = 0; k < chains; ++k) chain[k] = F(1 + 0.1f * static_cast<float>(k));
-    for (int i = 0; i < rounds; ++i)
-      for (F& each : chain) each = each * factor + addend;
-    for (const F& each : chain) sum = sum + each;
-    return sum.v[0];
-  }
-};
-
-struct Lanes {
-  template <class Target>
-  SLALOM_KERNEL static int run() {
-    return Target::lanes;
-  }
-};
-
 }  // namespace
 
 void compare_with_yardstick(const ReferenceWorkload& workload, simd::Target target) {
@@ -128,20 +102,6 @@ RolloutSpeed measure_rollouts(const ReferenceWorkload& workload,
   RolloutSpeed speed{stick.statistics(), {}};
   for (const Rollouts& each : all) speed.rollouts.push_back(each.statistics());
   return speed;
-}
-
-double measured_peak_gflops(simd::Target target) {
-  const auto run = simd::kernel<Chains>(target);
-  const int lanes = simd::kernel<Lanes>(target)();
-  double least = 1e30;
-  volatile float sink = 0;
-  for (int i = 0; i < 300; ++i) {
-    const auto begin = Clock::now();
-    sink = run();
-    least = std::min(least, seconds_since(begin));
-  }
-  static_cast<void>(sink);
-  return 2e-9 * chains * rounds * lanes / least;
 }
 
 SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,

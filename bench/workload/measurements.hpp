@@ -22,10 +22,6 @@ RolloutSpeed measure_rollouts(const ReferenceWorkload& workload,
                               std::span<const vehicle::VehicleOptions> problems, int samples, int steps,
                               simd::Target target, double seconds);
 
-/// Measures the peak float32 performance of one core, GFLOP/s, on independent operations in registers. A
-/// fused multiply-add counts as two operations.
-double measured_peak_gflops(simd::Target target);
-
 struct SolveSpeed {
   std::string method;
   TimeStatistics solve;      ///< ms
@@ -62,9 +58,5 @@ struct TickSpeed {
 };
 /// Measures DrivenPlanner.
 TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds);
-
-/// Additions and multiplications of one step and its cost in the published problem with one trajectory;
-/// counted by hand from the formulas (28 + 21 sines and cosines, 27 motion, 12 look-up, 15 cost).
-inline constexpr double operations_per_step = 103;
 
 }  // namespace slalom::workload

@@ -22,7 +22,6 @@ TEST_F(BenchCommand, MeasuresModelsWithTwoInputs) {
     EXPECT_GT(told["rollout_ns_per_step"], 0) << config;
     EXPECT_GT(told["methods"]["svg_mppi"]["solve_ms"]["p50"], 0) << config;
     EXPECT_GT(told["tick_ms"], told["tick"]["without_solve_ms"]["p50"]) << config;
-    EXPECT_FALSE(told.contains("rollout_gflops")) << "only the operations of the fixed workload are known";
     ASSERT_EQ(told["vehicle_models"].size(), 4u);
     EXPECT_EQ(told["vehicle_models"][0]["times_the_first"], 1);
     EXPECT_EQ(told["vehicle_models"][3]["model"], "single_track, saturating tyres");

@@ -121,6 +121,25 @@ TEST(Localiser, SearchesBeforeItIsSureOfAnUnknownStart) {
   EXPECT_LE(wrong, 1);
 }
 
+// Other cars hide most walls from a standing car: the poor fit does not mean that it is elsewhere.
+TEST(Localiser, IsSureAgainBehindWhatHidesTheWallsOnceNoOtherPlaceIsBetter) {
+  Localiser localiser(wren().course.map);
+  Drive drive(wren(), wren().at(0.2), 3);
+  localiser.start_at(drive.truth());
+  for (int i = 0; i < 40; ++i, drive.step()) localiser.update(drive.input());
+  auto& ranges = drive.ranges();
+  for (std::size_t i = 0; i < ranges.size() * 55 / 100; ++i) ranges[i] = std::min(ranges[i], 0.4F);
+  LocaliserInput input = drive.input();
+  int unsure = 0, sure = 0;
+  for (int i = 0; i < 240; ++i, input.stamp += Drive::period) {
+    const LocaliserOutput& out = localiser.update(input);
+    (i < 80 ? unsure : sure) += (out.status == LocaliserStatus::ok) == (i >= 80);
+    EXPECT_LT(error_of(out.pose, drive.truth()).distance, 0.3) << i;
+  }
+  EXPECT_GT(unsure, 20);
+  EXPECT_GT(sure, 100);
+}
+
 TEST(Localiser, ResetEqualsConstruction) {
   Localiser used(room(), {.seed = 1}), fresh(room(), {.seed = 9});
   Drive drive(wren(), wren().at(0.2), 3);

@@ -107,20 +107,8 @@ class Bench {
     json_["rollout_ns_per_step"] = rollout.p50;
     json_["rollout_times_faster"] = yardstick.p50 / rollout.p50;
     std::fprintf(words_,
-                 "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (minimum times: %.1f)",
+                 "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (minimum times: %.1f)\n",
                  yardstick.p50, rollout.p50, yardstick.p50 / rollout.p50, yardstick.min / rollout.min);
-    if (arguments_.config.empty()) operations(rollout.p50);
-    std::fprintf(words_, "\n");
-  }
-
-  /// Prints the rate of the fixed workload, whose operations are known.
-  void operations(double ns_per_step) {
-    const double peak = workload::measured_peak_gflops(target_),
-                 rate = workload::operations_per_step / ns_per_step;
-    json_["rollout_gflops"] = rate;
-    json_["peak_gflops"] = peak;
-    json_["share_of_peak"] = rate / peak;
-    std::fprintf(words_, "; %.0f GFLOP/s, %.0f %% of this core's %.0f", rate, 100 * rate / peak, peak);
   }
 
   /// Measures rollouts of each vehicle model over plans as long as of `default`, alternately.

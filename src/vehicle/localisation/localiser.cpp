@@ -91,7 +91,7 @@ struct Localiser::Implementation {
     has_odometry = false;
     slow = fast = 0;
     search_until = -1;
-    trust = 0;
+    trust = in_vain = 0;
     settled = lost = false;
     search.clear();
   }
@@ -100,6 +100,8 @@ struct Localiser::Implementation {
   void use_scan() noexcept;
   void estimate() noexcept;
   void look_elsewhere() noexcept;
+  /// Whether a search has found no better place, and the poor fit is due to something in front of the walls.
+  bool stands() const noexcept { return in_vain >= search_time && counted >= good_fit; }
 
   LocaliserOptions options;
   maps::Pose origin;  ///< origin of the grid, map frame
@@ -118,6 +120,8 @@ struct Localiser::Implementation {
   maps::Pose step;                     ///< m and rad in the car's frame, since the last update
   double elapsed = 0;                  ///< s, since the last update
   double fit = 0, slow = 0, fast = 0;  ///< fit of the estimate: now, and averaged
+  double counted = 0;                  ///< share of the readings that the map explains, of those that count
+  double in_vain = 0;                  ///< s, how long the present search has found no better place
   double trust = 0;                    ///< s without doubt about the place, reduced by doubt
   bool settled = false;                ///< the place was given, or a search ended with it
   bool lost = false;                   ///< no place is known, and no scan was used since
@@ -166,6 +170,7 @@ void Localiser::Implementation::estimate() noexcept {
   const auto explained = sensor->explain(found.pose, beams);
   output.fit = explained.share;
   fit = explained.fit;
+  counted = explained.counted;
   output.share = found.share;
   output.health = output.fit * output.share;
   output.pose = compose(origin, found.pose);
@@ -198,7 +203,8 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   const bool doubtful = recovery_margin * fast < std::max(slow, min_fit);
   const bool was_searching = output.searching;
   // A place that this search has found competes with the others on equal terms until the search is over.
-  if (doubtful) {
+  if (stands()) settled = true;
+  if (doubtful && !stands()) {
     trust *= doubt_keeps;
   } else if (settled) {
     trust = std::min(trust + std::max(0.0, elapsed), max_trust);
@@ -210,8 +216,10 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   output.searching = cause || (was_searching && stamp < search_until);
   if (!output.searching) {
     settled = true;
+    in_vain = 0;
     return;
   }
+  if (was_searching) in_vain += std::max(0.0, elapsed);
   if (!was_searching) search.clear();
 
   const maps::Pose place = relative(origin, output.pose);
@@ -228,7 +236,7 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   if (!search.confirms(best->pose, place, *sensor, beams)) return;
   particles.spread_about(best->pose, relocated_deviation, relocated_yaw_deviation, next_key());
   place_log_fit = best->log_fit;
-  trust = 0;
+  trust = in_vain = 0;
   settled = false;
   estimate();
 }
@@ -290,7 +298,8 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
   out.beams = self.beams.hits;
   self.use_scan();
   if (moved != LocaliserStatus::ok) return finish(moved);
-  const bool good = out.share >= good_share && out.fit >= good_fit && self.trust >= min_trust;
+  const bool fits = out.fit >= good_fit || self.stands();
+  const bool good = out.share >= good_share && fits && self.trust >= min_trust;
   return finish(good ? LocaliserStatus::ok : LocaliserStatus::uncertain);
 }
 

@@ -10,6 +10,9 @@ namespace {
 constexpr float log_in_wall = -1.0F;
 /// Standard deviations from a wall within which a beam counts as explained by it.
 constexpr double explained_within = 2.5;
+/// Readings that end in front of the walls of the map, at something that is not in it, say nothing about the
+/// place; but at least this share of all readings counts.
+constexpr double least_counted = 0.5;
 // Shares of readings from the map, from something in front of it, without a return, and of random ones; rate
 // of those in front (1/m): z_hit, z_short, z_max, z_rand and lambda_short.
 constexpr double hit_weight = 0.85, short_weight = 0.1, lost_weight = 0.05, random_weight = 0.1;
@@ -117,13 +120,13 @@ SensorTables::SensorTables(const maps::OccupancyGrid& map, const LocaliserOption
     : options_(options),
       geometry_(geometry_of(map, map.resolution)),
       field_(geometry_.rows, geometry_.columns),
-      place_(geometry_.rows, geometry_.columns) {
+      place_(geometry_.rows, geometry_.columns),
+      walls_(maps::distance_transform(map, false)) {
   make_field(map, options);
   if (options.sensor_model == SensorModel::beam) make_ranges(map);
 }
 
 void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
-  const maps::DistanceField walls = maps::distance_transform(map, false);
   const double hit = hit_density(options), random = random_density(options), most = hit + random;
   const auto log_probability = [&](double distance) {
     const double off = distance / options.hit_deviation;
@@ -136,7 +139,7 @@ void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOpt
     for (int column = 0; column < geometry_.columns; ++column) {
       const int map_column = geometry_.rows - 1 - row, map_row = geometry_.columns - 1 - column;
       // A wall begins half a cell before the centre of its cells.
-      const double distance = std::max(0.0, walls.at(map_column, map_row) - 0.5 * map.resolution);
+      const double distance = std::max(0.0, walls_.at(map_column, map_row) - 0.5 * map.resolution);
       *field_.at(row, column) = log_probability(distance);
       if (map.at(map_column, map_row) == maps::Occupancy::free) *place_.at(row, column) = 0;
     }
@@ -167,13 +170,12 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
     options_.sensor_model = SensorModel::likelihood_field;
     return;
   }
-  const maps::DistanceField walls = maps::distance_transform(map, false);
   table_.pairs.assign(origins.size() * angles, 0);
   std::vector<std::uint32_t> ranges(angles);
   for (std::size_t i = 1; i < origins.size(); ++i) {
     for (std::size_t a = 0; a < angles; ++a) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(a) / angles;
-      const double range = cast(walls, origins[i].x * scale, origins[i].y * scale, std::cos(angle),
+      const double range = cast(walls_, origins[i].x * scale, origins[i].y * scale, std::cos(angle),
                                 std::sin(angle), options_.range_cap);
       ranges[a] = saturate_cast<std::uint32_t>(std::min(65535.0, range / options_.range_cap * 65535));
     }
@@ -184,17 +186,25 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map) {
 
 SensorTables::Explained SensorTables::explain(const maps::Pose& pose, const ScanBeams& beams) const noexcept {
   const GridView<1> field = field_.view(geometry_);
-  const float x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
-  const float c = std::cos(static_cast<float>(pose.yaw)), s = std::sin(static_cast<float>(pose.yaw));
-  int near = 0;
+  const maps::Point laser = maps::transform(pose, {options_.laser_x, options_.laser_y});
+  const double scale = 1 / walls_.resolution;
+  int near = 0, in_front = 0;
   double sum = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(beams.hits); ++k) {
-    const float end_x = beams.end_x[k], end_y = beams.end_y[k];
-    const float value = look_up(field, x + c * end_x - s * end_y, y + s * end_x + c * end_y);
-    near += value >= explained_from_;
+    const maps::Point end = maps::transform(pose, {beams.end_x[k], beams.end_y[k]});
+    const float value = look_up(field, static_cast<float>(end.x), static_cast<float>(end.y));
+    const double range = static_cast<double>(beams.range[k]);
+    const double least = range + explained_within * options_.hit_deviation;
     sum += static_cast<double>(std::exp(value));
+    if (value >= explained_from_) {
+      ++near;
+    } else if (cast(walls_, laser.x * scale, laser.y * scale, (end.x - laser.x) / range,
+                    (end.y - laser.y) / range, least) >= least) {
+      ++in_front;
+    }
   }
-  return {static_cast<double>(near) / beams.hits, sum / beams.hits};
+  const double all = beams.hits, counted = std::max(all - in_front, least_counted * all);
+  return {near / all, near / counted, sum / all};
 }
 
 void SensorTables::weigh_by_field(const ParticlePoses& particles, const ScanBeams& beams,

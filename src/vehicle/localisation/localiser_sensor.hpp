@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/distance_field.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/vehicle/localisation/localiser_options.hpp"
@@ -81,8 +82,9 @@ class SensorTables {
 
   /// The quality of a pose, by the beams that came back.
   struct Explained {
-    double share = 0;  ///< share of beams that end near a wall, 0 .. 1
-    double fit = 0;    ///< mean over beams of each one's probability over the highest possible one, 0 .. 1
+    double share = 0;    ///< share of beams that end near a wall, 0 .. 1
+    double counted = 0;  ///< the same of beams that do not end in front of a wall, at what is not in the map
+    double fit = 0;      ///< mean over beams of each one's probability over the highest possible one, 0 .. 1
   };
   Explained explain(const maps::Pose& pose_grid, const ScanBeams& beams) const noexcept;
 
@@ -94,6 +96,7 @@ class SensorTables {
   maps::GridGeometry geometry_;
   maps::CellGrid<1> field_;  ///< log of the probability of a beam's end over the highest one
   maps::CellGrid<1> place_;  ///< log of the probability of a rear axle there: 0 in free cells
+  maps::DistanceField walls_;
   RangeTable table_;
   float explained_from_ = 0;  ///< least value of `field_` that explains a beam
 };
