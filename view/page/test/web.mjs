@@ -88,7 +88,7 @@ await h.test("pages of the site fit a phone, are found, and have no violation in
     await demo.scrollIntoViewIfNeeded();
     await demo.contentFrame().locator("#cost").filter({ hasText: /\d/ }).waitFor({ state: "attached" });
   }
-  await page.locator("[name=query]").fill("costmap");
+  await page.locator("[name=query]").pressSequentially("costmap");
   await page.locator(".md-search-result__item").first().waitFor();
 });
 
