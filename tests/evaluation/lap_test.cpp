@@ -130,6 +130,23 @@ TEST(Lap, LatencyDelaysCommands) {
   EXPECT_NEAR(first_motion(0.1) - first_motion(0), 0.1, 1e-6);
 }
 
+// Commands have an effect 80 ms later than the planner is told. It learns that when the car starts.
+TEST(Lap, SpeedsAreThosePlannedThoughCommandsAreLate) {
+  const LapSettings settings{.obstacles = 5, .latency = 0.1, .friction = 0.7, .saturating_tyres = true};
+  std::vector<std::pair<double, double>> planned;  // s, m/s
+  double error = 0;                                // m/s
+  std::size_t at = 0;
+  run_lap({timed_out_after(6, course("eel")), {configuration("default")}, settings}, 3,
+          [&](const ControlStep& tick) {
+            if (tick.time > 1 && tick.output.predicted.size() > 6)
+              planned.emplace_back(tick.time + 0.1 + 6 * 0.05, tick.output.predicted[6].speed);
+            for (; at < planned.size() && planned[at].first <= tick.time; ++at)
+              error += std::abs(tick.seen.speed - planned[at].second);
+          });
+  EXPECT_GT(at, 100u);
+  EXPECT_LT(error / static_cast<double>(at), 0.25);
+}
+
 TEST(Lap, HardwareLapsApplyTheirConditions) {
   const auto environment = timed_out_after(2);
   const auto lap = [&](const HardwareConditions& conditions, std::uint64_t seed) {

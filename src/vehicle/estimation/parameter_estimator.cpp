@@ -88,6 +88,7 @@ void ParameterEstimator::reset() noexcept {
   sent_.fill(0);
   newest_ = moments_ = 0;
   start_ = -1;
+  start_delay_ = 0;
   std::fill(evidence_.begin(), evidence_.end(), 0.0);
   estimate_.steering_offset = 0;
   summarise();
@@ -191,6 +192,7 @@ void ParameterEstimator::watch_start(double speed) noexcept {
     const double delay = (start_ + 1) * period_ - 2 * start_way_ / speed;
     start_ = -1;
     if (!(delay > delay_ && delay < max_delay)) return;
+    start_delay_ = delay;
     for (int i = 0; i < HypothesisGrid::count; ++i)
       evidence_[i] -= 0.5 * square((delay_at(i / (gains * frictions)) - delay) / start_noise);
     summarise();

@@ -57,6 +57,8 @@ class ParameterEstimator {
 
   /// The present estimate.
   const ParameterEstimate& estimate() const noexcept { return estimate_; }
+  /// The time (s) that the car took to move at its last start, if that was longer than the given delay; or 0.
+  double start_delay() const noexcept { return start_delay_; }
 
  private:
   static constexpr int frictions = HypothesisGrid::frictions, gains = HypothesisGrid::gains,
@@ -103,6 +105,7 @@ class ParameterEstimator {
   int newest_ = 0, moments_ = 0;
   int start_ = -1;        ///< control periods since a car at rest was told to drive; 0: at rest, -1: driving
   double start_way_ = 0;  ///< m, the way since then
+  double start_delay_ = 0;
   std::vector<double> log_prior_;                 ///< logarithms of weights, [delay][gain][friction]
   std::vector<double> evidence_;                  ///< logarithms of likelihoods
   std::vector<float> lateral_error_, yaw_error_;  ///< m, rad

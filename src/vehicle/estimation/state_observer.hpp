@@ -40,8 +40,11 @@ class StateObserver {
   /// Records the command that is sent now. The next updates use it.
   void send(const Command& command) noexcept;
 
-  /// Sets the time (s) after `latency` at which the steering reacts.
-  void set_dead_time(double dead_time) noexcept { delay_ = latency_ + dead_time; }
+  /// Sets the times (s) after which speed and steering react to a command.
+  void set_delays(double speed, double steering) noexcept {
+    latency_ = speed;
+    delay_ = std::max(speed, steering);
+  }
 
   /// The state at the time of the measurements.
   const VehicleStart& now() const noexcept { return now_; }
