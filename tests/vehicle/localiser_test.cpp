@@ -127,8 +127,7 @@ TEST(Localiser, IsSureAgainBehindWhatHidesTheWallsOnceNoOtherPlaceIsBetter) {
   Drive drive(wren(), wren().at(0.2), 3);
   localiser.start_at(drive.truth());
   for (int i = 0; i < 40; ++i, drive.step()) localiser.update(drive.input());
-  auto& ranges = drive.ranges();
-  for (std::size_t i = 0; i < ranges.size() * 55 / 100; ++i) ranges[i] = std::min(ranges[i], 0.4F);
+  for (std::size_t i = 0; i < 600; ++i) drive.ranges()[i] = std::min(drive.ranges()[i], 0.4F);
   LocaliserInput input = drive.input();
   int unsure = 0, sure = 0;
   for (int i = 0; i < 240; ++i, input.stamp += Drive::period) {

@@ -101,7 +101,7 @@ struct Localiser::Implementation {
   void estimate() noexcept;
   void look_elsewhere() noexcept;
   /// Whether a search has found no better place, and the poor fit is due to something in front of the walls.
-  bool stands() const noexcept { return in_vain >= search_time && counted >= good_fit; }
+  bool stands() const noexcept { return in_vain >= search_time && explained.counted >= good_fit; }
 
   LocaliserOptions options;
   maps::Pose origin;  ///< origin of the grid, map frame
@@ -119,8 +119,8 @@ struct Localiser::Implementation {
   maps::Pose velocity;                 ///< m/s and rad/s in the car's frame, of the last good motion
   maps::Pose step;                     ///< m and rad in the car's frame, since the last update
   double elapsed = 0;                  ///< s, since the last update
-  double fit = 0, slow = 0, fast = 0;  ///< fit of the estimate: now, and averaged
-  double counted = 0;                  ///< share of the readings that the map explains, of those that count
+  SensorTables::Explained explained;   ///< quality of the estimate
+  double slow = 0, fast = 0;           ///< its fit, averaged
   double in_vain = 0;                  ///< s, how long the present search has found no better place
   double trust = 0;                    ///< s without doubt about the place, reduced by doubt
   bool settled = false;                ///< the place was given, or a search ended with it
@@ -167,10 +167,8 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
 
 void Localiser::Implementation::estimate() noexcept {
   const Particles::Estimate found = particles.estimate();
-  const auto explained = sensor->explain(found.pose, beams);
+  explained = sensor->explain(found.pose, beams);
   output.fit = explained.share;
-  fit = explained.fit;
-  counted = explained.counted;
   output.share = found.share;
   output.health = output.fit * output.share;
   output.pose = compose(origin, found.pose);
@@ -192,8 +190,8 @@ void Localiser::Implementation::use_scan() noexcept {
   output.particles = particles.count();
   output.effective_samples = particles.weigh(*sensor, beams, beam_exponent);
   estimate();
-  slow = slow == 0 ? fit : slow + slow_rate * (fit - slow);
-  fast = fast == 0 ? fit : fast + fast_rate * (fit - fast);
+  slow = slow == 0 ? explained.fit : slow + slow_rate * (explained.fit - slow);
+  fast = fast == 0 ? explained.fit : fast + fast_rate * (explained.fit - fast);
   if (output.effective_samples < resample_below * particles.count()) particles.resample(next_key());
   look_elsewhere();
 }

@@ -1,7 +1,6 @@
 #include "localiser_sensor.hpp"
 
 #include "slalom/core/numbers/saturate_cast.hpp"
-#include "slalom/maps/distance_field.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
