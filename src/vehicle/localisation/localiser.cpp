@@ -116,17 +116,17 @@ struct Localiser::Implementation {
   bool has_odometry = false;
   maps::Pose odometry;
   double stamp = 0;
-  maps::Pose velocity;                 ///< m/s and rad/s in the car's frame, of the last good motion
-  maps::Pose step;                     ///< m and rad in the car's frame, since the last update
-  double elapsed = 0;                  ///< s, since the last update
-  SensorTables::Explained explained;   ///< quality of the estimate
-  double slow = 0, fast = 0;           ///< its fit, averaged
-  double in_vain = 0;                  ///< s, how long the present search has found no better place
-  double trust = 0;                    ///< s without doubt about the place, reduced by doubt
-  bool settled = false;                ///< the place was given, or a search ended with it
-  bool lost = false;                   ///< no place is known, and no scan was used since
-  double search_until = -1;            ///< s, stamp
-  double place_log_fit = 0;            ///< log fit of the particles' place, averaged as for a hypothesis
+  maps::Pose velocity;                ///< m/s and rad/s in the car's frame, of the last good motion
+  maps::Pose step;                    ///< m and rad in the car's frame, since the last update
+  double elapsed = 0;                 ///< s, since the last update
+  SensorTables::Explained explained;  ///< quality of the estimate
+  double slow = 0, fast = 0;          ///< its fit, averaged
+  double in_vain = 0;                 ///< s, how long the present search has found no better place
+  double trust = 0;                   ///< s without doubt about the place, reduced by doubt
+  bool settled = false;               ///< the place was given, or a search ended with it
+  bool lost = false;                  ///< no place is known, and no scan was used since
+  double search_until = -1;           ///< s, stamp
+  double place_log_fit = 0;           ///< log fit of the particles' place, averaged as for a hypothesis
 };
 
 /// Moves the particles by what the odometry says since the last update.
