@@ -67,7 +67,8 @@ void CarEstimator::update(const DynamicVehicleModel& model, const ObserverInput&
   if (!identify_) return;
   const VehicleStart& car = observer_.now();
   parameters_.update({input.pose, car.speed, car.yaw_rate, car.slip});
-  observer_.set_delays(std::max(latency_, parameters_.start_delay()), parameters_.estimate().delay);
+  const double start = parameters_.start_delay() - model.traits().dead_time;
+  observer_.set_delays(std::max(latency_, start), parameters_.estimate().delay);
 }
 
 Command CarEstimator::command(const Command& wheels, double steer_limit) const noexcept {
