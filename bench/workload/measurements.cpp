@@ -2,7 +2,6 @@
 
 #include <chrono>
 
-#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::workload {
 

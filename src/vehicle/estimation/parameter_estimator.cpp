@@ -181,22 +181,24 @@ double ParameterEstimator::turning_share() const noexcept {
 }
 
 /// Learns how long the car took to move, at the speed `slowest`: if the speed rose evenly, it drove for twice
-/// its way over its speed. One that moves at once says nothing of its servo, which may lag.
+/// its way over its speed, also at half of it. One that moves at once says nothing of its servo, which may
+/// lag.
 void ParameterEstimator::watch_start(double speed) noexcept {
   if (start_ <= 0) {
     start_ = std::abs(speed) < standing ? 0 : -1;
-    start_way_ = 0;
-  } else if (start_way_ += period_ * speed; speed < slowest) {
-    ++start_;
-  } else {
-    const double delay = (start_ + 1) * period_ - 2 * start_way_ / speed;
-    start_ = -1;
-    if (!(delay > delay_ && delay < max_delay)) return;
-    start_delay_ = delay;
-    for (int i = 0; i < HypothesisGrid::count; ++i)
-      evidence_[i] -= 0.5 * square((delay_at(i / (gains * frictions)) - delay) / start_noise);
-    summarise();
+    start_way_ = early_delay_ = 0;
+    return;
   }
+  start_way_ += period_ * speed;
+  const double delay = (start_ + 1) * period_ - 2 * start_way_ / speed;
+  if (2 * speed < slowest) early_delay_ = delay;
+  if (++start_; speed < slowest) return;
+  start_ = -1;
+  if (!(delay > delay_ && delay < max_delay && std::abs(delay - early_delay_) < start_noise)) return;
+  start_delay_ = delay;
+  for (int i = 0; i < HypothesisGrid::count; ++i)
+    evidence_[i] -= 0.5 * square((delay_at(i / (gains * frictions)) - delay) / start_noise);
+  summarise();
 }
 
 /// Updates the evidence for each hypothesis by the errors of its prediction of the window.

@@ -104,7 +104,7 @@ class ParameterEstimator {
   std::array<double, kept> sent_{};
   int newest_ = 0, moments_ = 0;
   int start_ = -1;  ///< control periods since a car at rest was told to drive; 0: at rest, -1: driving
-  double start_way_ = 0, start_delay_ = 0;        ///< m, the way since then; s
+  double start_way_ = 0, early_delay_ = 0, start_delay_ = 0;  ///< m, the way since then; s, s
   std::vector<double> log_prior_;                 ///< logarithms of weights, [delay][gain][friction]
   std::vector<double> evidence_;                  ///< logarithms of likelihoods
   std::vector<float> lateral_error_, yaw_error_;  ///< m, rad
