@@ -181,8 +181,7 @@ double ParameterEstimator::turning_share() const noexcept {
 }
 
 /// Learns how long the car took to move, at the speed `slowest`: if the speed rose evenly, it drove for twice
-/// its way over its speed, also at half of it. One that moves at once says nothing of its servo, which may
-/// lag.
+/// its way over its speed, also at half of it. One that moves at once says nothing of a servo that lags.
 void ParameterEstimator::watch_start(double speed) noexcept {
   if (start_ <= 0) {
     start_ = std::abs(speed) < standing ? 0 : -1;
