@@ -28,11 +28,11 @@ struct Drive {
   double offset = 0;  ///< rad, added to the angle of the wheels; the driver steers against it
   double delay = 0;   ///< s, besides the plant's dead time of 20 ms
   double given_friction = 1.0489, given_delay = 0.025;
-  double speed = 4;                          ///< m/s
-  double swing = 0.2;                        ///< rad, amplitude of the steering
-  double position_noise = 0, yaw_noise = 0;  ///< m, rad, standard deviations
-  double duration = 3;                       ///< s, after reaching the speed
-  bool from_rest = false;                    ///< `duration` begins at rest
+  double speed = 4;                           ///< m/s
+  double swing = 0.2;                         ///< rad, amplitude of the steering
+  double position_noise = 0, yaw_noise = 0;   ///< m, rad, standard deviations
+  double duration = 3;                        ///< s, after reaching the speed
+  bool from_rest = false, hesitates = false;  ///< `duration` begins at rest; speeds up slowly at first
 };
 
 ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {}) {
@@ -65,7 +65,8 @@ ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {
       wheel += (drive.gain * commands.front() + drive.offset - wheel) * (1 - std::exp(-time_step / 0.05));
       commands.pop_front();
       const bool waits = drive.from_rest && time + k * time_step < drive.delay;
-      plant.step({wheel, waits ? 0 : drive.speed});
+      const bool slow = drive.hesitates && plant.state().speed < 0.55;
+      plant.step({wheel, waits ? 0 : slow ? plant.state().speed + 0.8 : drive.speed});
     }
   }
   return estimator.estimate();
@@ -74,7 +75,8 @@ ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {
 TEST(ParameterEstimator, AStartFromRestShowsALongDelayBeforeTheFirstTurn) {
   for (const double d : {0.06, 0.1, 0.14})
     EXPECT_NEAR(after({.delay = d, .swing = 0, .duration = 1, .from_rest = true}).delay / d, 0.73, 0.05);
-  EXPECT_DOUBLE_EQ(after({.swing = 0, .duration = 1, .from_rest = true}).delay, 0.025);
+  for (const bool late : {false, true})
+    EXPECT_DOUBLE_EQ(after({.swing = 0, .duration = 1, .from_rest = true, .hesitates = late}).delay, 0.025);
 }
 
 TEST(ParameterEstimator, FindsLowFrictionAndALongDelayWithinThreeSeconds) {
