@@ -121,8 +121,7 @@ struct Localiser::Implementation {
   double elapsed = 0;                 ///< s, since the last update
   SensorTables::Explained explained;  ///< quality of the estimate
   double slow = 0, fast = 0;          ///< its fit, averaged
-  double in_vain = 0;                 ///< s, how long the present search has found no better place
-  double trust = 0;                   ///< s without doubt about the place, reduced by doubt
+  double in_vain = 0, trust = 0;      ///< s, of the present search in vain; s without doubt, reduced by it
   bool settled = false;               ///< the place was given, or a search ended with it
   bool lost = false;                  ///< no place is known, and no scan was used since
   double search_until = -1;           ///< s, stamp
